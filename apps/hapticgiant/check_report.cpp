@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/print_datasheet.h"
@@ -12,27 +11,16 @@
 namespace hg::apps {
 namespace {
 
+using checks::CheckedFile;
+using checks::CheckReport;
 using checks::Finding;
 using checks::Severity;
-
-auto key(const Finding& finding) {
-  return std::tie(finding.file, finding.place.line, finding.place.column, finding.item,
-                  finding.what);
-}
 
 std::string counted(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 }  // namespace
-
-void sort_and_merge(CheckReport& report) {
-  std::ranges::stable_sort(report.findings,
-                           [](const Finding& a, const Finding& b) { return key(a) < key(b); });
-  const auto rest = std::ranges::unique(
-      report.findings, [](const Finding& a, const Finding& b) { return key(a) == key(b); });
-  report.findings.erase(rest.begin(), rest.end());
-}
 
 int count(const CheckReport& report, Severity severity) {
   return static_cast<int>(std::ranges::count(report.findings, severity, &Finding::severity));

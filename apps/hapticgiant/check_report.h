@@ -2,29 +2,14 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "hg/commissioning/checks/datasheet.h"
-#include "hg/commissioning/checks/findings.h"
+#include "hg/commissioning/checks/file_check.h"
 
 namespace hg::apps {
 
-struct CheckedFile {
-  std::string name;
-  std::string kind;
-};
+int count(const checks::CheckReport& report, checks::Severity severity);
 
-struct CheckReport {
-  std::vector<CheckedFile> files;
-  checks::Findings findings;
-  std::vector<checks::Datasheet> datasheets;
-};
-
-/// Orders the findings by file and line; duplicates are merged.
-void sort_and_merge(CheckReport& report);
-int count(const CheckReport& report, checks::Severity severity);
-
-void print(const CheckReport& report);
-std::string to_json(const CheckReport& report);
+void print(const checks::CheckReport& report);
+std::string to_json(const checks::CheckReport& report);
 
 }  // namespace hg::apps

@@ -14,6 +14,7 @@
 #include "hg/analysis/run_story.h"
 #include "hg/core/error.h"
 #include "hg/recording/recording_reader.h"
+#include "hg/scenario/names.h"
 
 namespace hg::apps {
 namespace {
@@ -44,14 +45,28 @@ class Reader final : public recording::RecordingListener {
       }
       story_->add_event(event.time_s, event.name, event.text);
     }
+    for (const faults::Injection& fault : faults_) add_injected(fault);
     return story_->finish();
   }
 
  private:
+  // a fault that the scenario injects, if it acts while the recording lasts
+  void add_injected(const faults::Injection& fault) {
+    const bool is_over = fault.for_s > 0.0 && fault.from_s + fault.for_s < first_s();
+    if (is_over || fault.from_s > last_s()) return;
+    std::string text = fmt::format("{}, {}", fault.kind->name, fault.kind->what);
+    if (!fault.kind->unit.empty()) {
+      text += fmt::format(", {:g} {}", fault.magnitude, fault.kind->unit);
+    }
+    if (fault.for_s > 0.0) text += fmt::format(", for {:g} s", fault.for_s);
+    story_->add_event(fault.from_s, "injected fault", text);
+  }
+
   analysis::Names names() {
     try {
       const config::Scenario scenario = recorded_scenario(configuration_);
       title_ = scenario.title;
+      faults_ = scenario.faults;
       return scenario::part_names(scenario);
     } catch (const SetupError& error) {
       const std::string why = error.what();
@@ -63,6 +78,7 @@ class Reader final : public recording::RecordingListener {
 
   std::vector<recording::NamedText> configuration_;
   std::vector<recording::Event> events_;
+  std::vector<faults::Injection> faults_;
   std::unique_ptr<analysis::RunStory> story_;
   std::string title_;
   std::uint64_t samples_ = 0;

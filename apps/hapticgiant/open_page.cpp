@@ -1,3 +1,5 @@
+#include "apps/hapticgiant/open_page.h"
+
 #include <fcntl.h>
 #include <spawn.h>
 #include <unistd.h>
@@ -7,7 +9,6 @@
 #include <system_error>
 
 #include "apps/hapticgiant/output.h"
-#include "apps/hapticgiant/run_page.h"
 #include "hg/config/shipped_files.h"
 
 namespace hg::apps {
@@ -56,18 +57,6 @@ void present_page(const std::string& url, const std::string& address, bool opens
               ": whoever reaches it and has the link can move the hand; it is not encrypted\n");
   }
   if (opens_browser && has_display() && isatty(STDOUT_FILENO) == 1) open_browser(url);
-}
-
-std::unique_ptr<RunPage> open_page(const PreparedRun& run) {
-  const RunArguments& arguments = run.arguments;
-  if (!arguments.has_viewer || arguments.is_fast) return nullptr;
-  const std::string page = find_page();
-  if (page.empty()) return nullptr;
-  viewer_server::Options options;
-  options.address = arguments.address;
-  options.port = arguments.port;
-  options.page = page;
-  return std::make_unique<RunPage>(options, run);
 }
 
 }  // namespace hg::apps

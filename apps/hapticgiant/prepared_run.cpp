@@ -29,9 +29,6 @@ PreparedRun::PreparedRun(const RunArguments& a)
   auto connected = connect(0.0);
   is_machine = !connected->welcome().is_simulated;
   if (is_machine) {
-    if (!faults::loads_of(scenario.faults).empty()) {
-      throw SetupError("faults: cycles_late and solver_hurried are for simulated devices only");
-    }
     const start_test::MachineMemory memory = machine_memory(arguments);
     start_test = start_test::check_start_test(memory, scenario.device);
     posture = start_test::check_posture(memory, scenario.device, *connected);
@@ -41,6 +38,14 @@ PreparedRun::PreparedRun(const RunArguments& a)
   }
   remote = connected.get();
   device = std::move(connected);
+}
+
+page::ShownRun PreparedRun::shown() const {
+  return {.scenario = &scenario,
+          .options = &arguments.world,
+          .refusal = remote == nullptr
+                         ? ""
+                         : "the device at " + arguments.device_address + " keeps its own time"};
 }
 
 }  // namespace hg::apps

@@ -10,6 +10,7 @@
 #include "hg/controller/cycle.h"
 #include "hg/device/device.h"
 #include "hg/device/udp/remote_device.h"
+#include "hg/page/run_page.h"
 
 namespace hg::apps {
 
@@ -19,6 +20,9 @@ start_test::MachineMemory machine_memory(const RunArguments& arguments);
 struct PreparedRun {
   /// Prepares a run. Throws SetupError.
   explicit PreparedRun(const RunArguments& arguments);
+
+  /// The run for its page; valid while this exists.
+  page::ShownRun shown() const;
 
   const RunArguments arguments;
   const config::Scenario scenario;

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <thread>
@@ -14,21 +12,26 @@
 #include <vector>
 
 #include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/open_page.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/prepared_run.h"
-#include "apps/hapticgiant/run_page.h"
-#include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/status_line.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/analysis/fault_figures.h"
+#include "hg/analysis/run_news.h"
 #include "hg/analysis/summary.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/core/error.h"
+#include "hg/page/run_page.h"
+#include "hg/recording/problem_dumps.h"
+#include "hg/recording/recording_folder.h"
 #include "hg/runtime/runtime.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/names.h"
+#include "hg/scenario/recorded/run_recording.h"
+#include "hg/scenario/run.h"
 
 namespace hg::apps {
 namespace {
@@ -46,17 +49,15 @@ struct Observers {
   analysis::EventDetector detector;
   analysis::Summary summary;
   StatusLine status_line;
-  RunPage* page;  ///< page; nullptr = none
-  RunRecording recording;
+  page::RunPage* page;  ///< page; nullptr = none
+  scenario::RunRecording recording;
   recording::ProblemDumps dumps;
   bool is_fast = false;
-  Clock::time_point last_status = {};
   /// End of the script, to report if the run continues after it; 0 = it does not
   double script_end_s = 0.0;
-  TareStatus told_tare = TareStatus::kNone;
-  FaultCode told_fault = FaultCode::kNone;
-  bool told_touch = false;
   analysis::Names names;
+  analysis::RunNews news;
+  Clock::time_point last_status = {};
   std::string fault_figures = {};  ///< figures of the summary's fault
 };
 
@@ -67,37 +68,8 @@ void tell(Observers& observers, double time_s, std::string_view name, std::strin
   if (observers.page != nullptr) observers.page->announce(time_s, name, what);
 }
 
-// reports the result of a tare, once per answer regardless of retries, and refused requests
-void tell_requests(Observers& observers, const CycleRecord& record) {
-  const bool has_ended = record.tare != TareStatus::kNone && record.tare != TareStatus::kUnderWay;
-  if (has_ended && record.tare != observers.told_tare) {
-    observers.told_tare = record.tare;
-    tell(observers, record.time_s, "tare", to_string(record.tare));
-  }
-  if (record.refusal != Refusal::kNone) {
-    tell(observers, record.time_s, "request", to_string(record.refusal));
-  }
-}
-
-void tell_fault(Observers& observers, const Sample& sample) {
-  const FaultCode code = sample.record.fault.code;
-  if (std::exchange(observers.told_fault, code) == code || code == FaultCode::kNone) return;
-  tell(observers, sample.record.time_s, safety::is_fault(code) ? "fault" : "stopped",
-       fmt::format("{} {}", static_cast<int>(code), to_string(code)));
-}
-
-// reports the begin of a contact with the arm
-void tell_touch(Observers& observers, const CycleRecord& record) {
-  const TouchReport& touch = record.touch;
-  if (std::exchange(observers.told_touch, touch.is_told) || !touch.is_told) return;
-  const auto joint = static_cast<std::size_t>(touch.joint);  // -1: very large
-  const std::vector<std::string>& joints = observers.names.joints;
-  const std::string where = joint < joints.size() ? " beyond joint " + joints[joint] : "";
-  tell(observers, record.time_s, "contact", "something touches the arm" + where + ": it gives way");
-}
-
 // callback for changes by pages, at the time of `sample`
-RunPage::Note note(Observers& observers, const Sample& sample) {
+page::RunPage::Note note(Observers& observers, const Sample& sample) {
   return [&observers, &sample](std::string_view name, const std::string& text) {
     tell(observers, sample.record.time_s, name, text);
   };
@@ -114,9 +86,9 @@ void observe(Observers& observers, const Sample& sample) {
       fault.code != before && safety::is_fault(fault.code)) {
     observers.fault_figures = analysis::figures_of(fault, observers.names, sample.sensors);
   }
-  tell_requests(observers, sample.record);
-  tell_touch(observers, sample.record);
-  tell_fault(observers, sample);
+  for (const analysis::News& news : observers.news.observe(sample)) {
+    tell(observers, sample.record.time_s, news.name, news.text);
+  }
   observers.recording.push(sample);
   if (const auto event = observers.detector.observe(sample.record)) {
     observers.summary.add(*event);
@@ -178,26 +150,68 @@ void close_device(udp::RemoteDevice& device, const Fault& fault) {
 }
 
 // `goes_on`: after the script, until Ctrl-C
-runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments,
-                                 bool goes_on, const std::atomic<bool>& interrupted) {
-  runtime::Options options;
+runtime::Options runtime_options(const PreparedRun& run, bool goes_on,
+                                 const std::atomic<bool>& interrupted, page::RunPage* page) {
+  const RunArguments& arguments = run.arguments;
+  runtime::Options options = scenario::run_options(run.scenario);
   options.stop = &interrupted;
   options.is_fast = arguments.is_fast;
-  options.changes = scenario.changes;
-  options.panel = scenario.panel;
-  options.load = faults::loads_of(scenario.faults);
-  options.longest_stop_s = scenario::longest_stop_s(scenario);
-  if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / scenario.device.model.rate_Hz;
+  if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / run.scenario.device.model.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
   // a simulated device waits for its controller: late cycles do no harm
   options.tells_late_cycles = !arguments.device_address.empty();
-  options.duration_s =
-      arguments.duration_s.value_or(goes_on ? 0.0 : scenario::planned_duration_s(scenario));
+  options.duration_s = arguments.duration_s.value_or(goes_on ? 0.0 : options.duration_s);
+  if (page != nullptr) options.desk = &page->desk();
+  options.stays_in_fault = options.stays_in_fault || page != nullptr;
   if (arguments.is_fast && options.duration_s == 0.0) {
     throw SetupError("run: --fast without a script needs --duration S");
   }
   runtime::check(options);
   return options;
+}
+
+scenario::RecordingPlan recording_plan(const PreparedRun& run) {
+  const RunArguments& arguments = run.arguments;
+  if (arguments.has_recording && !recording::recording_available()) print_out(kNoRecording);
+  return {.info = recording_info(run.scenario, arguments),
+          .has_recording = arguments.has_recording,
+          .has_last_seconds = arguments.flight_recorder != "off",
+          .is_always = arguments.flight_recorder == "always",
+          .is_waiting = arguments.is_fast};
+}
+
+// problem dumps beside the recording, under its name; `stem` is empty without one
+recording::ProblemDumps problem_dumps(const PreparedRun& run, const std::string& stem) {
+  const RunArguments& arguments = run.arguments;
+  const analysis::RunFacts facts = scenario::facts_of_scenario(run.scenario);
+  const std::string name = recording_info(run.scenario, arguments).name;
+  return recording::ProblemDumps(
+      {.folder = arguments.has_recording ? arguments.recordings : "",
+       .stem = stem.empty() ? recording::stamped(name, std::chrono::system_clock::now()) : stem,
+       .origin = fmt::format("{}, law {}, bounds {}, gantry {}, braking {}", facts.scenario,
+                             facts.law, facts.bounds, facts.gantry, facts.braking),
+       .program = arguments.program});
+}
+
+// prints what became of the files of a run
+void print_recorded(const scenario::RunRecording::Result& result, const std::string& program) {
+  const recording::RecordingSummary& recorded = result.recording;
+  if (!recorded.error.empty()) print_error("recording ended early: {}\n", recorded.error);
+  if (!recorded.not_renamed.empty()) {
+    print_error("the recording is complete, but keeps its name {}: {}\n", recorded.file.string(),
+                recorded.not_renamed);
+  }
+  if (!recorded.not_linked.empty()) print_out("recording   {}\n", recorded.not_linked);
+  for (const auto& name : recorded.deleted) {
+    print_out("recording {} deleted to keep within the disk budget\n", name);
+  }
+  for (const auto& written : result.last_seconds.files) {
+    print_out("the last seconds are kept; what happened:\n  {} explain {}\n", program,
+              written.string());
+  }
+  if (!result.last_seconds.error.empty()) {
+    print_error("the last seconds could not be written: {}\n", result.last_seconds.error);
+  }
 }
 
 int exit_code(const analysis::Summary& summary, const std::vector<std::string>& missing,
@@ -207,45 +221,9 @@ int exit_code(const analysis::Summary& summary, const std::vector<std::string>& 
   return missing.empty() && summary.limits_held() && !summary.has_shaken() ? 0 : 1;
 }
 
-analysis::Timing timing_of(const runtime::Options& options, const runtime::Report& report) {
-  const runtime::ThreadReport& thread = report.thread;
-  const auto text_of = [](int error) { return error == 0 ? "" : std::strerror(error); };
-  analysis::Timing timing = {.is_fast = options.is_fast,
-                             .priority = thread.priority,
-                             .priority_refusal = text_of(thread.priority_error),
-                             .cpu = thread.cpu,
-                             .cpu_refusal = text_of(thread.cpu_error),
-                             .is_memory_locked = thread.is_memory_locked,
-                             .page_faults = report.page_faults,
-                             .overruns = report.overruns,
-                             .most_overruns_in_a_row = report.most_overruns_in_a_row,
-                             .overruns_stop = report.told_late_cycles,
-                             .wake_up_us = report.wake_up_us};
-  for (int i = 0; i < kStageCount; ++i) {
-    const Histogram& times = report.stage_us[static_cast<std::size_t>(i)];
-    if (times.count() == 0) continue;
-    timing.stages.push_back({to_string(static_cast<Stage>(i)), times.distribution()});
-  }
-  return timing;
-}
-
-// facts of the summary besides the observed ones
-analysis::RunFacts facts_of(const PreparedRun& run, const runtime::Options& options,
-                            const runtime::Report& report) {
-  analysis::RunFacts facts = scenario::facts_of_scenario(run.scenario);
-  facts.version = kVersion;
-  facts.rate_Hz = run.scenario.device.model.rate_Hz;
-  facts.timing = timing_of(options, report);
-  facts.dropped = report.dropped;
-  facts.allocations_in_loop = report.allocations;
-  facts.stop_timed_out = report.stop_timed_out;
-  if (run.remote != nullptr) facts.link = run.remote->counts();
-  return facts;
-}
-
 // the page of a run that a fault or the page itself has ended offers to start again
 void wait_for_next(Observers& observers, bool goes_on) {
-  RunPage* page = observers.page;
+  page::RunPage* page = observers.page;
   if (page == nullptr || page->has_next()) return;
   const bool has_fault = observers.summary.fault().code != FaultCode::kNone;
   if (!page->stop_was_asked() && !page->is_preparing() && !(goes_on && has_fault)) return;
@@ -257,21 +235,29 @@ void wait_for_next(Observers& observers, bool goes_on) {
   }
 }
 
+std::unique_ptr<page::RunPage> open_page(const PreparedRun& run, page::RunPage::Prepare prepare) {
+  const RunArguments& arguments = run.arguments;
+  if (!arguments.has_viewer || arguments.is_fast) return nullptr;
+  viewer_server::Options options;
+  options.page = find_page();
+  if (options.page.empty()) return nullptr;
+  options.address = arguments.address;
+  options.port = arguments.port;
+  return std::make_unique<page::RunPage>(options, run.shown(), std::move(prepare));
+}
+
 // to its end and its summary; the exit code
 int play(PreparedRun& run, const std::atomic<bool>& interrupted, const BackgroundOutput& output,
-         RunPage* page) {
+         page::RunPage* page) {
   const RunArguments& arguments = run.arguments;
   const config::Scenario& scenario = run.scenario;
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && page != nullptr;
-  runtime::Options options = runtime_options(scenario, arguments, goes_on, interrupted);
-  const auto is_reset = [](const TimedPanel& p) { return p.request == ModeRequest::kReset; };
-  if (page != nullptr) options.desk = &page->desk();
-  options.stays_in_fault = page != nullptr || std::ranges::any_of(scenario.panel, is_reset);
-  RunRecording recording(scenario, arguments);  // last: a refused run leaves no file
-  const recording::Recorder* recorder = recording.recorder();
-  auto dumps = problem_dumps(scenario, arguments, recorder);
-  if (page != nullptr) page->begin(run, recorder != nullptr ? recorder->stem() + ".mcap" : "");
+  const runtime::Options options = runtime_options(run, goes_on, interrupted, page);
+  // after all that may refuse the run, which then leaves no file
+  scenario::RunRecording recording(recording_plan(run));
+  const std::string stem = recording.stem();
+  if (page != nullptr) page->begin(run.shown(), stem.empty() ? "" : stem + ".mcap");
   Observers observers{
       .interrupted = interrupted,
       .scenario = scenario,
@@ -280,10 +266,11 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
       .status_line = StatusLine(is_terminal, output),
       .page = page,
       .recording = std::move(recording),
-      .dumps = std::move(dumps),
+      .dumps = problem_dumps(run, stem),
       .is_fast = arguments.is_fast,
       .script_end_s = options.duration_s == 0.0 ? scenario::planned_duration_s(scenario) : 0.0,
-      .names = scenario::part_names(scenario)};
+      .names = scenario::part_names(scenario),
+      .news = analysis::RunNews(scenario::part_names(scenario))};
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
   if (run.remote != nullptr && !scenario::notices_frozen_sensors(scenario.device)) {
     print_out(
@@ -310,11 +297,14 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   }
   if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 
-  analysis::RunFacts facts = facts_of(run, options, report);
-  const RunRecording::Result recorded = observers.recording.close();
-  facts.recording = recorded.file;
-  facts.unrecorded = recorded.unrecorded;
-  facts.recording_error = recorded.error;
+  const scenario::RunRecording::Result recorded = observers.recording.close();
+  print_recorded(recorded, arguments.program);
+  analysis::RunFacts facts = scenario::facts_of_run(scenario, options, report);
+  facts.version = kVersion;
+  if (run.remote != nullptr) facts.link = run.remote->counts();
+  facts.recording = recorded.recording.file.string();
+  facts.unrecorded = recorded.recording.dropped;
+  facts.recording_error = recorded.recording.error;
   facts.fault_figures = observers.fault_figures;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
   const std::vector<std::string> missing = observers.detector.missing();
@@ -322,7 +312,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
                         observers.dumps.summary(runtime.kept_problems())));
   if (run.is_machine) print_out(fmt::format("  start test   {}\n", run.start_test));
   for (const std::string& line : about_machine) print_out(fmt::format("  {}\n", line));
-  bool is_written = recorded.is_whole;
+  bool is_written = recorded.is_whole();
   try {
     if (!arguments.summary.empty()) {
       write_output(arguments.summary, observers.summary.to_json(facts, missing));
@@ -344,14 +334,16 @@ int run(const RunArguments& arguments) {
   auto present = std::make_unique<PreparedRun>(arguments);
   const std::atomic<bool>& interrupted = watch_interruption();
   const BackgroundOutput output(interrupted);
-  const auto page = open_page(*present);
+  std::unique_ptr<PreparedRun> last, next;  // `last` until the page shows the next one
+  const auto page = open_page(*present, [&](const scenario::Options& world) {
+    RunArguments changed = arguments;
+    changed.world = world;
+    next = std::make_unique<PreparedRun>(changed);
+  });
   if (page) present_page(page->url(), arguments.address, arguments.opens_browser);
-
-  std::unique_ptr<PreparedRun> last;  // until the page shows the next one
   while (true) {
     const int code = play(*present, interrupted, output, page.get());
-    auto next = page && !interrupted.load() ? page->take_next() : nullptr;
-    if (!next) return code;
+    if (!page || interrupted.load() || !page->take_next()) return code;
     last = std::move(present);
     present = std::move(next);
   }

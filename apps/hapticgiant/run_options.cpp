@@ -44,23 +44,7 @@ void add_run(CLI::App& app, const std::string& program, int& exit_code) {
       ->check(number_that("more than 0", [](double value) { return value > 0.0; }));
   CLI::Option* fast = command->add_flag(
       "--fast", arguments->is_fast, "as fast as it can instead of in real time; without the page");
-  command->add_option("--law", arguments->world.law, "gauss or paper; default: the device's")
-      ->check(CLI::IsMember({"gauss", "paper"}));
-  command
-      ->add_option("--bounds", arguments->world.bounds,
-                   "recoverable or paper; default: the device's")
-      ->check(CLI::IsMember({"recoverable", "paper"}));
-  command->add_option("--gantry", arguments->world.gantry, "law or rule; default: the device's")
-      ->check(CLI::IsMember({"law", "rule"}));
-  command
-      ->add_option("--braking", arguments->world.braking,
-                   "alone or together; default: the device's")
-      ->check(CLI::IsMember({"alone", "together"}));
-  command
-      ->add_option("--passivity", arguments->world.passivity,
-                   "off, observe or act on a hand and a device that shake each other; default: the "
-                   "device's")
-      ->check(CLI::IsMember({"off", "observe", "act"}));
+  add_law_options(*command, arguments->world);
   command->add_option("--summary", arguments->summary,
                       "write the closing summary as JSON to this file");
   CLI::Option* no_viewer =

@@ -2,19 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <string>
-#include <string_view>
-#include <utility>
+#include <vector>
 
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
-#include "hg/recording/recording_folder.h"
 
 namespace hg::apps {
 namespace {
-
-constexpr char kArguments[] = "arguments";  // attachment of a recording
 
 // a remote device has its own seed, step, hand and sensors
 void refuse_what_is_simulated(const scenario::Options& world) {
@@ -31,17 +26,6 @@ void refuse_what_is_simulated(const scenario::Options& world) {
                   fmt::join(given, ", ")));
 }
 
-std::string recording_name(const std::filesystem::path& scenario) {
-  constexpr std::string_view kMarks = "._-";
-  std::string name = scenario.stem().string();
-  for (char& c : name) {
-    const bool is_plain =
-        (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-    if (!is_plain && kMarks.find(c) == std::string_view::npos) c = '_';
-  }
-  return name;
-}
-
 }  // namespace
 
 config::Scenario make_scenario(const RunArguments& arguments) {
@@ -51,53 +35,11 @@ config::Scenario make_scenario(const RunArguments& arguments) {
   return scenario;
 }
 
-config::Scenario recorded_scenario(const std::vector<recording::NamedText>& configuration) {
-  std::vector<config::SourceText> sources;
-  std::string options;
-  for (const recording::NamedText& text : configuration) {
-    if (text.name == kArguments) {
-      options = text.text;
-    } else {
-      sources.push_back({text.name, text.text});
-    }
-  }
-  return scenario::load_recorded(std::move(sources), options);
-}
-
-recording::ProblemDumps problem_dumps(const config::Scenario& scenario,
-                                      const RunArguments& arguments,
-                                      const recording::Recorder* recorder) {
-  const analysis::RunFacts facts = scenario::facts_of_scenario(scenario);
-  const auto now = std::chrono::system_clock::now();
-  return recording::ProblemDumps(
-      {.folder = arguments.has_recording ? arguments.recordings : "",
-       .stem = recorder != nullptr
-                   ? recorder->stem()
-                   : recording::stamped(recording_name(arguments.world.scenario), now),
-       .origin = fmt::format("{}, law {}, bounds {}, gantry {}, braking {}", facts.scenario,
-                             facts.law, facts.bounds, facts.gantry, facts.braking),
-       .program = arguments.program});
-}
-
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const RunArguments& arguments) {
-  recording::RecordingInfo info;
+  recording::RecordingInfo info = scenario::recording_info(scenario, arguments.world);
   info.folder = arguments.recordings;
-  info.name = recording_name(arguments.world.scenario);
-  info.gantry_joints = scenario::gantry_joints(scenario.device);
-  info.manipulator_joints = scenario::manipulator_joints(scenario.device);
-  for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
-    info.twin_joints.push_back({joint.name, joint.type == model::JointType::kFloating});
-  }
-  info.limits = scenario.limits;
-  for (const auto& source : scenario.sources) {
-    info.configuration.push_back({source.name, source.content});
-  }
-  if (const std::string options = scenario::to_text(arguments.world); !options.empty()) {
-    info.configuration.push_back({kArguments, options});
-  }
   info.version = kVersion;
-  info.rate_Hz = scenario.device.model.rate_Hz;
   return info;
 }
 

@@ -1,10 +1,40 @@
 #include "apps/hapticgiant/scenario_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "apps/hapticgiant/option_checks.h"
+#include "hg/config/law_names.h"
+#include "hg/config/script_schema.h"
 
 namespace hg::apps {
+namespace {
+
+template <typename List>
+std::vector<std::string> names_of(const List& choices) {
+  std::vector<std::string> names;
+  for (const auto& choice : choices) names.emplace_back(choice.name);
+  return names;
+}
+
+// an option that takes one of these names: "off, observe or act" and `what` it is about
+template <typename List>
+void add_choice(CLI::App& command, const char* option, std::string& value, const List& choices,
+                const char* what = "") {
+  std::vector<std::string> names = names_of(choices);
+  CLI::IsMember check(names);
+  const std::string last = " or " + names.back();
+  names.pop_back();
+  command
+      .add_option(option, value,
+                  fmt::format("{}{}{}; default: the device's", fmt::join(names, ", "), last, what))
+      ->check(check);
+}
+
+}  // namespace
 
 void add_scenario_options(CLI::App& command, scenario::Options& world) {
   command
@@ -20,7 +50,7 @@ void add_scenario_options(CLI::App& command, scenario::Options& world) {
   command.add_option("--sensors", world.sensors, "real: with all their errors; or ideal")
       ->check(CLI::IsMember({"real", "ideal"}));
   command.add_option("--hand", world.hand, "how hard the simulated hand is made")
-      ->check(CLI::IsMember({"relaxed", "normal", "stiff"}));
+      ->check(CLI::IsMember(names_of(config::kHandPresets)));
   command.add_option("--seed", world.seed, "of noise and tremor: the same seed, the same run")
       ->check(whole_number(0.0));
   command.add_option("--step", world.step_s, "largest step of the simulated machine, s")
@@ -30,6 +60,15 @@ void add_scenario_options(CLI::App& command, scenario::Options& world) {
   command.add_option("--rate-hz", world.rate_Hz, "control rate, 100..20000; default: the device's")
       ->check(number_that("from 100 to 20000",
                           [](double value) { return value >= 100.0 && value <= 20000.0; }));
+}
+
+void add_law_options(CLI::App& command, scenario::Options& world) {
+  add_choice(command, "--law", world.law, config::kLaws);
+  add_choice(command, "--bounds", world.bounds, config::kBounds);
+  add_choice(command, "--gantry", world.gantry, config::kGantries);
+  add_choice(command, "--braking", world.braking, config::kBrakings);
+  add_choice(command, "--passivity", world.passivity, config::kPassivityReactions,
+             " on a hand and a device that shake each other");
 }
 
 }  // namespace hg::apps

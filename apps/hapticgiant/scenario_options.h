@@ -18,4 +18,7 @@ inline constexpr char kSimulationHelp[] =
 /// parsing.
 void add_scenario_options(CLI::App& command, scenario::Options& world);
 
+/// Adds law, bounds, gantry, braking and passivity. `world` must outlive parsing.
+void add_law_options(CLI::App& command, scenario::Options& world);
+
 }  // namespace hg::apps

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output.h"
@@ -18,6 +16,7 @@
 #include "hg/device/udp/device_server.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/remote/remote_setup.h"
+#include "hg/scenario/remote/watched_device.h"
 
 namespace hg::apps {
 namespace {
@@ -33,46 +32,6 @@ std::string how_it_ended(const udp::SessionReport& report) {
   }
   return {};
 }
-
-/// A device whose true state is observed, which no controller knows.
-class WatchedDevice final : public device::Device {
- public:
-  WatchedDevice(std::unique_ptr<device::Device> device, const DeviceModel& model)
-      : device_(std::move(device)), model_(model) {}
-
-  void read(SensorFrame& sensors) noexcept override { device_->read(sensors); }
-  void write(const CommandFrame& command) noexcept override {
-    device_->write(command);
-    const Truth& truth = *device_->truth();
-    for (int i = 0; i < truth.q_m.size(); ++i) {
-      const limits::JointLimits& limits = model_.joint_limits[static_cast<std::size_t>(i)];
-      const double q = truth.q_m[i];
-      const double excess = std::max(limits.q_min - q, q - limits.q_max);
-      if (excess <= worst_excess_) continue;
-      worst_excess_ = excess;
-      worst_joint_ = i;
-    }
-    max_force_ = std::max(max_force_, truth.w_H.head<3>().norm());
-  }
-
-  /// True maxima as text: "joint limits exceeded by at most 0.31e-3 rad or m (m4); force of the
-  /// user at most 38.2 N".
-  std::string truth_text() const {
-    std::string limits = "joint limits held";
-    if (worst_joint_ >= 0) {
-      const auto joint = static_cast<std::size_t>(model_.n_p + worst_joint_);
-      limits = fmt::format("joint limits exceeded by at most {:.2f}e-3 rad or m ({})",
-                           1e3 * worst_excess_, model_.chain.joints()[joint].name);
-    }
-    return fmt::format("{}; force of the user at most {:.1f} N", limits, max_force_);
-  }
-
- private:
-  std::unique_ptr<device::Device> device_;
-  const DeviceModel& model_;
-  double worst_excess_ = 0.0, max_force_ = 0.0;
-  int worst_joint_ = -1;
-};
 
 std::string closing_lines(const udp::SessionReport& report, double rate_Hz) {
   std::string text;
@@ -117,7 +76,8 @@ int simulate(const SimulateArguments& arguments) {
     if (!lost.empty()) print_error("{}: the capture ended early: {}\n", arguments.capture, lost);
   };
   while (server.wait_for_client(stop)) {
-    WatchedDevice device(scenario::make_simulated_device(scenario, world), scenario.device.model);
+    scenario::WatchedDevice device(scenario::make_simulated_device(scenario, world),
+                                   scenario.device.model);
     const udp::SessionReport report = server.serve(device, stop);
     print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.model.rate_Hz),
                           "truth", device.truth_text()));

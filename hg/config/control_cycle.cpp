@@ -75,7 +75,8 @@ tracking::Loop torque_loop(const Device& device) {
 }
 
 controller::Cycle make_cycle(const Device& device, const Twin& twin,
-                             std::vector<surfaces::Surface> surfaces) {
+                             std::vector<surfaces::Surface> surfaces,
+                             std::vector<SolverCap> solver_caps) {
   return controller::Cycle({.estimation = device.estimation,
                             .prepositioning = device.prepositioning,
                             .rendering = device.rendering,
@@ -85,7 +86,8 @@ controller::Cycle make_cycle(const Device& device, const Twin& twin,
                             .collision = device.collision,
                             .passivity = device.passivity,
                             .compliance = device.compliance,
-                            .surfaces = std::move(surfaces)},
+                            .surfaces = std::move(surfaces),
+                            .solver_caps = std::move(solver_caps)},
                            device.model, twin.model);
 }
 

@@ -13,9 +13,10 @@ namespace hg::config {
 
 /// The control cycle of `device` with `twin` in its hand, in contact with `surfaces`. Throws
 /// SetupError where they do not fit together, or where the torque loop is not stable with the
-/// expected latency.
+/// expected latency. `solver_caps`: injected faults of the computer; a machine has none.
 controller::Cycle make_cycle(const Device& device, const Twin& twin,
-                             std::vector<surfaces::Surface> surfaces = {});
+                             std::vector<surfaces::Surface> surfaces = {},
+                             std::vector<SolverCap> solver_caps = {});
 
 /// The torque loop of a device with elastic joints, as its controller believes it to be.
 tracking::Loop torque_loop(const Device& device);

@@ -375,6 +375,7 @@ const rendering::LawResult& Cycle::render(Motion motion, bool is_held, const Rob
                    .braking_rate = is_braked ? kBrakingRate : ramped_rate,
                    .force_share = share,
                    .handle_speed_max = speed_max() / std::sqrt(3.0),
+                   .most_active_sets = most_active_sets(config_.solver_caps, time_s()),
                    .gantry = gantry.task,
                    .cycle = state_.cycle},
                   state_.rendering, law_);

@@ -23,6 +23,7 @@
 #include "hg/core/nonblocking.h"
 #include "hg/core/stage_probe.h"
 #include "hg/signals/state.h"
+#include "hg/signals/timed_load.h"
 
 namespace hg::controller {
 
@@ -38,6 +39,7 @@ struct Config {
   passivity::Config passivity;
   compliance::Config compliance;
   std::vector<surfaces::Surface> surfaces;  ///< Virtual surfaces in contact with the twin
+  std::vector<SolverCap> solver_caps;       ///< Injected faults of the computer; empty = none
 };
 
 /// How the device moves in a cycle; decided once, between estimation and prepositioning.
@@ -96,10 +98,9 @@ class Cycle {
   /// The device for which this cycle was built.
   const DeviceModel& device() const noexcept { return rendering_.device(); }
 
-  /// Caps the active sets of a solve from the next step on, where smaller than configured; 0 = as
-  /// configured. Not part of the state: a replay sets it again.
-  void limit_solver(std::uint32_t most_active_sets) noexcept {
-    rendering_.limit_solver(most_active_sets);
+  /// Time of the next step, s; that of its record. The clock of all that is planned for a run.
+  double time_s() const noexcept {
+    return static_cast<double>(state_.cycle) * device_.dt();
   }
 
   /// Installs a callback per stage; the default probe does nothing.

@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::string_view kSamples = "/hapticgiant/sample";
 constexpr std::string_view kEvents = "/hapticgiant/events";
+constexpr char kOtherVersion[] = "its samples are of another version";
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view what) {
   throw SetupError(file.string() + ": must be a recording of this program: " + std::string(what));
@@ -175,7 +176,7 @@ struct Teller {
     }
     if (kind == mcap_channel && name == kSamples) {
       has_samples = true;
-      if (!is_same_schema(text_of(bytes))) error = "its samples are of another version";
+      if (error.empty() && !is_same_schema(text_of(bytes))) error = kOtherVersion;
     }
     if (kind != mcap_message || !error.empty()) return;
     if (name == kEvents) {
@@ -237,7 +238,7 @@ struct RecordedRun::Taker {
   void channel(std::string_view topic, std::string_view schema) {
     if (topic != kSamples) return;
     has_samples = true;
-    if (!is_same_schema(schema)) error = "its samples are of another version";
+    if (!is_same_schema(schema)) error = kOtherVersion;
   }
 
   void message(std::string_view topic, std::uint64_t time_ns, Bytes bytes) {

@@ -204,8 +204,7 @@ void Runtime::operate(bool is_stopping) noexcept {
     is_operated_ = true;
     request_stops_ = next.stops;
   }
-  const double time_s = static_cast<double>(report_.cycles) / cycle_.device().rate_Hz;
-  if (const TimedPanel* due = timed_panels_.due(time_s)) {
+  if (const TimedPanel* due = timed_panels_.due(cycle_.time_s())) {
     play_script(*due);
     if (due->request != ModeRequest::kNone) {
       next.request = due->request;

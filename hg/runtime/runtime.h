@@ -40,7 +40,7 @@ struct Options {
   std::size_t ring = 4096;           ///< Capacity of the ring to the observer, samples
   std::vector<TimedChange> changes;  ///< Changes of the twin, in the order of their times
   std::vector<TimedPanel> panel;     ///< Panels of the operator, in the order of their times
-  std::vector<TimedLoad> load;       ///< Load on the computer, for tests
+  std::vector<TimedLoad> load;       ///< Late cycles, for tests
   /// true: a fault does not end the run, because an operator can reset it. After a fault no request
   /// is made automatically.
   bool stays_in_fault = false;

@@ -7,7 +7,6 @@ namespace hg::runtime {
 Session::Session(controller::Cycle& cycle, device::Device& device, const SessionPlan& plan)
     : cycle_(cycle),
       device_(device),
-      rate_Hz_(cycle.device().rate_Hz),
       duration_s_(plan.duration_s),
       changes_(plan.changes),
       loads_(plan.load) {}
@@ -22,21 +21,19 @@ bool Session::advance() noexcept HG_NONBLOCKING {
 void Session::read() noexcept HG_NONBLOCKING {
   Sample& now = *sample_;
   OperatorFrame& input = now.operator_input;
-  const auto cycles = static_cast<double>(cycles_++);
+  const double time_s = cycle_.time_s();
   input = next_;
   // of the automatic operator: by what the last period showed
   if (!is_operated_ || is_stopping_) {
     input.request = next_request(now.record, cycle_.is_held(now.sensors), is_stopping_);
   }
-  const ParameterChange due = changes_.due(cycles / rate_Hz_);
+  const ParameterChange due = changes_.due(time_s);
   if (due.parameter != Parameter::kNone) {
     input.change = due;
   } else {
     next_.change = {};
   }
-  const double time_s = cycles * (1.0 / rate_Hz_);  // as the cycle and the simulation count it
   input.late_cycles += loads_.late_cycles(time_s);
-  cycle_.limit_solver(loads_.most_active_sets(time_s));
   next_.request = ModeRequest::kNone;
   next_.late_cycles = 0;
 

@@ -21,7 +21,7 @@ namespace hg::runtime {
 struct SessionPlan {
   double duration_s = 0.0;           ///< Duration, s; 0 = until a fault or a stop
   std::vector<TimedChange> changes;  ///< Changes of the twin, in the order of their times
-  std::vector<TimedLoad> load;       ///< Load on the computer, for tests
+  std::vector<TimedLoad> load;       ///< Late cycles, for tests
 };
 
 /// A cycle, its device and an operator.
@@ -69,13 +69,12 @@ class Session {
  private:
   controller::Cycle& cycle_;
   device::Device& device_;
-  double rate_Hz_, duration_s_;
+  double duration_s_;
   TimedChanges changes_;
   TimedLoads loads_;
   OperatorFrame next_;
   bool is_operated_ = false;  ///< Requests come from the caller
   bool is_stopping_ = false;
-  std::uint64_t cycles_ = 0;  ///< Periods so far
   std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
 };
 

@@ -172,7 +172,8 @@ bool notices_frozen_sensors(const config::SimulatedDevice& device) {
 controller::Cycle make_cycle(const config::Scenario& scenario) {
   config::Device device = scenario.device;
   if (!notices_frozen_sensors(scenario.device)) device.monitor.frozen_samples = 0.0;
-  return config::make_cycle(device, scenario.twin, scenario.surfaces);
+  return config::make_cycle(device, scenario.twin, scenario.surfaces,
+                            faults::solver_caps_of(scenario.faults));
 }
 
 person::Person make_person(const config::Scenario& scenario, const Start& start) {

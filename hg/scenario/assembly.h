@@ -13,7 +13,8 @@
 
 namespace hg::scenario {
 
-/// The control cycle of the scenario's device and twin. Throws SetupError.
+/// The control cycle of the scenario's device and twin, with a solver capped where the faults of
+/// the scenario say so. Throws SetupError.
 controller::Cycle make_cycle(const config::Scenario& scenario);
 
 /// Whether rule 105 is on: sensors without noise in simulation.yaml give constant values at rest.
@@ -29,7 +30,8 @@ simulator::Simulation make_simulation(const config::Scenario& scenario);
 simulator::Simulation make_unheld_simulation(const config::SimulatedDevice& device,
                                              const Start& start);
 /// The world of make_simulation() behind the interface of a device, with the faults of the
-/// scenario. Those of the computer act in a session or runtime: faults::loads_of().
+/// scenario. Late cycles act in a session or runtime, faults::loads_of(); a hurried solver in the
+/// cycle.
 std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario);
 /// The same with a given world, to start several devices from one.
 std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario,

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "hg/signals/due.h"
 #include "hg/signals/frames.h"
 
 namespace hg {
@@ -23,7 +24,7 @@ class TimedChanges {
 
   /// Change due in the cycle that begins at `time_s`; Parameter::kNone if none is due.
   ParameterChange due(double time_s) noexcept {
-    if (next_ == changes_.size() || changes_[next_].at_s > time_s) return {};
+    if (next_ == changes_.size() || !is_due(changes_[next_].at_s, time_s)) return {};
     return changes_[next_++].change;
   }
 

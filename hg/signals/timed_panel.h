@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "hg/signals/due.h"
 #include "hg/signals/frames.h"
 
 namespace hg {
@@ -24,7 +25,7 @@ class TimedPanels {
 
   /// Panel due in the cycle that begins at `time_s`, one per call; nullptr = none.
   const TimedPanel* due(double time_s) noexcept {
-    if (next_ == panels_.size() || panels_[next_].at_s > time_s) return nullptr;
+    if (next_ == panels_.size() || !is_due(panels_[next_].at_s, time_s)) return nullptr;
     return &panels_[next_++];
   }
 

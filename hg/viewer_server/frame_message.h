@@ -8,87 +8,84 @@
 
 #include "hg/viewer_server/command_message.h"
 #include "hg/viewer_server/frame_parts_message.h"
+#include "hg/viewer_server/limit_text.h"
 #include "hg/viewer_server/message.h"
 
 namespace hg::viewer_server {
 
+/// A view on its way to the pages.
 struct FrameMessage {
-  std::uint64_t run = 0;
-  double time_s = 0.0;
-  Mode mode = Mode::kOff;
-  std::string mode_text, fault, status;
-  std::vector<double> q_device, q_measured, dq_device, dq_measured, tau_measured, q_twin, dq_twin;
-  std::vector<double> q_gantry_target, tracking_error;
-  bool is_clamped = false;
-  Vec3 p_B_H{}, v_H{}, p_B_E{}, p_B_elbow{}, force{}, torque{};
-  Quaternion quaternion_B_H{}, quaternion_B_E{};
-  std::optional<FeltLimitMessage> felt;
-  std::vector<ActiveLimitMessage> active;
-  std::optional<ContactReport> contact;
-  std::vector<double> limit_position;
-  std::vector<std::optional<double>> limit_distance;
-  HandBudget budget;
-  std::optional<Singularity> singularity;
-  double sync_error_mm = 0.0, sync_error_deg = 0.0, cycle_time_us = 0.0, cycle_time_max_us = 0.0;
-  HandMessage hand;
-  RunState run_state;
-  SafetyMessage safety;
+  const View& view;
+  const LimitCatalogue& limits;
   std::uint64_t clients = 0;
-  std::optional<GhostMessage> ghost;
 };
+
+std::vector<double> joined(const Eigen::Ref<const Eigen::VectorXd>& first,
+                           const Eigen::Ref<const Eigen::VectorXd>& second);
+std::optional<FeltLimitMessage> felt_limit(const FrameMessage& frame);
+std::vector<ActiveLimitMessage> active_limits(const FrameMessage& frame);
+std::vector<double> limit_positions(const FrameMessage& frame);
+std::vector<std::optional<double>> limit_distances(const FrameMessage& frame);
+HandMessage hand_message(const HandTarget& hand);
 
 template <>
 inline constexpr Interface kInterface<FrameMessage> = {"Frame", "program -> page, at update_rate"};
 
 template <typename Archive, Is<FrameMessage> T>
 void fields(Archive& a, T& frame) {
+  const View& view = frame.view;
+  const CycleRecord& record = view.record;
+  const RobotState& robot = record.robot;
+  const bool has_fault = record.fault.code != FaultCode::kNone;
   a.type("frame");
-  a("run", frame.run, "number of the run, as Scene.run");
-  a("time_s", frame.time_s);
-  a("mode", frame.mode);
-  a("mode_text", frame.mode_text, "mode and its cause as text");
-  a("fault", frame.fault, "empty = none");
-  a("status", frame.status, "status in one line");
-  a("q_device", frame.q_device, "gantry, then reference of the manipulator, rad or m");
-  a("q_measured", frame.q_measured, "gantry, then manipulator, rad or m");
-  a("dq_device", frame.dq_device, "velocities of q_device, rad/s or m/s");
-  a("dq_measured", frame.dq_measured, "velocities of q_measured, rad/s or m/s");
-  a("tau_measured_Nm", frame.tau_measured,
+  a("run", view.run, "number of the run, as Scene.run");
+  a("time_s", record.time_s);
+  a("mode", record.mode);
+  a("mode_text", mode_text(record), "mode and its cause as text");
+  a("fault", std::string(has_fault ? to_string(record.fault.code) : ""), "empty = none");
+  a("status", view.status_text, "status in one line");
+  a("q_device", q_device(record), "gantry, then reference of the manipulator, rad or m");
+  a("q_measured", joined(robot.q_p, robot.q_m), "gantry, then manipulator, rad or m");
+  a("dq_device", joined(robot.dq_p, record.reference.dq_m), "velocities of q_device, rad/s or m/s");
+  a("dq_measured", joined(robot.dq_p, robot.dq_m), "velocities of q_measured, rad/s or m/s");
+  a("tau_measured_Nm", list(robot.tau_m),
     "torque sensors of the manipulator's joints; empty = none");
-  a("q_twin", frame.q_twin, "coordinates of the twin, rad or m");
-  a("dq_twin", frame.dq_twin,
+  a("q_twin", list(record.twin.q_a), "coordinates of the twin, rad or m");
+  a("dq_twin", list(record.twin.dq_a),
     "velocities of the twin, rad/s or m/s; a floating joint has 6, in its own frame");
-  a("q_gantry_target_m", frame.q_gantry_target, "gantry target of prepositioning");
-  a("tracking_error", frame.tracking_error,
+  a("q_gantry_target_m", list(record.q_p_target), "gantry target of prepositioning");
+  a("tracking_error", list(record.tracking.error),
     "reference minus link side of the manipulator, rad or m");
-  a("is_clamped", frame.is_clamped,
+  a("is_clamped", record.tracking.is_clamped,
     "tracking was lost: the reference was moved back to the device");
-  a("p_B_H_m", frame.p_B_H, "position of the handle, at the reference");
-  a("quaternion_B_H", frame.quaternion_B_H);
-  a("v_H_m_per_s", frame.v_H);
-  a("p_B_E_m", frame.p_B_E, "position of the twin's end effector");
-  a("quaternion_B_E", frame.quaternion_B_E);
-  a("p_B_elbow_m", frame.p_B_elbow);
-  a("force_N", frame.force, "force of the user on the handle, in B");
-  a("torque_Nm", frame.torque);
-  a("felt", frame.felt);
-  a("active", frame.active, "active limits");
-  a("contact", frame.contact, "null = none");
-  a("limit_position", frame.limit_position,
+  a("p_B_H_m", record.T_B_H.p, "position of the handle, at the reference");
+  a("quaternion_B_H", quaternion(record.T_B_H.R));
+  a("v_H_m_per_s", record.v_H);
+  a("p_B_E_m", record.T_B_E.p, "position of the twin's end effector");
+  a("quaternion_B_E", quaternion(record.T_B_E.R));
+  a("p_B_elbow_m", record.p_B_elbow);
+  a("force_N", Eigen::Vector3d(robot.w_H.template head<3>()),
+    "force of the user on the handle, in B");
+  a("torque_Nm", Eigen::Vector3d(robot.w_H.template tail<3>()));
+  a("felt", felt_limit(frame));
+  a("active", active_limits(frame), "active limits");
+  a("contact", record.contact.surface >= 0 ? std::optional(record.contact) : std::nullopt,
+    "null = none");
+  a("limit_position", limit_positions(frame),
     "positions of the limited quantities in the order of Scene.limits, rad or m");
-  a("limit_distance", frame.limit_distance,
+  a("limit_distance", limit_distances(frame),
     "distance to the nearer end, with margin; null = unbounded");
-  a("budget", frame.budget, "breakdown of the user's wrench");
-  a("singularity", frame.singularity);
-  a("sync_error_mm", frame.sync_error_mm, "distance of handle and twin");
-  a("sync_error_deg", frame.sync_error_deg);
-  a("cycle_time_us", frame.cycle_time_us);
-  a("cycle_time_max_us", frame.cycle_time_max_us, "maximum since the last frame");
-  a("hand", frame.hand);
-  a("run_state", frame.run_state);
-  a("safety", frame.safety);
+  a("budget", view.budget, "breakdown of the user's wrench");
+  a("singularity", view.singularity);
+  a("sync_error_mm", 1e3 * record.sync_error, "distance of handle and twin");
+  a("sync_error_deg", record.sync_error_angle * 180.0 / M_PI);
+  a("cycle_time_us", view.cycle_time_us);
+  a("cycle_time_max_us", view.cycle_time_max_us, "maximum since the last frame");
+  a("hand", hand_message(view.hand));
+  a("run_state", view.run_state);
+  a("safety", SafetyMessage{view});
   a("clients", frame.clients, "number of connected pages");
-  a("ghost", frame.ghost);
+  a("ghost", view.ghost);
 }
 
 }  // namespace hg::viewer_server

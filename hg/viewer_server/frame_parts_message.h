@@ -24,21 +24,14 @@ struct ActiveLimitMessage {
   std::string text;
 };
 
+/// What stops the device, and the panel.
 struct SafetyMessage {
-  Stop stop = Stop::kNone;
-  bool is_autonomous = false;
-  int fault = 0;
-  std::string cause, release, warning;
-  bool emergency_stop = false;
-  std::vector<std::uint64_t> stop_pressed_by;
-  SafetyPanel panel;
+  const View& view;
 };
 
-struct GhostMessage {
-  double time_s = 0.0;
-  std::vector<double> q_device, q_twin;
-  Vec3 p_B_H{}, force{};
-};
+/// Coordinates at which the page draws the device: gantry, then reference of the manipulator.
+std::vector<double> q_device(const CycleRecord& record);
+std::vector<double> list(const Eigen::Ref<const Eigen::VectorXd>& vector);
 
 template <>
 inline constexpr Interface kInterface<FeltLimitMessage> = {
@@ -60,8 +53,8 @@ template <>
 inline constexpr Interface kInterface<SafetyMessage> = {
     "Safety", "cause of a stop, and the panel of the simulated operator"};
 template <>
-inline constexpr Interface kInterface<GhostMessage> = {"Ghost",
-                                                       "second recording, overlaid for comparison"};
+inline constexpr Interface kInterface<Ghost> = {"Ghost",
+                                                "second recording, overlaid for comparison"};
 
 template <typename Archive, Is<FeltLimitMessage> T>
 void fields(Archive& a, T& felt) {
@@ -79,25 +72,28 @@ void fields(Archive& a, T& limit) {
 }
 
 template <typename Archive, Is<SafetyMessage> T>
-void fields(Archive& a, T& safety) {
-  a("stop", safety.stop, "kind of the present or last stop");
-  a("is_autonomous", safety.is_autonomous, "runs autonomously, with a free handle");
-  a("fault", safety.fault, "number of the cause; 0 = none");
+void fields(Archive& a, T& message) {
+  const CycleRecord& record = message.view.record;
+  const SafetyView& safety = message.view.safety;
+  a("stop", record.stop, "kind of the present or last stop");
+  a("is_autonomous", record.is_autonomous, "runs autonomously, with a free handle");
+  a("fault", static_cast<int>(record.fault.code), "number of the cause; 0 = none");
   a("cause", safety.cause, "cause with value and limit; empty = none");
   a("release", safety.release, "conditions for a reset");
   a("warning", safety.warning, "rule nearest to its threshold; empty = all are far from it");
-  a("emergency_stop", safety.emergency_stop, "an emergency stop is pressed");
+  a("emergency_stop", safety.panel.emergency_stop || !safety.stop_pressed_by.empty(),
+    "an emergency stop is pressed");
   a("stop_pressed_by", safety.stop_pressed_by, "pages that pressed it, perhaps gone; 0 = script");
   pass_some(a, safety.panel, {"operator_enable", "override_key", "person_in_field"});
 }
 
-template <typename Archive, Is<GhostMessage> T>
+template <typename Archive, Is<Ghost> T>
 void fields(Archive& a, T& ghost) {
   a("time_s", ghost.time_s, "time of its run, s");
-  a("q_device", ghost.q_device, "gantry, then reference of the manipulator, rad or m");
-  a("q_twin", ghost.q_twin, "coordinates of the twin, rad or m");
-  a("p_B_H_m", ghost.p_B_H);
-  a("force_N", ghost.force);
+  a("q_device", q_device(ghost.record), "gantry, then reference of the manipulator, rad or m");
+  a("q_twin", list(ghost.record.twin.q_a), "coordinates of the twin, rad or m");
+  a("p_B_H_m", ghost.record.T_B_H.p);
+  a("force_N", Eigen::Vector3d(ghost.record.robot.w_H.template head<3>()));
 }
 
 }  // namespace hg::viewer_server

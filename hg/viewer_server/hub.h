@@ -16,8 +16,10 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "hg/core/monotonic_clock.h"
 #include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/commands.h"
@@ -44,14 +46,11 @@ constexpr std::size_t kMaxDone = 256;       // including those for information o
 
 inline std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
-/// Clock of OperatorDesk, ns.
-inline std::int64_t now_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// Clock of all times of the server, s.
-inline double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+inline double now_s() { return 1e-9 * static_cast<double>(now_ns()); }
+
+inline Text to_text(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
 }
 
 class Page;

@@ -2,15 +2,18 @@
 /// (hg/core/fields.h). JSON output and input and viewer/src/messages.ts are all generated from that
 /// list.
 ///
-/// A message of a socket begins with archive.type(word). Values: double, bool, std::string, Vec3,
-/// Quaternion, enumerations, other messages, and std::vector or std::optional of these. A number
-/// that is not finite is null in JSON.
+/// A message of a socket begins with archive.type(word). Values: double, bool, std::string,
+/// Eigen::Vector3d, Vec3, Quaternion, enumerations, other messages, and std::vector or
+/// std::optional of these. A number that is not finite is null in JSON.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -23,6 +26,16 @@ namespace hg::viewer_server {
 
 using Vec3 = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;  ///< x y z w
+
+inline Quaternion quaternion(const Eigen::Matrix3d& R) {
+  const Eigen::Quaterniond q(R);
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+
+/// A number that may be infinite, null in JSON.
+inline std::optional<double> bounded(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
 
 /// Name of a message's interface in TypeScript, and one line about it.
 struct Interface {
@@ -83,8 +96,8 @@ inline constexpr Interface kInterface<Vector6> = {"Wrench", "wrench on the hand,
 
 template <typename Archive, Is<Vector6> T>
 void fields(Archive& a, T& wrench) {
-  a("force_N", Vec3{wrench[0], wrench[1], wrench[2]});
-  a("torque_Nm", Vec3{wrench[3], wrench[4], wrench[5]});
+  a("force_N", Eigen::Vector3d(wrench.template head<3>()));
+  a("torque_Nm", Eigen::Vector3d(wrench.template tail<3>()));
 }
 
 }  // namespace hg::viewer_server

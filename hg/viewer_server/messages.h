@@ -20,7 +20,7 @@ namespace hg::viewer_server {
 inline constexpr std::string_view kDeviceAddress = "/models/device.urdf";
 inline constexpr std::string_view kTwinAddress = "/models/twin.urdf";
 
-std::string encode_scene(const Scene& scene, double update_rate_hz);
+std::string encode_scene(Scene scene, double update_rate_hz);
 
 /// Encodes a view; `clients` is the number of pages connected.
 std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients);

@@ -109,7 +109,7 @@ class Page : public std::enable_shared_from_this<Page> {
     if (!refusal.empty()) return refuse(command.id, refusal);
     command.is_done = true;
     hub_.put_command(command);
-    tell(std::make_shared<const std::string>(encode_answer(command.id, {})));
+    tell(to_text(encode_answer(command.id, {})));
   }
 
   void hold(double sequence) {
@@ -122,7 +122,7 @@ class Page : public std::enable_shared_from_this<Page> {
 
   void refuse(double id, std::string_view reason) {
     ++hub_.refused;
-    tell(std::make_shared<const std::string>(encode_answer(id, reason)));
+    tell(to_text(encode_answer(id, reason)));
   }
 
   void write() {

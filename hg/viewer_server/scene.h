@@ -34,6 +34,7 @@ struct SceneJoint {
 
 struct SceneChain {
   std::filesystem::path urdf;      ///< empty: the page draws a plain body at the handle
+  std::string address;             ///< address of the URDF on the server, filled by it
   std::string urdf_text;           ///< text of a recorded URDF; empty: the file is read
   Pose T_B_root;                   ///< root link in B
   std::vector<SceneJoint> joints;  ///< in the order of the coordinates
@@ -89,7 +90,8 @@ struct Scene {
   Eigen::AlignedBox3d box;  ///< Cartesian limits of the handle in B; dragging ends 0.5 m outside
   double floor_z = 0.0;     ///< height of the floor in B, m
   double rate_hz = 1000.0;  ///< rate of the control cycle, Hz
-  int gantry_joints = 0;    ///< number of gantry joints, the first ones of the device
+  double update_rate_hz = 0.0;  ///< rate of frames, Hz; filled by the server
+  int gantry_joints = 0;        ///< number of gantry joints, the first ones of the device
   Environment environment = Environment::kRoom;
   std::vector<SceneSurface> surfaces;
   Choices choices;

@@ -1,38 +1,15 @@
 /// Scene: data that stay constant during a run. GET /scene.json. See message.h for the rules.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include "hg/viewer_server/command_message.h"
 #include "hg/viewer_server/message.h"
 #include "hg/viewer_server/scene_parts_message.h"
 
 namespace hg::viewer_server {
 
-struct SceneMessage {
-  std::uint64_t run = 0;
-  Source source = Source::kRun;
-  std::string title, description;
-  double rate_hz = 0.0, update_rate_hz = 0.0, begin_s = 0.0, duration_s = 0.0;
-  SceneChainMessage device, twin;
-  int gantry_joints = 0;
-  std::vector<SceneLimitMessage> limits;
-  double floor_z = 0.0;
-  SceneBoxMessage box;
-  Environment environment = Environment::kRoom;
-  std::vector<SceneSurfaceMessage> surfaces;
-  Choices choices;
-  std::vector<SettingMessage> settings;
-  std::vector<CommandName> commands;
-  std::string refusal, stopping;
-};
-
 template <>
-inline constexpr Interface kInterface<SceneMessage> = {"Scene", "GET /scene.json: fixed in a run"};
+inline constexpr Interface kInterface<Scene> = {"Scene", "GET /scene.json: fixed in a run"};
 
-template <typename Archive, Is<SceneMessage> T>
+template <typename Archive, Is<Scene> T>
 void fields(Archive& a, T& scene) {
   a("run", scene.run, "number of the run; fetch the scene again once a Frame has another one");
   a("source", scene.source);
@@ -45,7 +22,7 @@ void fields(Archive& a, T& scene) {
   a("device", scene.device);
   a("twin", scene.twin);
   a("gantry_joints", scene.gantry_joints, "number of gantry joints, the first ones of the device");
-  a("limits", scene.limits);
+  a("limits", limit_messages(scene.limits));
   a("floor_z_m", scene.floor_z);
   a("box", scene.box);
   a("environment", scene.environment, "surroundings of the twin");

@@ -12,20 +12,6 @@
 namespace hg::viewer_server {
 
 enum class LimitUnit : std::uint8_t { kRad, kM };
-struct SceneJointMessage {
-  std::string name;
-  JointType type = JointType::kRevolute;
-  std::string planar;
-  Vec3 axis{};
-  std::optional<double> q_min, q_max, dq_max, tau_max;
-};
-
-struct SceneChainMessage {
-  std::string urdf;
-  Vec3 p_B_root{};
-  Quaternion quaternion_B_root{};
-  std::vector<SceneJointMessage> joints;
-};
 
 struct SceneLimitMessage {
   std::string name;
@@ -35,63 +21,45 @@ struct SceneLimitMessage {
   int priority = 0;
 };
 
-struct SceneBoxMessage {
-  Vec3 min{}, max{};
-};
-
-struct SceneSurfaceMessage {
-  std::string name;
-  SurfaceShape shape = SurfaceShape::kPlane;
-  Vec3 p_B{}, size{};
-  Quaternion quaternion_B{};
-  std::vector<double> triangles;
-};
-
-struct SettingMessage {
-  std::string name, group, label, unit;
-  double min = 0.0, max = 0.0;
-  std::optional<double> value;
-  double step = 0.0;
-  std::string help;
-};
+/// The catalogue as the page lists it, with the level of the law of each limit.
+std::vector<SceneLimitMessage> limit_messages(const LimitCatalogue& limits);
 
 template <>
-inline constexpr Interface kInterface<SceneJointMessage> = {"SceneJoint", "a joint of a chain"};
+inline constexpr Interface kInterface<SceneJoint> = {"SceneJoint", "a joint of a chain"};
 template <>
-inline constexpr Interface kInterface<SceneChainMessage> = {"SceneChain", "a robot or a twin"};
+inline constexpr Interface kInterface<SceneChain> = {"SceneChain", "a robot or a twin"};
 template <>
 inline constexpr Interface kInterface<SceneLimitMessage> = {"SceneLimit", "a limited quantity"};
 template <>
-inline constexpr Interface kInterface<SceneBoxMessage> = {"SceneBox",
-                                                          "Cartesian limits of the handle in B"};
+inline constexpr Interface kInterface<Eigen::AlignedBox3d> = {
+    "SceneBox", "Cartesian limits of the handle in B"};
 template <>
-inline constexpr Interface kInterface<SceneSurfaceMessage> = {"SceneSurface", "a virtual surface"};
+inline constexpr Interface kInterface<SceneSurface> = {"SceneSurface", "a virtual surface"};
 template <>
 inline constexpr Interface kInterface<Choice> = {"Choice", "one option"};
 template <>
 inline constexpr Interface kInterface<Choices> = {"Choices", "options and the chosen ones"};
 template <>
-inline constexpr Interface kInterface<SettingMessage> = {"Setting",
-                                                         "a form field: a value of the twin"};
+inline constexpr Interface kInterface<Setting> = {"Setting", "a form field: a value of the twin"};
 
-template <typename Archive, Is<SceneJointMessage> T>
+template <typename Archive, Is<SceneJoint> T>
 void fields(Archive& a, T& joint) {
   a("name", joint.name, "name in the URDF");
   a("type", joint.type, "floating: x y z qx qy qz qw");
   a("planar", joint.planar,
     "planar joint of the URDF with this joint as one of three parts: slide, slide, turn");
   a("axis", joint.axis, "axis of such a part, in the frame of the planar joint");
-  a("q_min", joint.q_min, "lower limit, rad or m; null = unbounded");
-  a("q_max", joint.q_max, "upper limit, rad or m; null = unbounded");
-  a("dq_max", joint.dq_max, "speed limit, rad/s or m/s; null = unbounded");
-  a("tau_max", joint.tau_max, "peak torque or force, Nm or N; null = unknown");
+  a("q_min", bounded(joint.range.lb), "lower limit, rad or m; null = unbounded");
+  a("q_max", bounded(joint.range.ub), "upper limit, rad or m; null = unbounded");
+  a("dq_max", bounded(joint.dq_max), "speed limit, rad/s or m/s; null = unbounded");
+  a("tau_max", bounded(joint.tau_max), "peak torque or force, Nm or N; null = unknown");
 }
 
-template <typename Archive, Is<SceneChainMessage> T>
+template <typename Archive, Is<SceneChain> T>
 void fields(Archive& a, T& chain) {
-  a("urdf", chain.urdf, "address of the file, empty = none");
-  a("p_B_root_m", chain.p_B_root);
-  a("quaternion_B_root", chain.quaternion_B_root);
+  a("urdf", chain.urdf.empty() ? "" : chain.address, "address of the file, empty = none");
+  a("p_B_root_m", chain.T_B_root.p);
+  a("quaternion_B_root", quaternion(chain.T_B_root.R));
   a("joints", chain.joints, "in the order of the coordinates");
 }
 
@@ -106,18 +74,18 @@ void fields(Archive& a, T& limit) {
     "level of the law: 1 is the coupling of hand and twin, then 2, 3, ...");
 }
 
-template <typename Archive, Is<SceneBoxMessage> T>
+template <typename Archive, Is<Eigen::AlignedBox3d> T>
 void fields(Archive& a, T& box) {
-  a("min_m", box.min);
-  a("max_m", box.max);
+  a("min_m", Eigen::Vector3d(box.min()));
+  a("max_m", Eigen::Vector3d(box.max()));
 }
 
-template <typename Archive, Is<SceneSurfaceMessage> T>
+template <typename Archive, Is<SceneSurface> T>
 void fields(Archive& a, T& surface) {
   a("name", surface.name);
   a("shape", surface.shape, "a plane is solid below its z = 0, a cylinder has its axis along z");
-  a("p_B_m", surface.p_B, "position of the centre");
-  a("quaternion_B", surface.quaternion_B);
+  a("p_B_m", surface.pose.p, "position of the centre");
+  a("quaternion_B", quaternion(surface.pose.R));
   a("size_m", surface.size, "size of the bounding box; zero for a plane");
   a("triangles_m", surface.triangles, "triangles of a mesh, 9 coordinates each; else empty");
 }
@@ -141,7 +109,7 @@ void fields(Archive& a, T& choices) {
   a("people", choices.people);
 }
 
-template <typename Archive, Is<SettingMessage> T>
+template <typename Archive, Is<Setting> T>
 void fields(Archive& a, T& setting) {
   a("name", setting.name, "name in the command \"set\"");
   a("group", setting.group, "joint of the twin, or empty");
@@ -149,7 +117,7 @@ void fields(Archive& a, T& setting) {
   a("unit", setting.unit);
   a("min", setting.min, "smallest accepted value");
   a("max", setting.max, "largest accepted value");
-  a("value", setting.value, "initial value, later ones come as Values; null = unlimited");
+  a("value", bounded(setting.value), "initial value, later ones come as Values; null = unlimited");
   a("step", setting.step);
   a("help", setting.help);
 }

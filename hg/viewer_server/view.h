@@ -53,6 +53,8 @@ struct RunState {
   bool is_over = false;     ///< stopped, a fault, or the end of a recording
   double position_s = 0.0;  ///< time of the run, also of a recorded one
   std::string recording;    ///< name of the file that is written or played; empty = none
+
+  bool operator==(const RunState&) const = default;
 };
 
 template <typename Archive, Is<RunState> T>

@@ -57,7 +57,7 @@ void Hub::join(const std::shared_ptr<Page>& page) {
   page->number = next_page++;
   pages.insert(page);
   clients = pages.size();
-  page->tell(std::make_shared<const std::string>(encode_welcome(page->number)));
+  page->tell(to_text(encode_welcome(page->number)));
   for (const Text& event : events) page->tell(event);
   if (values) page->tell(values);
   if (newest_frame) page->show(newest_frame);
@@ -128,8 +128,6 @@ tcp::acceptor listen_on(asio::io_context& context, const Options& options) {
   }
   return acceptor;
 }
-
-Text to_text(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 void add_urdf(const SceneChain& chain, std::string_view address, std::string_view folder,
               AssetTable& assets) {

@@ -6,12 +6,15 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "hg/config/simulation/scenario.h"
+#include "hg/core/error.h"
+#include "hg/model/urdf.h"
 #include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/session.h"
@@ -36,6 +39,19 @@ void bind_options(nb::module_& module) {
   nb::enum_<rendering::Gantry>(module, "Gantry", "What leads the gantry.")
       .value("RULE", rendering::Gantry::kRule)
       .value("LAW", rendering::Gantry::kLaw, "with law GAUSS");
+}
+
+void cap_solver(Scenario& scenario, int active_sets, double from_s, double for_s) {
+  const auto require = [](bool holds, const char* rule, double value) {
+    if (!holds) throw SetupError(std::string(rule) + ", got " + model::to_text(value));
+  };
+  require(active_sets >= 1, "active_sets: must be at least 1", active_sets);
+  require(std::isfinite(from_s), "from_s: must be finite", from_s);
+  require(std::isfinite(for_s) && for_s >= 0.0, "for_s: must not be negative", for_s);
+  scenario.faults.push_back({.kind = faults::find_kind("solver_hurried"),
+                             .magnitude = static_cast<double>(active_sets),
+                             .from_s = from_s,
+                             .for_s = for_s});
 }
 
 void bind_scenario(nb::module_& module) {
@@ -64,6 +80,11 @@ void bind_scenario(nb::module_& module) {
           [](Scenario& scenario, rendering::Gantry gantry) {
             scenario.device.rendering.gantry = gantry;
           })
+      .def(
+          "cap_solver", &cap_solver, nb::arg("active_sets"), nb::arg("from_s") = 0.0,
+          nb::arg("for_s") = 0.0,
+          "Injects the fault solver_hurried: the solver of a cycle ends after so many active sets; "
+          "for_s = 0: until the end.")
       .def_ro("limits", &Scenario::limits, "what CycleRecord.limits is about, in its order")
       .def_prop_ro(
           "device", [](const Scenario& scenario) { return scenario.device.model.chain; },

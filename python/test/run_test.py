@@ -81,6 +81,22 @@ class Run(unittest.TestCase):
         hashes = [session.step().state_hash for _ in range(3000)]
         np.testing.assert_array_equal(hashes, self.door["state_hash"][:3000])
 
+    def test_a_capped_solver_differs_from_its_time_on(self):
+        def run(cap):
+            scenario = hg.load_scenario(hg.MODELS / "stress" / "light_fast.yaml")
+            scenario.law = hg.Law.PAPER  # needs more than one active set where limits act
+            if cap:
+                scenario.cap_solver(1, from_s=1.0)
+            return hg.run(scenario, duration_s=1.5)["state_hash"]
+
+        whole, capped = run(False), run(True)
+        np.testing.assert_array_equal(whole[:1000], capped[:1000])
+        self.assertNotEqual(whole[1400], capped[1400])
+        door = hg.load_scenario("door")
+        for bad in ((0, 0.0, 0.0), (1, math.nan, 0.0), (1, 0.0, -1.0)):
+            with self.assertRaises(hg.SetupError):
+                door.cap_solver(*bad)
+
     def test_duration_ends_it_and_bad_ones_are_refused(self):
         times = hg.run("door", duration_s=0.5)["time_s"]
         self.assertTrue(0.5 <= times[-1] < 1.6)

@@ -89,9 +89,34 @@ class FlightRecorder(TemporaryFolder):
                                 "  - {at_s: 9.0, fault: clock_wrong, magnitude: 1.1}\n")
         code, out, _ = run("explain", files[0])
         self.assertIn("cycles that were missed at once", out)
+        self.assertIn("injected fault: solver_hurried, the solver is ended before it has finished, "
+                      "1 active sets", out)
+        self.assertIn("7.000 s  event    injected fault: gantry_encoder_drift", out)
         code, out, err = run("replay", files[0])
         self.assertEqual((code, err), (0, ""), out)
         self.assertRegex(out, r"run again   \d+ cycles, the same bit for bit")
+
+    def test_a_replay_hurries_the_solver_as_the_run_did(self):
+        stress = MODELS / "stress"
+        text = (stress / "light_fast.yaml").read_text().replace("../", f"{MODELS}/")
+        text = text.replace("twins/light", f"{stress}/twins/light").replace(
+            "scripts/", f"{stress}/scripts/")
+        hashes = []
+        for name, faults in (("hurried", "faults:\n  - {at_s: 0, fault: solver_hurried, "
+                              "magnitude: 1}\n"), ("whole", "")):
+            file = self.folder / f"{name}.yaml"
+            file.write_text(text + faults)
+            summary = self.folder / f"{name}.json"
+            run("run", file, "--fast", "--law", "paper", "--duration", 7, "--no-viewer",
+                "--flight-recorder", "off", "--summary", summary, "--recordings",
+                self.folder / name)
+            told = json.loads(summary.read_text())
+            hashes.append(told["state_hash"])
+            recording, = (f for f in (self.folder / name).glob("*.mcap") if not f.is_symlink())
+            code, out, err = run("replay", recording)
+            self.assertEqual((code, err), (0, ""), out)
+            self.assertRegex(out, r"run again   \d+ cycles, the same bit for bit")
+        self.assertNotEqual(hashes[0], hashes[1], "the fault did not change a single solve")
 
     def test_an_operator_who_lets_go_is_no_fault(self):
         code, out, files = self.play(what="panel:\n  - {at_s: 10.5, operator_enable: false}\n")

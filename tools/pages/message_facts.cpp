@@ -91,11 +91,25 @@ class Fields {
   Json rows = Json::array();
 };
 
+// A message of a view that is not there.
+template <IsMessage Message>
+Message blank() {
+  static const View view{};
+  static const LimitCatalogue limits{};
+  if constexpr (std::same_as<Message, FrameMessage>) {
+    return {view, limits};
+  } else if constexpr (std::same_as<Message, SafetyMessage>) {
+    return {view};
+  } else {
+    return Message{};
+  }
+}
+
 template <IsMessage Message>
 Json facts_of() {
   Fields list;
-  static const Message kBlank{};
-  fields(list, kBlank);
+  const Message message = blank<Message>();
+  fields(list, message);
   return {{"name", kInterface<Message>.name},
           {"note", kInterface<Message>.note},
           {"fields", list.rows}};
@@ -109,11 +123,11 @@ Json all() {
 }  // namespace
 
 Json message_facts() {
-  return all<SceneMessage, SceneChainMessage, SceneJointMessage, SceneLimitMessage, SceneBoxMessage,
-             SceneSurfaceMessage, Choices, Choice, SettingMessage, FrameMessage, FeltLimitMessage,
-             ActiveLimitMessage, ContactReport, HandBudget, Vector6, Singularity, RunState,
-             SafetyMessage, GhostMessage, HandMessage, HoldMessage, CommandMessage, WelcomeMessage,
-             AnswerMessage, ValuesMessage, EventMessage>();
+  return all<Scene, SceneChain, SceneJoint, SceneLimitMessage, Eigen::AlignedBox3d, SceneSurface,
+             Choices, Choice, Setting, FrameMessage, FeltLimitMessage, ActiveLimitMessage,
+             ContactReport, HandBudget, Vector6, Singularity, RunState, SafetyMessage, Ghost,
+             HandMessage, HoldMessage, CommandMessage, WelcomeMessage, AnswerMessage, ValuesMessage,
+             EventMessage>();
 }
 
 }  // namespace hg::pages

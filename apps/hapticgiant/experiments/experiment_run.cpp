@@ -15,7 +15,6 @@
 #include "apps/hapticgiant/experiments/run_data.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/run_recording.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/analysis/summary.h"

@@ -77,13 +77,11 @@ class Runner final : public recording::RecordingListener {
     if (!cycle_) {
       const config::Scenario scenario = recorded_scenario(configuration_);
       cycle_.emplace(scenario::make_cycle(scenario));
-      loads_ = TimedLoads(faults::loads_of(scenario.faults));
     } else if (sample.record.cycle != result_.cycles) {
       return end(fmt::format("cycle {} is missing in the recording", result_.cycles));
     }
     now_->sensors = sample.sensors;
     now_->operator_input = sample.operator_input;
-    cycle_->limit_solver(loads_.most_active_sets(sample.record.time_s));
     cycle_->step(now_->sensors, now_->operator_input, now_->command, now_->record);
     if (is_same(left_, right_, sample.command, now_->command) &&
         is_same(left_, right_, sample.record, now_->record)) {
@@ -105,7 +103,6 @@ class Runner final : public recording::RecordingListener {
 
   std::vector<recording::NamedText> configuration_;
   std::optional<controller::Cycle> cycle_;
-  TimedLoads loads_;  ///< the solver's load; late cycles are in the recorded input
   std::unique_ptr<Sample> now_ = std::make_unique<Sample>();
   CdrWriter left_, right_;
   Rerun result_;

@@ -20,6 +20,7 @@
 #include "hg/commissioning/start_test/machine_memory.h"
 #include "hg/commissioning/start_test/memory.h"
 #include "hg/core/error.h"
+#include "hg/core/test/message_of.h"
 #include "hg/core/whole_file.h"
 #include "hg/device/udp/device_server.h"
 #include "hg/scenario/assembly.h"
@@ -151,6 +152,23 @@ TEST_F(MachineTest, GoesWithoutAStartTestWhereThatIsSaid) {
   arguments_.without_start_test = true;
   const apps::PreparedRun run(arguments_);
   EXPECT_EQ(run.start_test, "BRAKES AND STOP INPUTS ARE NOT TESTED: there is none");
+}
+
+TEST_F(MachineTest, AMachineTakesNoInjectedFaults) {
+  config::Scenario scenario = scenario::load(arguments_.world);
+  const Machine machine(scenario), demo(scenario, true);
+  for (const char* const name : {"motor_dead", "brake_weak", "cycles_late", "solver_hurried"}) {
+    scenario.faults = {{.kind = faults::find_kind(name), .magnitude = 1.0}};
+    const auto connect = [&](const Machine& to) {
+      return message_of(
+          [&] { scenario::connect_device(to.address(), {}, scenario, "test", true, 60.0); });
+    };
+    EXPECT_EQ(connect(machine), "faults: the device at " + machine.address() +
+                                    " is a machine, only a simulated one takes injected faults, "
+                                    "got " +
+                                    name);
+    EXPECT_EQ(connect(demo), "no error");
+  }
 }
 
 TEST_F(MachineTest, ASimulationIsAskedForNothing) {

@@ -22,6 +22,8 @@ struct LawInput {
   /// Largest speed of the handle along each axis of B where the device has Cartesian limits for it,
   /// m/s.
   double handle_speed_max = kInfinity;
+  /// Cap on active sets of a solve, where smaller than in the options; 0 = none.
+  std::uint32_t most_active_sets = 0;
   GantryTask gantry = {};   ///< Accelerations with which the law may lead the gantry
   std::uint64_t cycle = 0;  ///< Number of the cycle under which its problem is kept
 };

@@ -41,6 +41,11 @@ SolverStatus solver_status(const Tasks& tasks, const hqp::SolverOptions& options
   return is_usable ? SolverStatus::kBudgetSpent : SolverStatus::kFailed;
 }
 
+// the smaller of two budgets of active sets, of which 0 is none
+int smaller_budget(int a, int b) noexcept {
+  return a == 0 || b == 0 ? std::max(a, b) : std::min(a, b);
+}
+
 // torque of Coulomb friction while slipping, as part of tau_dis
 VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
   VectorA torque = VectorA::Zero(dq_a.size());
@@ -153,13 +158,6 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
   if (environment_.has_stops()) check_stops(device_, options_);
   solver_options_.max_iterations =
       std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
-  limit_solver(0);
-}
-
-void Rendering::limit_solver(std::uint32_t most_active_sets) noexcept {
-  const int usual = static_cast<int>(options_.solver_budget);
-  const int most = static_cast<int>(most_active_sets);
-  solver_options_.budget = usual == 0 || most == 0 ? std::max(usual, most) : std::min(usual, most);
 }
 
 State Rendering::start(const VectorM& q_m) const {
@@ -352,6 +350,8 @@ bool Rendering::stay_near(const RobotState& robot, double largest, State& state)
 void Rendering::solve(const LawInput& input, State& state, LawResult& result) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = device_.limit_count();
+  solver_options_.budget = smaller_budget(static_cast<int>(options_.solver_budget),
+                                          static_cast<int>(input.most_active_sets));
   result.solver_iterations = 0;
   bool was_spent = false;  // a solve of this cycle has spent its budget
   for (int attempt = 0; attempt <= n_a; ++attempt) {

@@ -106,10 +106,6 @@ class Rendering {
   /// axis of B where it is least, kg.
   double apparent_mass(const State& state) const noexcept;
 
-  /// Caps the budget of a solve from now on, where smaller than in the options; 0 = as in the
-  /// options.
-  void limit_solver(std::uint32_t most_active_sets) noexcept;
-
   /// Installs a callback for the stages kRenderingSetUp, kSolver and kReactions.
   void watch(const StageProbe& probe) noexcept { ended_ = probe; }
 

@@ -324,6 +324,7 @@ void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) n
   const Mode mode = mode_of(watched.state);
   if (mode != Mode::kRunning && mode != Mode::kStopping) return;
   for (int i = n_m_; i < end_cartesian_; ++i) {
+    // sums of joints, then motors, which have no range and so no excess, then frames
     const bool is_sum = i < first_cartesian_;
     look<FaultCode::kLimitExceeded>(
         i, rendered.limits[at(i)].excess,

@@ -66,6 +66,22 @@ TEST(Session, AChangeWaitsWhileAPlannedOneIsDue) {
   }
 }
 
+TEST(Session, AllThatIsPlannedForATimeActsInOneCycle) {
+  for (int cycle = 1; cycle < 120; ++cycle) {
+    const double at_s = cycle * 1e-3;  // for some of them greater than cycle / 1000
+    Parts parts;
+    Session session(*parts.cycle, parts.device,
+                    {.changes = {{.at_s = at_s, .change = {Parameter::kReferenceWrench, 0, 1.0}}},
+                     .load = {{.from_s = at_s, .late_cycles = 1}}});
+    for (int k = 0; k <= cycle; ++k) {
+      session.advance();
+      const OperatorFrame& input = session.sample().operator_input;
+      ASSERT_EQ(input.change.parameter != Parameter::kNone, k == cycle) << cycle;
+      ASSERT_EQ(input.late_cycles, k == cycle ? 1U : 0U) << cycle;
+    }
+  }
+}
+
 TEST(Session, PlaysTheLoadOfTheComputer) {
   Parts parts;
   Session session(*parts.cycle, parts.device, {.load = {{.from_s = 0.0095, .late_cycles = 2}}});

@@ -1,5 +1,7 @@
 #include "hg/scenario/remote/remote_setup.h"
 
+#include "hg/core/error.h"
+
 namespace hg::scenario {
 
 udp::Description describe(const config::Scenario& scenario, bool is_lock_step) {
@@ -25,8 +27,14 @@ std::unique_ptr<udp::RemoteDevice> connect_device(const std::string& address, co
                                  .client = client,
                                  .busy_patience_s = busy_patience_s,
                                  .key = key};
-  return std::make_unique<udp::RemoteDevice>(udp::parse_address("--device-address", address),
-                                             config);
+  auto device =
+      std::make_unique<udp::RemoteDevice>(udp::parse_address("--device-address", address), config);
+  if (!device->welcome().is_simulated && !scenario.faults.empty()) {
+    throw SetupError("faults: the device at " + address +
+                     " is a machine, only a simulated one takes injected faults, got " +
+                     std::string(scenario.faults.front().kind->name));
+  }
+  return device;
 }
 
 }  // namespace hg::scenario

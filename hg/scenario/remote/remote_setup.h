@@ -17,7 +17,7 @@ udp::Key key_of(const std::string& file);
 
 /// The scenario's device behind `address` (HOST:PORT of --device-address). `client` is the name
 /// that the device is given. A device busy with another client is retried for `busy_patience_s`.
-/// Throws SetupError.
+/// Throws SetupError, also where the scenario injects faults and the device is a machine.
 std::unique_ptr<udp::RemoteDevice> connect_device(const std::string& address, const udp::Key& key,
                                                   const config::Scenario& scenario,
                                                   const std::string& client, bool is_lock_step,

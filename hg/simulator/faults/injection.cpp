@@ -235,15 +235,21 @@ bool is_count(const Kind& kind) noexcept {
 std::vector<TimedLoad> loads_of(const std::vector<Injection>& injections) {
   std::vector<TimedLoad> loads;
   for (const Injection& injection : injections) {
-    const Part part = injection.kind->part;
-    if (part != Part::kCycles && part != Part::kSolver) continue;
+    if (injection.kind->part != Part::kCycles) continue;
     const auto count = static_cast<std::uint32_t>(injection.magnitude);
-    loads.push_back({.from_s = injection.from_s,
-                     .for_s = injection.for_s,
-                     .late_cycles = part == Part::kCycles ? count : 0,
-                     .most_active_sets = part == Part::kSolver ? count : 0});
+    loads.push_back({injection.from_s, injection.for_s, count});
   }
   return loads;
+}
+
+std::vector<SolverCap> solver_caps_of(const std::vector<Injection>& injections) {
+  std::vector<SolverCap> caps;
+  for (const Injection& injection : injections) {
+    if (injection.kind->part != Part::kSolver) continue;
+    const auto count = static_cast<std::uint32_t>(injection.magnitude);
+    caps.push_back({injection.from_s, injection.for_s, count});
+  }
+  return caps;
 }
 
 bool is_of_hardware(const Injection& injection) noexcept {

@@ -93,9 +93,10 @@ struct Injection {
   double for_s = 0.0;      ///< duration, s; 0 = until the end
 };
 
-/// The faults of the computer that runs the cycle (cycles_late, solver_hurried) as load of a run.
-/// All others are faults of the device: see FaultyDevice.
+/// The faults of the computer that runs the cycle: cycles_late as load of a run, solver_hurried as
+/// caps of its solver. All others are faults of the device: see FaultyDevice.
 std::vector<TimedLoad> loads_of(const std::vector<Injection>& injections);
+std::vector<SolverCap> solver_caps_of(const std::vector<Injection>& injections);
 /// Whether a fault is inside the machine, where no frame shows it: a brake, or one channel of a
 /// safety input.
 bool is_of_hardware(const Injection& injection) noexcept;

@@ -14,8 +14,8 @@ namespace hg::faults {
 class Injector {
  public:
   Injector() = default;
-  /// Faults of the computer are ignored: see loads_of(). Throws SetupError for a command delay
-  /// above kMostLate.
+  /// Faults of the computer are ignored: see loads_of() and solver_caps_of(). Throws SetupError for
+  /// a command delay above kMostLate.
   explicit Injector(const std::vector<Injection>& injections);
 
   /// Applies the faults to a sample. Once per period, before the inject() for the command.

@@ -10,26 +10,38 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "apps/hapticgiant/prepared_run.h"
 #include "hg/analysis/fault_figures.h"
 #include "hg/config/twin_form.h"
 #include "hg/page/hand_analysis.h"
 #include "hg/runtime/runtime.h"
+#include "hg/scenario/options.h"
 #include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/viewer_server.h"
 
-namespace hg::apps {
+namespace hg::page {
+
+/// A run as its page sees it. What is pointed at outlives the begin of the next run.
+struct ShownRun {
+  const config::Scenario* scenario = nullptr;
+  const scenario::Options* options = nullptr;  ///< options that the scenario was loaded with
+  /// Why the device neither waits nor starts anew; empty = it does, being simulated here
+  std::string refusal;
+};
 
 class RunPage {
  public:
   /// Callback for every change by a command: name, and description in words.
   using Note = std::function<void(std::string_view name, const std::string& text)>;
+  /// Prepares the run that a page has chosen, on a thread of its own, for when take_next() returns
+  /// true. Throws SetupError.
+  using Prepare = std::function<void(const scenario::Options& options)>;
 
-  RunPage(const viewer_server::Options& options, const PreparedRun& first);
+  RunPage(const viewer_server::Options& options, const ShownRun& first, Prepare prepare);
 
   std::string url() const { return server_.url(); }
   /// Number of pages connected.
@@ -38,8 +50,8 @@ class RunPage {
   /// Operator's desk, from which the control loop reads the actions of pages.
   OperatorDesk& desk() { return *desk_; }
 
-  /// Shows `run` from now on; it outlives the next call. `recording` is the name of its file.
-  void begin(const PreparedRun& run, const std::string& recording);
+  /// Shows `run` from now on. `recording` is the name of its file.
+  void begin(const ShownRun& run, const std::string& recording);
 
   /// Processes every sample, in order.
   void observe(const Sample& sample, const Note& note);
@@ -53,18 +65,18 @@ class RunPage {
   void follow(runtime::Runtime* runtime, const Note& note);
 
   bool stop_was_asked() const { return stop_was_asked_; }
-  bool has_next() const { return next_ != nullptr; }
+  /// Whether a chosen run is prepared, and the present one has to end.
+  bool has_next() const { return has_next_; }
   /// Whether a chosen run is still being prepared.
   bool is_preparing() const { return prepared_.valid(); }
-  /// Returns the chosen next run, once.
-  std::unique_ptr<PreparedRun> take_next();
+  /// Whether the prepared run is to be played now; true once.
+  bool take_next();
 
  private:
-  /// A chosen run, or the reason why there is none.
-  struct Prepared {
-    std::unique_ptr<PreparedRun> run;
-    std::string refusal;
-  };
+  /// How the page executes a command.
+  struct Order;
+  static std::span<const Order> orders();
+
   /// A mode requested by a page, until a cycle has accepted or refused it.
   struct Asked {
     viewer_server::Command command;
@@ -74,49 +86,46 @@ class RunPage {
     std::uint32_t samples = 0;  ///< number of samples seen since the request is the first
   };
 
-  void tell_done(const viewer_server::Command& command, const Note& note) const;
   void answer_asked(const Sample& sample);
   void refuse_asked(std::string_view why);
-  void drop_overtaken(const Note& note);
-  std::string obey(const viewer_server::Command& command, runtime::Runtime* runtime,
-                   const Note& note);
-  std::string obey_mode(const viewer_server::Command& command, runtime::Runtime& runtime,
-                        const Note& note);
-  std::string obey_pace(const viewer_server::Command& command, runtime::Pace& pace,
-                        const Note& note);
-  std::string choose(const viewer_server::Command& command);
+  void take(const viewer_server::Command& command, runtime::Runtime* runtime, const Note& note);
   void take_prepared(const Note& note);
-  std::string set(const viewer_server::Command& command, runtime::Runtime& runtime,
+  void drop_overtaken(const Note& note);
+  void note_lost(const Note& note);
+
+  // Execute a command; return the reason for a refusal, empty = executed or under way.
+  std::string set(const viewer_server::Command& command, runtime::Runtime* runtime,
                   const Note& note);
-  viewer_server::Scene scene_of(const PreparedRun& run) const;
+  std::string request_mode(const viewer_server::Command& command, runtime::Runtime* runtime,
+                           const Note& note);
+  std::string stop(const viewer_server::Command& command, runtime::Runtime* runtime,
+                   const Note& note);
+  std::string set_pace(const viewer_server::Command& command, runtime::Runtime* runtime,
+                       const Note& note);
+  std::string choose(const viewer_server::Command& command, runtime::Runtime* runtime,
+                     const Note& note);
+
+  viewer_server::Scene scene_of(const ShownRun& run) const;
   void publish();
 
-  const PreparedRun* run_;
+  ShownRun run_;
+  Prepare prepare_;
   std::uint64_t number_ = 1;
   std::vector<config::FormField> form_;
   std::vector<double> values_;  ///< values of the form, as targets
   std::unique_ptr<OperatorDesk> desk_ = std::make_unique<OperatorDesk>();
   viewer_server::ViewerServer server_;
   analysis::Names names_;
-  std::optional<page::HandAnalysis> analysis_;
+  std::optional<HandAnalysis> analysis_;
   viewer_server::View view_;
   std::unique_ptr<Sample> newest_;
   bool has_news_ = false;  ///< there is news not yet shown on any page
   bool stop_was_asked_ = false;
-  std::deque<Asked> asked_;  ///< requested modes, in order
-  std::unique_ptr<PreparedRun> next_;
-  viewer_server::Command chosen_;   ///< command from which `prepared_` results
-  std::future<Prepared> prepared_;  ///< run prepared on a separate thread, which takes seconds
+  bool has_next_ = false;
+  std::deque<Asked> asked_;        ///< requested modes, in order
+  viewer_server::Command chosen_;  ///< command from which `prepared_` results
+  std::future<std::string>
+      prepared_;  ///< reason why the chosen run cannot be prepared; empty = it is
 };
 
-/// Opens the page's server for `run`; nullptr if not wanted, or if not built, which is reported.
-std::unique_ptr<RunPage> open_page(const PreparedRun& run);
-
-/// Path of the built page; empty when it is not built, after printing how to get it.
-std::string find_page();
-
-/// Prints the page's URL and who can reach it, and opens it if there is a display and an
-/// interactive terminal.
-void present_page(const std::string& url, const std::string& address, bool opens_browser);
-
-}  // namespace hg::apps
+}  // namespace hg::page

@@ -1,0 +1,54 @@
+#include "hg/analysis/run_news.h"
+
+#include <gtest/gtest.h>
+
+namespace hg::analysis {
+namespace {
+
+std::string one(RunNews& news, const Sample& sample) {
+  const std::vector<News> found = news.observe(sample);
+  if (found.empty()) return "nothing";
+  return std::string(found.front().name) + ": " + found.front().text;
+}
+
+TEST(RunNews, AResultIsReportedOnceAndARefusalEachTime) {
+  RunNews news({});
+  Sample sample;
+  EXPECT_EQ(one(news, sample), "nothing");
+  sample.record.tare = TareStatus::kUnderWay;
+  EXPECT_EQ(one(news, sample), "nothing");
+  sample.record.tare = TareStatus::kDone;
+  EXPECT_EQ(one(news, sample), "tare: done");
+  EXPECT_EQ(one(news, sample), "nothing");
+  sample.record.refusal = Refusal::kNoFault;
+  EXPECT_EQ(one(news, sample), "request: not reset: there is no fault");
+  EXPECT_EQ(one(news, sample), "request: not reset: there is no fault");
+}
+
+TEST(RunNews, AContactBeginsOnceAndNamesItsJoint) {
+  RunNews news({.joints = {"m1", "m2"}});
+  Sample sample;
+  sample.record.touch.is_told = true;
+  sample.record.touch.joint = 1;
+  EXPECT_EQ(one(news, sample), "contact: something touches the arm beyond joint m2: it gives way");
+  EXPECT_EQ(one(news, sample), "nothing");
+  sample.record.touch.is_told = false;
+  EXPECT_EQ(one(news, sample), "nothing");
+  sample.record.touch = {.is_told = true, .joint = -1};
+  EXPECT_EQ(one(news, sample), "contact: something touches the arm: it gives way");
+}
+
+TEST(RunNews, AStopByTheOperatorIsNoFault) {
+  RunNews news({});
+  Sample sample;
+  sample.record.fault.code = FaultCode::kOperatorReleased;
+  EXPECT_TRUE(one(news, sample).starts_with("stopped: 130 "));
+  sample.record.fault.code = FaultCode::kEmergencyStop;
+  EXPECT_EQ(one(news, sample), "fault: 102 emergency stop");
+  EXPECT_EQ(one(news, sample), "nothing");
+  sample.record.fault.code = FaultCode::kNone;
+  EXPECT_EQ(one(news, sample), "nothing");
+}
+
+}  // namespace
+}  // namespace hg::analysis

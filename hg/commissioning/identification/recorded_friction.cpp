@@ -1,0 +1,75 @@
+#include "hg/commissioning/identification/recorded_friction.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "hg/commissioning/identification/friction_traces.h"
+#include "hg/core/error.h"
+#include "hg/core/index.h"
+#include "hg/scenario/recorded/recorded_scenario.h"
+
+namespace hg::identification {
+namespace {
+
+// Collects the traces of all joints, with the device of the recording unless another is given.
+class Reader final : public recording::RecordingListener {
+ public:
+  explicit Reader(std::optional<config::Device> device) : device_(std::move(device)) {}
+
+  void configuration(const recording::NamedText& text) override {
+    if (!traces_) configuration_.push_back(text);
+  }
+  void event(const recording::Event&) override {}
+  void sample(const Sample& sample) override {
+    if (!traces_) start();
+    traces_->add(sample);
+  }
+
+  const config::Device& device() const { return *device_; }
+  const FrictionTraces& traces() const { return *traces_; }
+
+ private:
+  void start() {
+    if (!device_) {
+      try {
+        device_ = scenario::recorded_scenario(configuration_).device;
+      } catch (const SetupError& error) {
+        throw SetupError(
+            fmt::format("its configuration is not understood, give the device with --device: {}",
+                        error.what()));
+      }
+    }
+    traces_.emplace(device_->model, device_->control.loop.current_lag);
+  }
+
+  std::optional<config::Device> device_;
+  std::optional<FrictionTraces> traces_;
+  std::vector<recording::NamedText> configuration_;
+};
+
+}  // namespace
+
+RecordedFriction identify_recorded_friction(const std::string& file,
+                                            std::optional<config::Device> device) {
+  Reader reader(std::move(device));
+  RecordedFriction result;
+  result.losses = recording::read_recording(file, reader).losses;
+  const FrictionTraces& traces = reader.traces();
+  const DeviceModel& model = reader.device().model;
+  if (traces.used() == 0) {
+    throw SetupError(fmt::format(
+        "{}{}: none of its {} samples has drives that are on, motor encoders, joint torques and "
+        "the command at work: record a run whose joints move under torque control",
+        recording::to_text(result.losses), file, traces.samples()));
+  }
+  result.used_s = static_cast<double>(traces.used()) * model.dt();
+  for (int i = 0; i < model.n_m; ++i) {
+    const ActuatorModel& believed = model.actuators[index(i)];
+    result.joints.push_back({model.chain.joints()[index(model.n_p + i)].name,
+                             identify_friction(traces.joints()[index(i)], believed), believed});
+  }
+  return result;
+}
+
+}  // namespace hg::identification

@@ -1,0 +1,120 @@
+#include "hg/page/recording_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hg/core/error.h"
+#include "hg/page/page_scene.h"
+#include "hg/scenario/names.h"
+#include "hg/scenario/recorded/recorded_scenario.h"
+
+namespace hg::page {
+namespace {
+
+using viewer_server::Command;
+using viewer_server::CommandName;
+
+constexpr double kFrame_s = 1.0 / 60.0;  // of the page
+constexpr char kRefusal[] = "this is a recording";
+
+config::Scenario scenario_of(const recording::RecordedRun& run) {
+  try {
+    return scenario::recorded_scenario(run.configuration());
+  } catch (const SetupError& error) {
+    throw SetupError(recording::to_text(run.losses()) + error.what());
+  }
+}
+
+std::string speed_rule() {
+  return fmt::format("speed: must be {} .. {}", recording::Playback::kSlowest,
+                     recording::Playback::kFastest);
+}
+
+}  // namespace
+
+RecordingPage::RecordingPage(const std::filesystem::path& file,
+                             const std::filesystem::path& compare, double speed)
+    : name_(file.filename().string()),
+      run_(file, kFrame_s),
+      scenario_(scenario_of(run_)),
+      names_(scenario::part_names(scenario_)),
+      playback_(run_.duration_s()) {
+  if (!compare.empty()) other_.emplace(compare, kFrame_s);
+  if (!playback_.set_speed(speed)) throw SetupError(speed_rule());
+}
+
+viewer_server::Scene RecordingPage::scene() const {
+  viewer_server::Scene scene = page_scene(scenario_);
+  scene.source = viewer_server::Source::kRecording;
+  scene.begin_s = run_.begin_s();
+  scene.duration_s = run_.duration_s();
+  scene.commands = {CommandName::kPause, CommandName::kResume,  CommandName::kStep,
+                    CommandName::kSpeed, CommandName::kRestart, CommandName::kSeek};
+  scene.refusal = kRefusal;
+  scene.device.urdf_text = text_of(scene.device.urdf);
+  scene.twin.urdf_text = text_of(scene.twin.urdf);
+  return scene;
+}
+
+viewer_server::View RecordingPage::view() {
+  if (!analysis_) analysis_.emplace(scenario_);
+  viewer_server::View view;
+  if (other_) {
+    other_->read(other_->at(now_s() - other_->begin_s()), *sample_);
+    view.ghost = viewer_server::Ghost{sample_->record.time_s, sample_->record};
+  }
+  run_.read(run_.at(playback_.position_s()), *sample_);
+  view.record = sample_->record;
+  view.safety = safety_view(*sample_, names_);
+  view.hand = sample_->operator_input.hand_target;
+  view.cycle_time_us = view.cycle_time_max_us = sample_->cycle_time_us;
+  view.status_text = scenario_.description;
+  view.budget = analysis_->budget(view.record);
+  view.singularity = analysis_->singularity(view.record);
+  view.run_state = {playback_.is_paused(), playback_.speed(), playback_.is_over(), now_s(), name_};
+  return view;
+}
+
+std::string RecordingPage::obey(const Command& command) {
+  switch (command.name) {
+    case CommandName::kPause:
+      playback_.pause();
+      return {};
+    case CommandName::kResume:
+      playback_.resume();
+      return {};
+    case CommandName::kStep:
+      playback_.pause();
+      playback_.move(command.value * kFrame_s);
+      return {};
+    case CommandName::kSpeed:
+      return playback_.set_speed(command.value) ? "" : speed_rule();
+    case CommandName::kRestart:
+      return playback_.seek(0.0) ? "" : "there is nothing to play";
+    case CommandName::kSeek:
+      return seek(command.value);
+    default:
+      return kRefusal;
+  }
+}
+
+// ends are met up to rounding
+std::string RecordingPage::seek(double time_s) {
+  const double offset = time_s - run_.begin_s();
+  const double nearest = std::clamp(offset, 0.0, playback_.duration_s());
+  if (std::abs(offset - nearest) < 1e-6 && playback_.seek(nearest)) return {};
+  return fmt::format("the recording has {:.3f} .. {:.3f} s", run_.begin_s(),
+                     run_.begin_s() + playback_.duration_s());
+}
+
+// a file of the configuration; empty if it is not there
+std::string RecordingPage::text_of(const std::filesystem::path& file) const {
+  for (const config::SourceText& source : scenario_.sources) {
+    if (!file.empty() && source.name == file.string()) return source.content;
+  }
+  return {};
+}
+
+}  // namespace hg::page

@@ -1,0 +1,373 @@
+#include "hg/page/run_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "hg/core/error.h"
+#include "hg/core/index.h"
+#include "hg/core/text.h"
+#include "hg/page/page_scene.h"
+#include "hg/scenario/assembly.h"
+#include "hg/scenario/names.h"
+
+namespace hg::page {
+namespace {
+
+using scenario::Options;
+using viewer_server::Choice;
+using viewer_server::Choices;
+using viewer_server::Command;
+using viewer_server::CommandName;
+
+std::vector<double> values_of(const std::vector<config::FormField>& form) {
+  std::vector<double> values;
+  for (const config::FormField& field : form) values.push_back(field.value);
+  return values;
+}
+
+constexpr std::string_view kRunIsOver = "the run is over: start it again";
+constexpr std::string_view kStopped = "a stop came after it";
+constexpr std::uint32_t kMostSamples = 10'000;  // in which a request must be seen
+
+struct NamedRequest {
+  std::string_view name;
+  ModeRequest request;
+};
+constexpr NamedRequest kRequests[] = {{"arm", ModeRequest::kArm},
+                                      {"run", ModeRequest::kRun},
+                                      {"run_alone", ModeRequest::kAutonomous},
+                                      {"reset", ModeRequest::kReset}};
+
+/// What a page may choose for the next run: from which list, and which option it replaces.
+struct Chooser {
+  CommandName command;
+  std::vector<Choice> Choices::*list;
+  std::string Options::*option;
+};
+constexpr Chooser kChoosers[] = {{CommandName::kScenario, &Choices::scenarios, &Options::scenario},
+                                 {CommandName::kTwin, &Choices::twins, &Options::twin},
+                                 {CommandName::kLaw, &Choices::laws, &Options::law},
+                                 {CommandName::kPerson, &Choices::people, &Options::user}};
+
+viewer_server::Options with(OperatorDesk* desk, viewer_server::Options options) {
+  options.desk = desk;
+  return options;
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+std::string text_of_done(const Command& command) {
+  const std::string page = fmt::format("page {}", command.page);
+  switch (command.name) {
+    case CommandName::kEmergencyStop:
+      return "pressed by " + page;
+    case CommandName::kReleaseStop:
+      return fmt::format(
+          "of {} by {}",
+          command.value == 0.0 ? "the script" : fmt::format("page {}", command.value), page);
+    case CommandName::kPanel:
+      return fmt::format("{} by {}", command.value != 0.0 ? "on" : "off", page);
+    default:
+      return "asked for in the page";
+  }
+}
+
+std::string_view name_of_done(const Command& command) {
+  if (command.name == CommandName::kEmergencyStop) return "emergency_stop";
+  return command.name == CommandName::kReleaseStop ? "release_stop"
+                                                   : std::string_view(command.argument);
+}
+
+}  // namespace
+
+struct RunPage::Order {
+  CommandName name;
+  bool needs_simulation;  ///< the device has to wait, or to start anew
+  /// How it is executed; nullptr = by the server, at the operator's desk
+  std::string (RunPage::*obey)(const Command&, runtime::Runtime*, const Note&);
+
+  bool is_choice() const { return obey == &RunPage::choose; }
+};
+
+std::span<const RunPage::Order> RunPage::orders() {
+  static constexpr Order kOrders[] = {{CommandName::kStop, false, &RunPage::stop},
+                                      {CommandName::kSet, false, &RunPage::set},
+                                      {CommandName::kMode, false, &RunPage::request_mode},
+                                      {CommandName::kEmergencyStop, false, nullptr},
+                                      {CommandName::kReleaseStop, false, nullptr},
+                                      {CommandName::kPause, true, &RunPage::set_pace},
+                                      {CommandName::kResume, true, &RunPage::set_pace},
+                                      {CommandName::kStep, true, &RunPage::set_pace},
+                                      {CommandName::kSpeed, true, &RunPage::set_pace},
+                                      {CommandName::kRestart, true, &RunPage::choose},
+                                      {CommandName::kScenario, true, &RunPage::choose},
+                                      {CommandName::kTwin, true, &RunPage::choose},
+                                      {CommandName::kLaw, true, &RunPage::choose},
+                                      {CommandName::kPerson, true, &RunPage::choose},
+                                      {CommandName::kPanel, true, nullptr}};
+  return kOrders;
+}
+
+RunPage::RunPage(const viewer_server::Options& options, const ShownRun& first, Prepare prepare)
+    : run_(first),
+      prepare_(std::move(prepare)),
+      form_(config::twin_form(first.scenario->twin.model)),
+      values_(values_of(form_)),
+      server_(with(desk_.get(), options), scene_of(first)),
+      newest_(std::make_unique<Sample>()) {}
+
+viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
+  viewer_server::Scene scene = page_scene(*run.scenario);
+  scene.run = number_;
+  scene.duration_s = scenario::planned_duration_s(*run.scenario);
+  scene.choices = page_choices(*run.options);
+  scene.choices.law = rendering::to_string(run.scenario->device.rendering.law);
+  scene.settings = page_settings(form_);
+  scene.refusal = run.refusal;
+  for (const Order& order : orders()) {
+    if (run.refusal.empty() || !order.needs_simulation) scene.commands.push_back(order.name);
+  }
+  return scene;
+}
+
+void RunPage::begin(const ShownRun& run, const std::string& recording) {
+  const bool is_first = !analysis_;
+  run_ = run;
+  if (!is_first) {
+    ++number_;
+    form_ = config::twin_form(run.scenario->twin.model);
+    values_ = values_of(form_);
+    server_.set_scene(scene_of(run));
+  }
+  server_.set_values(values_);
+  analysis_.emplace(*run.scenario);
+  names_ = scenario::part_names(*run.scenario);
+  view_ = {};
+  view_.run = number_;
+  view_.run_state.recording = recording;
+  stop_was_asked_ = false;
+  refuse_asked(kRunIsOver);
+  has_news_ = false;
+}
+
+// The device's supervisor decides. If that sample was lost, the result is unknown.
+void RunPage::answer_asked(const Sample& sample) {
+  if (asked_.empty()) return;
+  Asked& first = asked_.front();
+  const ModeRequest request = sample.operator_input.request;
+  first.is_next = first.is_next || request == ModeRequest::kNone;
+  const bool is_seen = first.is_next && request == first.request;
+  if (!is_seen && ++first.samples < kMostSamples) return;
+  const Refusal refusal = sample.record.refusal;
+  server_.answer(first.command, !is_seen ? "it is not known whether it was followed"
+                                : refusal != Refusal::kNone ? to_string(refusal)
+                                                            : std::string_view{});
+  asked_.pop_front();
+}
+
+void RunPage::refuse_asked(std::string_view why) {
+  for (const Asked& asked : asked_) server_.answer(asked.command, why);
+  asked_.clear();
+}
+
+void RunPage::observe(const Sample& sample, const Note& note) {
+  answer_asked(sample);
+  view_.cycle_time_max_us = std::max(view_.cycle_time_max_us, sample.cycle_time_us);
+  if (sample.record.change == ChangeStatus::kNone) return;
+  const int field = config::field_of(form_, sample.operator_input.change);
+  if (field < 0) return;
+  if (sample.record.change == ChangeStatus::kRefused) {
+    note("refused", form_[index(field)].name + " stays as it is");
+  } else {
+    values_[index(field)] = sample.operator_input.change.value;
+  }
+  server_.set_values(values_);
+}
+
+void RunPage::show(const Sample& sample) {
+  *newest_ = sample;
+  has_news_ = true;
+  if (server_.is_due()) publish();
+}
+
+void RunPage::publish() {
+  view_.record = newest_->record;
+  view_.hand = newest_->operator_input.hand_target;
+  view_.cycle_time_us = newest_->cycle_time_us;
+  view_.status_text = run_.scenario->description;
+  view_.budget = analysis_->budget(newest_->record);
+  view_.singularity = analysis_->singularity(newest_->record);
+  view_.run_state.position_s = newest_->record.time_s;
+  view_.safety = safety_view(*newest_, names_);
+  server_.publish(view_);
+  view_.cycle_time_max_us = 0.0;
+  has_news_ = false;
+}
+
+void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
+  HandTarget target;
+  if (server_.take_hand_target(target) && runtime != nullptr) runtime->set_hand_target(target);
+  for (const Command& command : server_.take_commands()) take(command, runtime, note);
+  while (!asked_.empty() && asked_.front().command.stops != desk_->stops()) {
+    server_.answer(asked_.front().command, kStopped);
+    asked_.pop_front();
+  }
+  if (runtime == nullptr) refuse_asked(kRunIsOver);
+  take_prepared(note);
+  drop_overtaken(note);
+  note_lost(note);
+  viewer_server::RunState state = view_.run_state;
+  state.is_over = runtime == nullptr;
+  state.is_paused = runtime != nullptr && runtime->pace().is_paused();
+  if (runtime != nullptr) state.speed = runtime->pace().speed();
+  has_news_ = has_news_ || state != view_.run_state;
+  view_.run_state = state;
+  if (has_news_ && server_.is_due()) publish();
+}
+
+void RunPage::take(const Command& command, runtime::Runtime* runtime, const Note& note) {
+  has_news_ = true;
+  if (command.is_done) return note(name_of_done(command), text_of_done(command));
+  const auto order = std::ranges::find(orders(), command.name, &Order::name);
+  const bool is_known = order != orders().end();
+  std::string why_not;
+  if (is_known && order->needs_simulation && !run_.refusal.empty()) {
+    why_not = run_.refusal;
+  } else if (!is_known || order->obey == nullptr) {
+    why_not = "this is a run, not a recording";
+  } else if (runtime == nullptr && !order->is_choice()) {
+    why_not = kRunIsOver;
+  } else {
+    why_not = (this->*order->obey)(command, runtime, note);
+    // answered by the cycle, or when it is prepared
+    const bool is_under_way = command.name == CommandName::kMode || order->is_choice();
+    if (is_under_way && why_not.empty()) return;
+  }
+  server_.answer(command, why_not);
+}
+
+void RunPage::note_lost(const Note& note) {
+  const std::uint32_t lost = desk_->take_lost();
+  if ((lost & 1u) != 0) note("operator_enable", "let go: its page is gone or silent");
+  if ((lost & 2u) != 0) note("override_key", "turned off: its page is gone or silent");
+}
+
+std::string RunPage::stop(const Command&, runtime::Runtime* runtime, const Note& note) {
+  runtime->request_stop();
+  stop_was_asked_ = true;
+  has_next_ = false;  // discards the previous choice
+  note("stop", "asked for in the page");
+  return {};
+}
+
+std::string RunPage::request_mode(const Command& command, runtime::Runtime* runtime,
+                                  const Note& note) {
+  const auto named = std::ranges::find(kRequests, command.argument, &NamedRequest::name);
+  if (named == std::end(kRequests)) return "there is no such mode: " + command.argument;
+  if (command.stops != desk_->stops()) return std::string(kStopped);
+  // one button resets the safety controller as well, and first
+  if (named->request == ModeRequest::kReset) runtime->press_reset();
+  const bool is_taken = runtime->request(ModeRequest::kNone, command.stops) &&
+                        runtime->request(ModeRequest::kNone, command.stops) &&
+                        runtime->request(named->request, command.stops);
+  if (!is_taken) return "too many commands are waiting";
+  note(command.argument, "asked for in the page");
+  asked_.push_back({command, named->request});
+  return {};
+}
+
+std::string RunPage::set_pace(const Command& command, runtime::Runtime* runtime, const Note& note) {
+  runtime::Pace& pace = runtime->pace();
+  switch (command.name) {
+    case CommandName::kPause:
+      pace.pause();
+      note("pause", "simulated time stands still");
+      return {};
+    case CommandName::kResume:
+      pace.resume();
+      note("resume", "simulated time goes on");
+      return {};
+    case CommandName::kStep:
+      if (!pace.step(command.value)) {
+        return fmt::format("a step is 1 .. {} cycles of a paused run", runtime::Pace::kMostSteps);
+      }
+      note("step", fmt::format("{} cycles", command.value));
+      return {};
+    default:
+      if (!pace.set_speed(command.value)) {
+        return fmt::format("the speed must be {} .. 1", runtime::Pace::kSlowest);
+      }
+      note("speed", fmt::format("{} of real time", command.value));
+      return {};
+  }
+}
+
+// prepares the next run; the present one continues meanwhile, and also if that fails
+std::string RunPage::choose(const Command& command, runtime::Runtime*, const Note&) {
+  if (is_preparing() || has_next_) return "another run is being prepared";
+  Options options = *run_.options;
+  const auto* chooser = std::ranges::find(kChoosers, command.name, &Chooser::command);
+  if (chooser != std::end(kChoosers)) {
+    if (!is_choice(page_choices(options).*chooser->list, command.argument)) {
+      return "there is no such choice: " + command.argument;
+    }
+    options.*chooser->option = command.argument;
+  }
+  const bool is_other_scenario = command.name == CommandName::kScenario;
+  if (is_other_scenario) options.twin.clear();
+  // a script is made for one twin
+  const bool is_other_twin = is_other_scenario || command.name == CommandName::kTwin;
+  if (is_other_twin && options.user != "mouse" && options.user != "none") options.user.clear();
+  chosen_ = command;
+  prepared_ = std::async(std::launch::async, [this, options]() -> std::string {
+    try {
+      prepare_(options);
+      return {};
+    } catch (const SetupError& error) {
+      return first_line(error.what());
+    }
+  });
+  return {};
+}
+
+void RunPage::take_prepared(const Note& note) {
+  if (!is_preparing() || prepared_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    return;
+  }
+  std::string refusal = prepared_.get();
+  if (refusal.empty() && chosen_.stops != desk_->stops()) refusal = kStopped;
+  has_next_ = refusal.empty();
+  if (has_next_) note("restart", chosen_.argument.empty() ? "again" : chosen_.argument);
+  server_.answer(chosen_, refusal);
+}
+
+// A stop that came after a run was chosen is one for that run as well.
+void RunPage::drop_overtaken(const Note& note) {
+  if (!has_next_ || chosen_.stops == desk_->stops()) return;
+  has_next_ = false;
+  stop_was_asked_ = true;
+  note("restart", "left out: a stop came after it");
+}
+
+bool RunPage::take_next() {
+  return std::exchange(has_next_, false) && chosen_.stops == desk_->stops();
+}
+
+std::string RunPage::set(const Command& command, runtime::Runtime* runtime, const Note& note) {
+  const auto field = std::ranges::find(form_, command.argument, &config::FormField::name);
+  if (field == form_.end()) return "there is no such setting: " + command.argument;
+  const auto number = static_cast<int>(field - form_.begin());
+  std::string why_not = config::refusal(form_, number, command.value, values_);
+  if (!why_not.empty()) return why_not;
+  for (ParameterChange change : field->changes) {
+    change.value = command.value;
+    if (!runtime->change(change)) return "too many changes are waiting";
+  }
+  note("set", fmt::format("{} = {} {}", field->name, to_text(command.value), field->unit));
+  return {};
+}
+
+}  // namespace hg::page

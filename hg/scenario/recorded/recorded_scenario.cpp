@@ -1,0 +1,59 @@
+#include "hg/scenario/recorded/recorded_scenario.h"
+
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "hg/scenario/names.h"
+
+namespace hg::scenario {
+namespace {
+
+constexpr char kArguments[] = "arguments";  // attachment that holds the options
+
+std::string recording_name(const std::filesystem::path& scenario) {
+  constexpr std::string_view kMarks = "._-";
+  std::string name = scenario.stem().string();
+  for (char& c : name) {
+    const bool is_plain =
+        (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    if (!is_plain && kMarks.find(c) == std::string_view::npos) c = '_';
+  }
+  return name;
+}
+
+}  // namespace
+
+config::Scenario recorded_scenario(const std::vector<recording::NamedText>& configuration) {
+  std::vector<config::SourceText> sources;
+  std::string options;
+  for (const recording::NamedText& text : configuration) {
+    if (text.name == kArguments) {
+      options = text.text;
+    } else {
+      sources.push_back({text.name, text.text});
+    }
+  }
+  return load_recorded(std::move(sources), options);
+}
+
+recording::RecordingInfo recording_info(const config::Scenario& scenario, const Options& options) {
+  recording::RecordingInfo info;
+  info.name = recording_name(options.scenario);
+  info.gantry_joints = gantry_joints(scenario.device);
+  info.manipulator_joints = manipulator_joints(scenario.device);
+  for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
+    info.twin_joints.push_back({joint.name, joint.type == model::JointType::kFloating});
+  }
+  info.limits = scenario.limits;
+  for (const auto& source : scenario.sources) {
+    info.configuration.push_back({source.name, source.content});
+  }
+  if (const std::string text = to_text(options); !text.empty()) {
+    info.configuration.push_back({kArguments, text});
+  }
+  info.rate_Hz = scenario.device.model.rate_Hz;
+  return info;
+}
+
+}  // namespace hg::scenario

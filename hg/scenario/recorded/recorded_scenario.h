@@ -1,0 +1,22 @@
+/// A scenario into a recording and back: a recording holds all files of its scenario, and the
+/// options that it was loaded with.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hg/config/simulation/scenario.h"
+#include "hg/recording/recorder.h"
+#include "hg/scenario/options.h"
+
+namespace hg::scenario {
+
+/// The scenario of a recording, from the files that it holds; the disk is not touched. Throws
+/// SetupError.
+config::Scenario recorded_scenario(const std::vector<recording::NamedText>& configuration);
+
+/// What a recording of `scenario`, loaded with `options`, says about its run: all but its folder
+/// and the version of the program.
+recording::RecordingInfo recording_info(const config::Scenario& scenario, const Options& options);
+
+}  // namespace hg::scenario
