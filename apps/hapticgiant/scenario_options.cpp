@@ -8,7 +8,7 @@
 
 #include "apps/hapticgiant/option_checks.h"
 #include "hg/config/law_names.h"
-#include "hg/config/script_schema.h"
+#include "hg/config/simulation/script_schema.h"
 
 namespace hg::apps {
 namespace {

@@ -51,8 +51,7 @@ enum class Motion : std::uint8_t {
   kBrakeJoints,  ///< a stop without a solution or with a collision ahead: joints brake one by one
 };
 
-/// Complete state of a cycle. Copy it for a snapshot, assign it to restore. Members added here must
-/// be added to state_hash.cpp, those of nested states to the fields() beside them.
+/// Complete state of a cycle. Copy it for a snapshot, assign it to restore.
 struct State {
   std::uint64_t cycle = 0;
   std::uint64_t next_sequence = 0;
@@ -80,6 +79,21 @@ struct State {
   bool was_alone = false;         ///< Last rendering without stopping was autonomous
   double force_share = 0.0;       ///< Ramped share of the forces on the twin, 0..1
 };
+
+/// Words of the state hash, in its order; `rows` is the number of rows of the rendering problem.
+void hashed(auto& hash, const State& state, int rows) {
+  const auto& [cycle, next_sequence, supervisor, monitor, brakes, estimation, rendering, control,
+               gantry_target, collision, passivity, touch, motion, w_H, dq_p, q_m, tau_m, was_on,
+               room, is_blocked, is_coasting, is_apart, was_alone, force_share] = state;
+  hashed(hash, rendering, rows);
+  hash.mix(gantry_target, dq_p, room,
+           std::uint64_t{is_blocked} | std::uint64_t{motion == Motion::kBrakeJoints} << 1U |
+               std::uint64_t{was_on} << 2U | std::uint64_t{is_coasting} << 3U |
+               std::uint64_t{is_apart} << 4U | std::uint64_t{was_alone} << 5U,
+           force_share, cycle, next_sequence, supervisor, monitor, brakes, q_m, tau_m, collision,
+           passivity, estimation, control, w_H);
+  if (touch.dq.size() > 0) hash.mix(touch, rendering.touch);  // contact detection is active
+}
 
 /// The control cycle with all its parts.
 class Cycle {

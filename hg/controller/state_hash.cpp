@@ -6,15 +6,21 @@
 #include <type_traits>
 
 #include "hg/core/fields.h"
+#include "hg/core/index.h"
 
 namespace hg::controller {
 namespace {
 
-// The archive over the fields() of the states; names and notes are not part of the hash.
+template <typename T, typename Hash>
+concept IsHashed = requires(Hash& hash, const T& state) {
+  hashed(hash, state);
+};
+
 class Hash {
  public:
   std::uint64_t value() const noexcept { return value_; }
 
+  // for the fields() of signals, whose names and notes are not part of the hash
   template <typename T>
   void operator()(const char*, const T& value, const char* = "") noexcept {
     mix(value);
@@ -37,13 +43,34 @@ class Hash {
   }
   template <typename T, std::size_t kSize>
   void mix(const std::array<T, kSize>& values) noexcept {
-    mix_packed(values.data(), values.size());
+    mix_first(values, static_cast<int>(kSize));
   }
   template <HasFields T>
   void mix(const T& state) noexcept {
     fields(*this, state);
   }
-  // mixes the first `count` values, packed into words
+  template <IsHashed<Hash> T>
+  void mix(const T& state) noexcept {
+    hashed(*this, state);
+  }
+  template <typename First, typename Second, typename... More>
+  void mix(const First& first, const Second& second, const More&... more) noexcept {
+    mix(first);
+    mix(second);
+    (mix(more), ...);
+  }
+
+  // the first `count` items; small ones are packed into words
+  template <typename T, std::size_t kSize>
+  void mix_first(const std::array<T, kSize>& items, int count) noexcept {
+    if constexpr (std::is_class_v<T>) {
+      for (std::size_t i = 0; i < index(count); ++i) mix(items[i]);
+    } else {
+      mix_packed(items.data(), index(count));
+    }
+  }
+
+ private:
   template <typename T>
   void mix_packed(const T* values, std::size_t count) noexcept {
     constexpr std::size_t kInWord = sizeof(std::uint64_t) / sizeof(T);
@@ -59,71 +86,15 @@ class Hash {
     std::memcpy(&word, values + i, (count - i) * sizeof(T));
     mix(word);
   }
-  template <typename First, typename Second, typename... More>
-  void mix(const First& first, const Second& second, const More&... more) noexcept {
-    mix(first);
-    mix(second);
-    (mix(more), ...);
-  }
 
- private:
   std::uint64_t value_ = 0xcbf29ce484222325ULL;
 };
-
-// The state of the rendering is mixed by hand: of its arrays only the entries of this twin and of
-// this problem count, and their numbers stand in other structs.
-void mix(const rendering::TwinValues& values, std::size_t dofs, Hash& hash) noexcept {
-  for (std::size_t i = 0; i < dofs; ++i) {
-    const rendering::DofValues& dof = values.dofs[i];
-    hash.mix(dof.stiffness, dof.rest, dof.preload, dof.damping, dof.quadratic_damping, dof.friction,
-             dof.dq_max);
-  }
-  hash.mix(values.w_ref, values.loads.mass, values.loads.gravity);
-}
-
-void mix(const rendering::TwinInnerState& inner, std::size_t dofs, Hash& hash) noexcept {
-  for (const rendering::LockState& lock : inner.locks) {
-    hash.mix(std::uint64_t{lock.is_engaged} | std::uint64_t{lock.is_locked} << 1U);
-    hash.mix(lock.edge);
-  }
-  hash.mix_packed(inner.sticks.data(), dofs);
-  const rendering::TwinParameters& parameters = inner.parameters;
-  mix(parameters.now, dofs, hash);
-  mix(parameters.target, dofs, hash);
-  for (std::size_t i = 0; i < dofs; ++i) {
-    hash.mix(parameters.range[i], parameters.moving[i].q, parameters.moving[i].is_crossed);
-  }
-  hash.mix(parameters.holds);
-  hash.mix_packed(parameters.may_be_overrun.data(), dofs);
-}
-
-void mix(const rendering::State& state, int rows, Hash& hash) noexcept {
-  hash.mix(state.reference, state.twin);
-  mix(state.inner, static_cast<std::size_t>(state.twin.dq_a.size()), hash);
-  hash.mix_packed(state.active_set.state.data(), static_cast<std::size_t>(rows));
-  hash.mix_packed(state.active_set.before.data(), static_cast<std::size_t>(rows));
-  hash.mix(state.touched.lower, state.touched.upper);
-  hash.mix(state.calming.damping, state.calming.inertia);
-  hash.mix(state.contact.proxy, state.contact.is_started, state.contact.dent, state.contact.taken);
-  hash.mix(state.motor_torque, state.ddq_p);
-}
 
 }  // namespace
 
 std::uint64_t hash_of(const State& state, int rows) noexcept {
   Hash hash;
-  mix(state.rendering, rows, hash);
-  hash.mix(state.gantry_target, state.dq_p, state.room);
-  hash.mix(std::uint64_t{state.is_blocked} |
-           std::uint64_t{state.motion == Motion::kBrakeJoints} << 1U |
-           std::uint64_t{state.was_on} << 2U | std::uint64_t{state.is_coasting} << 3U |
-           std::uint64_t{state.is_apart} << 4U | std::uint64_t{state.was_alone} << 5U);
-  hash.mix(state.force_share, state.cycle, state.next_sequence, state.supervisor, state.monitor,
-           state.brakes, state.q_m, state.tau_m, state.collision, state.passivity, state.estimation,
-           state.control, state.w_H);
-  if (state.touch.dq.size() > 0) {  // contact detection is active
-    hash.mix(state.touch, state.rendering.touch);
-  }
+  hashed(hash, state, rows);
   return hash.value();
 }
 

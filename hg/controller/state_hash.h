@@ -1,8 +1,12 @@
 /// Hash of the state after a cycle: runs with equal hashes are identical.
 ///
-/// Over the words of the state, in the order of the fields() beside each state: hash = (rotated
-/// hash ^ word) * odd constant, a bijection of each word, so that a single differing value always
-/// changes the hash. Not cryptographic. About a nanosecond per word. No allocation, noexcept.
+/// Over the words of the state: hash = (rotated hash ^ word) * odd constant, a bijection of each
+/// word, so that a single differing value always changes the hash. Not cryptographic. About a
+/// nanosecond per word. No allocation, noexcept.
+///
+/// Beside each struct of the state, hashed(hash, state) passes its words to hash.mix(): not all
+/// members, and in the order of the hash, unlike fields(). It names all members first, so that a
+/// struct with a new one does not compile until hashed() has it, too.
 #pragma once
 
 #include "hg/controller/cycle.h"

@@ -13,7 +13,7 @@
 #include "hg/controller/estimation/inertial_units.h"
 #include "hg/controller/estimation/joint_observer.h"
 #include "hg/controller/estimation/user_wrench.h"
-#include "hg/core/fields.h"
+#include "hg/core/index.h"
 #include "hg/core/types.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
@@ -41,21 +41,16 @@ struct State {
   InertialUnitsState units;
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<State> T>
-void fields(Archive& a, T& state) {
-  for (const GantryObserver& axis : state.gantry) a("axis", axis);
-  a("q_m", state.q_m);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(state.q_m.size()); ++i) {
-    a("q", state.link[i].q);
-    a("dq", state.link[i].dq);
-    a("theta", state.motor[i].theta);
-    a("dtheta", state.motor[i].dtheta);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const State& state) {
+  const auto& [is_started, gantry, q_m, link, motor, wrench, inertial, units] = state;
+  for (const GantryObserver& axis : gantry) hash.mix(axis);
+  hash.mix(q_m);
+  for (std::size_t i = 0; i < index(q_m.size()); ++i) {
+    hash.mix(link[i].q, link[i].dq, motor[i].theta, motor[i].dtheta);
   }
-  a("flags", std::uint64_t{state.is_started} | std::uint64_t{state.wrench.is_started} << 1U);
-  a("wrench", state.wrench);
-  a("inertial", state.inertial);
-  if (state.units.is_started) a("units", state.units);
+  hash.mix(std::uint64_t{is_started} | std::uint64_t{wrench.is_started} << 1U, wrench, inertial);
+  if (units.is_started) hash.mix(units);
 }
 
 class Estimation {

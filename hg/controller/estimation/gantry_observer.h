@@ -12,7 +12,6 @@
 /// [C] 2 has f = 8 Hz; a gantry that shakes at 4-16 Hz asks for up to 40 Hz.
 #pragma once
 
-#include "hg/core/fields.h"
 #include "hg/signals/drive_model.h"
 
 namespace hg::estimation {
@@ -24,13 +23,10 @@ struct GantryObserver {
   CommandDelay delay;
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<GantryObserver> T>
-void fields(Archive& a, T& axis) {
-  a("q", axis.q);
-  a("dq", axis.dq);
-  a("ddq", axis.ddq);
-  a("disturbance", axis.disturbance);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const GantryObserver& axis) {
+  const auto& [q, dq, ddq, disturbance, delay] = axis;
+  hash.mix(q, dq, ddq, disturbance);
 }
 
 /// Corrections of q, dq and the disturbance per innovation of the position.

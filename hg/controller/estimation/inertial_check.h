@@ -12,8 +12,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "hg/core/fields.h"
-
 namespace hg::estimation {
 
 /// Part of the copyable state of an estimation. S is the frame of the inertial unit.
@@ -40,23 +38,14 @@ struct InertialCheck {
   Eigen::Vector3d slip = Eigen::Vector3d::Zero();
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<InertialCheck> T>
-void fields(Archive& a, T& check) {
-  a("flags", std::uint64_t{check.is_started} |
-                 static_cast<std::uint64_t>(check.rest_samples) << 1U |
-                 static_cast<std::uint64_t>(check.gravity_samples) << 32U);
-  a("R_B_S", check.R_B_S);
-  a("bias", check.bias);
-  a("turn", check.turn);
-  a("turned", check.turned);
-  a("up_S", check.up_S);
-  a("offset_S", check.offset_S);
-  a("p_S", check.p_S);
-  a("v_S", check.v_S);
-  a("slip", check.slip);
-  a("turned_in_all", check.turned_in_all);
-  a("offset_at_rest", check.offset_at_rest);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const InertialCheck& check) {
+  const auto& [is_started, R_B_S, bias, turn, turned, turned_in_all, rest_samples, gravity_samples,
+               up_S, offset_S, offset_at_rest, p_S, v_S, slip] = check;
+  hash.mix(std::uint64_t{is_started} | static_cast<std::uint64_t>(rest_samples) << 1U |
+               static_cast<std::uint64_t>(gravity_samples) << 32U,
+           R_B_S, bias, turn, turned, up_S, offset_S, p_S, v_S, slip, turned_in_all,
+           offset_at_rest);
 }
 
 /// Measurement of an inertial unit, with its pose by the encoders.

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "hg/controller/estimation/unit_calibration.h"
-#include "hg/core/fields.h"
+#include "hg/core/index.h"
 #include "hg/core/stacked.h"
 #include "hg/core/types.h"
 #include "hg/model/chain_data.h"
@@ -45,13 +45,10 @@ struct EncoderSample {
   VectorPM ddq_expected;  ///< Acceleration since the last sample, by reference and drive model
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<EncoderSample> T>
-void fields(Archive& a, T& sample) {
-  a("measured", sample.measured);
-  a("q", sample.q);
-  a("dq", sample.dq);
-  a("ddq_expected", sample.ddq_expected);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const EncoderSample& sample) {
+  const auto& [measured, q, dq, ddq_expected] = sample;
+  hash.mix(measured, q, dq, ddq_expected);
 }
 
 struct InertialUnitsState {
@@ -78,25 +75,13 @@ struct InertialUnitsState {
   double share = 0.0;  ///< Share with which the control uses the units, 0..1
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<InertialUnitsState> T>
-void fields(Archive& a, T& state) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(state.trust.size()); ++i) {
-    a("unit", state.units[i]);
-    a("same", state.same[i]);
-  }
-  a("newest", state.past[state.newest]);
-  a("trust", state.trust);
-  a("found", state.found);
-  a("carried", state.carried);
-  a("unseen", state.unseen);
-  a("q", state.q);
-  a("dq", state.dq);
-  a("variance", state.variance);
-  a("error", state.error);
-  a("bend_rate", state.bend_rate);
-  a("bend", state.bend);
-  a("share", state.share);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const InertialUnitsState& state) {
+  const auto& [is_started, units, last, same, trust, past, newest, seen, turn, found, carried,
+               variance, error, unseen, q, dq, bend_rate, bend, share] = state;
+  for (std::size_t i = 0; i < index(trust.size()); ++i) hash.mix(units[i], same[i]);
+  hash.mix(past[newest], trust, found, carried, unseen, q, dq, variance, error, bend_rate, bend,
+           share);
 }
 
 class InertialUnits {

@@ -7,7 +7,6 @@
 
 #include <cstdint>
 
-#include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/signals/state.h"
 
@@ -38,17 +37,11 @@ struct TareState {
   VectorP q_p;
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<TareState> T>
-void fields(Archive& a, T& tare) {
-  a("flags", static_cast<std::uint64_t>(tare.status) | std::uint64_t{tare.is_valid} << 8U);
-  a("count", tare.count);
-  a("offset", tare.offset);
-  a("mean", tare.mean);
-  a("square", tare.square);
-  a("first_half", tare.first_half);
-  a("q_m", tare.q_m);
-  a("q_p", tare.q_p);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const TareState& tare) {
+  const auto& [status, is_valid, offset, count, mean, square, first_half, q_m, q_p] = tare;
+  hash.mix(static_cast<std::uint64_t>(status) | std::uint64_t{is_valid} << 8U, count, offset, mean,
+           square, first_half, q_m, q_p);
 }
 
 /// Begins a new tare.

@@ -15,8 +15,6 @@
 
 #include <Eigen/Core>
 
-#include "hg/core/fields.h"
-
 namespace hg::estimation {
 
 /// Motion of a link, resolved in its own axes.
@@ -60,16 +58,11 @@ struct UnitCalibration {
   double misfit = 0.0;    ///< Mean square of the unexplained reading, below 10 Hz, (m/s^2)^2
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<UnitCalibration> T>
-void fields(Archive& a, T& unit) {
-  a("slower", unit.slower);
-  a("gyroscope", unit.gyroscope);
-  a("accelerometer", unit.accelerometer);
-  a("moved_s", unit.moved_s);
-  a("variance", unit.variance);
-  a("misfit", unit.misfit);
-  a("information", unit.information.trace());
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const UnitCalibration& unit) {
+  const auto& [is_started, slow, slower, a_mean, moved_s, turn_information, information, turn_sum,
+               sum, gyroscope, accelerometer, variance, misfit] = unit;
+  hash.mix(slower, gyroscope, accelerometer, moved_s, variance, misfit, information.trace());
 }
 
 /// Processes a sample, `dt` s after the last.

@@ -7,7 +7,6 @@
 #pragma once
 
 #include "hg/controller/estimation/tare.h"
-#include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/payload.h"
@@ -31,13 +30,11 @@ struct WrenchState {
   TareState tare;
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<WrenchState> T>
-void fields(Archive& a, T& wrench) {
-  a("omega_S", wrench.omega_S);
-  a("alpha_S", wrench.alpha_S);
-  a("w_S", wrench.w_S);
-  a("tare", wrench.tare);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const WrenchState& state) {
+  const auto& [is_started, omega_S, alpha_S, w_S, tare] =
+      state;  // is_started: in the flags of State
+  hash.mix(omega_S, alpha_S, w_S, tare);
 }
 
 /// Delay of the user's wrench after the sensor's sample, for slow changes, s. The sensor's own

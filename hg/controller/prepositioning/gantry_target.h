@@ -8,7 +8,6 @@
 
 #include <vector>
 
-#include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
@@ -25,11 +24,10 @@ struct TargetState {
   VectorPM q;  ///< Posture of the target
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<TargetState> T>
-void fields(Archive& a, T& state) {
-  a("is_started", state.is_started);
-  a("q", state.q);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const TargetState& state) {
+  const auto& [is_started, q] = state;
+  hash.mix(is_started, q);
 }
 
 class GantryTarget {

@@ -6,7 +6,6 @@
 
 #include <vector>
 
-#include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/limits/velocity_bounds.h"
@@ -29,11 +28,10 @@ struct Room {
   VectorP down, up;
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<Room> T>
-void fields(Archive& a, T& room) {
-  a("down", room.down);
-  a("up", room.up);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const Room& room) {
+  const auto& [down, up] = room;
+  hash.mix(down, up);
 }
 
 struct Command {

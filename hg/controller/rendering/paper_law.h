@@ -27,6 +27,12 @@ struct TouchedEnds {
   std::array<bool, kMaxLimits> upper{};
 };
 
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const TouchedEnds& touched) {
+  const auto& [lower, upper] = touched;
+  hash.mix(lower, upper);
+}
+
 class PaperLaw {
  public:
   PaperLaw(const DeviceModel& device, const TwinModel& twin);

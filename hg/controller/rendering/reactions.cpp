@@ -94,9 +94,8 @@ VectorA Reactions::torque(int limit) const noexcept {
 
 VectorA Reactions::torque_of_device() const noexcept {
   VectorA sum = VectorA::Zero(n_a_);
-  for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[static_cast<std::size_t>(j)];
-    if (limit < device_limits_) sum += torque(limit) * value_[static_cast<std::size_t>(limit)];
+  for (const int limit : active()) {
+    if (limit < device_limits_) sum += torque(limit) * of(limit);
   }
   return sum;
 }
@@ -110,13 +109,11 @@ void Reactions::find_active(const Tasks& tasks, const hqp::Solution& solution) n
             .tail(n_a_);
   }
   for (int limit = 0; limit < count_; ++limit) {
-    const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
-    const bool acts = solution.state[row] != hqp::RowState::kInactive;
-    if (!acts && value_[static_cast<std::size_t>(limit)] == 0.0) continue;
-    active_[static_cast<std::size_t>(active_count_++)] = limit;
+    const bool acts =
+        solution.state[index(tasks.acting_row(limit, solution))] != hqp::RowState::kInactive;
+    if (acts || of(limit) != 0.0) active_[index(active_count_++)] = limit;
   }
-  for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[static_cast<std::size_t>(j)];
+  for (const int limit : active()) {
     if (limit >= device_limits_) break;
     directions_.find(tasks.problem(), tasks.first_limit_row() + limit, limit);
   }
@@ -128,17 +125,13 @@ void Reactions::split(const Tasks& tasks, const hqp::Solution& solution,
   rest_.setZero();
   const bool is_paper = tasks.alpha(0) >= 0;
   for (int limit = 0; is_paper && limit < device_limits_ + n_a_; ++limit) {
-    value_[static_cast<std::size_t>(limit)] =
-        solution.x[static_cast<std::size_t>(tasks.alpha(limit))];
+    value_[index(limit)] = solution.x[index(tasks.alpha(limit))];
   }
   find_active(tasks, solution);
   if (!is_paper && active_count_ > 0) split_active(tasks, solution, tau_constraint);
   if (!is_paper && solution.status == hqp::Status::kSolved) return;
   rest_ = tau_constraint;
-  for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[static_cast<std::size_t>(j)];
-    rest_ -= torque(limit) * value_[static_cast<std::size_t>(limit)];
-  }
+  for (const int limit : active()) rest_ -= torque(limit) * of(limit);
 }
 
 void Reactions::split_active(const Tasks& tasks, const hqp::Solution& solution,
@@ -148,33 +141,30 @@ void Reactions::split_active(const Tasks& tasks, const hqp::Solution& solution,
   add_sum(tau_constraint);
   problem_.add_level();
   for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[static_cast<std::size_t>(j)];
-    const auto row = static_cast<std::size_t>(tasks.acting_row(limit, solution));
-    if (hqp::is_violated(solution.state[row])) problem_.add_bound(j, {0.0, 0.0});
+    const int row = tasks.acting_row(active_[index(j)], solution);
+    if (hqp::is_violated(solution.state[index(row)])) problem_.add_bound(j, {0.0, 0.0});
   }
   std::fill_n(active_set_.state.begin(), problem_.rows(), hqp::RowState::kInactive);
   std::fill_n(active_set_.before.begin(), problem_.rows(), hqp::RowState::kInactive);
   solver_.solve(problem_, {}, active_set_, solution_);
-  for (std::size_t j = 0; j < static_cast<std::size_t>(active_count_); ++j) {
-    value_[static_cast<std::size_t>(active_[j])] = solution_.x[j] * scale_[j];
+  for (std::size_t j = 0; j < active().size(); ++j) {
+    value_[index(active_[j])] = solution_.x[j] * scale_[j];
   }
 }
 
 void Reactions::add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept {
   const auto state_of = [&](int limit) {
-    return solution.state[static_cast<std::size_t>(tasks.acting_row(limit, solution))];
+    return solution.state[index(tasks.acting_row(limit, solution))];
   };
   // a row above one that could not be met may be held for that row's sake, against its own sign
   int last_violated = -1;
-  for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[static_cast<std::size_t>(j)];
+  for (const int limit : active()) {
     if (hqp::is_violated(state_of(limit))) last_violated = limit;
   }
   problem_.add_level();
   for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[static_cast<std::size_t>(j)];
-    scale_[static_cast<std::size_t>(j)] =
-        1.0 / tasks.limit_rows()[static_cast<std::size_t>(limit)].rating;
+    const int limit = active_[index(j)];
+    scale_[index(j)] = 1.0 / tasks.limit_rows()[index(limit)].rating;
     const hqp::RowState state = state_of(limit);
     const bool has_sign = limit > last_violated;
     Interval sign;
@@ -187,7 +177,7 @@ void Reactions::add_signs(const Tasks& tasks, const hqp::Solution& solution) noe
 // no push against idle motion of the manipulator, and the torques on the twin add up
 void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
   std::array<double, kMaxReactions> row{};
-  const std::span<const double> coefficients(row.data(), static_cast<std::size_t>(active_count_));
+  const auto coefficients = std::span<const double>(row).first(active().size());
   problem_.add_level();
   if (n_m_ > 6) {
     for (std::size_t j = 0; j < coefficients.size(); ++j) {
@@ -198,8 +188,7 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
   problem_.add_level();
   double largest = 0.0;
   for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[static_cast<std::size_t>(j)];
-    columns_.col(j) = torque(limit) * scale_[static_cast<std::size_t>(j)];
+    columns_.col(j) = torque(active_[index(j)]) * scale_[index(j)];
     largest = std::max(largest, columns_.col(j).cwiseAbs().maxCoeff());
   }
   for (int i = 0; i < n_a_; ++i) {
@@ -219,9 +208,9 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
   const auto& rows = tasks.limit_rows();
   result.limit_count = device_limits_ + n_a_;
   for (int limit = 0; limit < result.limit_count; ++limit) {
-    const auto i = static_cast<std::size_t>(limit);
+    const auto i = index(limit);
     const int acting_row = tasks.acting_row(limit, solution);
-    const auto row = static_cast<std::size_t>(acting_row);
+    const auto row = index(acting_row);
     const Interval ddq =
         acting_row == rows[i].rating_row ? tasks.problem().bounds(acting_row) : rows[i].ddq;
     LimitReport& report = result.limits[i];
@@ -250,15 +239,14 @@ void Reactions::report_felt(const MatrixA& L, LawResult& result) const noexcept 
   VectorA pushed = result.tau_a;
   factor.solveInPlace(pushed);
   double most = kFeltMin * kFeltMin;
-  for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[static_cast<std::size_t>(j)];
-    const double value = value_[static_cast<std::size_t>(limit)];
+  for (const int limit : active()) {
+    const double value = of(limit);
     VectorA tau = torque(limit) * value;
     if (limit >= result.limit_count) {
       budget.surface -= tau;
       continue;
     }
-    if (result.limits[static_cast<std::size_t>(limit)].state == LimitState::kViolated) {
+    if (result.limits[index(limit)].state == LimitState::kViolated) {
       budget.conflict -= tau;
     } else {
       budget.limits -= tau;

@@ -12,10 +12,12 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "hg/controller/rendering/constraint_directions.h"
 #include "hg/controller/rendering/law_result.h"
 #include "hg/controller/rendering/tasks.h"
+#include "hg/core/index.h"
 #include "hg/hqp/solver.h"
 #include "hg/signals/state.h"
 
@@ -39,7 +41,7 @@ class Reactions {
 
   /// Constraint force or torque of a limit in its own coordinate; stop i has the index catalogue
   /// size + i.
-  double of(int limit) const noexcept { return value_[static_cast<std::size_t>(limit)]; }
+  double of(int limit) const noexcept { return value_[index(limit)]; }
 
   /// Torque of all limits of the device on the twin (n_a).
   VectorA torque_of_device() const noexcept;
@@ -58,6 +60,10 @@ class Reactions {
               LawResult& result) const noexcept;
 
  private:
+  /// Limits that may have a reaction.
+  std::span<const int> active() const noexcept {
+    return std::span(active_).first(index(active_count_));
+  }
   void find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept;
   void split_active(const Tasks& tasks, const hqp::Solution& solution,
                     const VectorA& tau_constraint) noexcept;
@@ -71,7 +77,7 @@ class Reactions {
   int n_m_, n_a_, device_limits_;
   int count_;  ///< Number of limits and stops
   std::array<double, kMaxReactions> value_{};
-  std::array<int, kMaxReactions> active_{};  ///< limits that may have a reaction
+  std::array<int, kMaxReactions> active_{};  ///< See active(); the first active_count_ entries
   int active_count_ = 0;
   std::array<double, kMaxReactions> scale_{};  ///< Scale of active limit j in the split
   /// Torque of active limit j on the twin per unit of the split.

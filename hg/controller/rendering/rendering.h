@@ -32,6 +32,12 @@ struct Calming {
   double inertia = 1.0;  ///< Factor of the twin's inertia, without more weight
 };
 
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const Calming& calming) {
+  const auto& [damping, inertia] = calming;
+  hash.mix(damping, inertia);
+}
+
 /// Part of the copyable state of a cycle.
 struct State {
   ReferenceState reference;
@@ -47,6 +53,18 @@ struct State {
   VectorM motor_torque;
   surfaces::State contact;
 };
+
+/// Words of the state hash, in its order; `rows` of the active set are in use. `touch` is hashed by
+/// the cycle, where contacts of the arm are detected.
+void hashed(auto& hash, const State& state, int rows) {
+  const auto& [reference, twin, inner, calming, touch, active_set, touched, ddq_p, motor_torque,
+               contact] = state;
+  hash.mix(reference, twin);
+  hashed(hash, inner, static_cast<int>(twin.dq_a.size()));
+  hash.mix_first(active_set.state, rows);
+  hash.mix_first(active_set.before, rows);
+  hash.mix(touched, calming, contact, motor_torque, ddq_p);
+}
 
 /// Throws SetupError naming the first property of the models that the law cannot use.
 void check(const DeviceModel& device, const TwinModel& twin, const Options& options);

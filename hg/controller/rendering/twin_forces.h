@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/twin_model.h"
@@ -27,12 +28,26 @@ struct LockState {
   double edge = 0.0;  ///< While latched: position that the joint may not pass
 };
 
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const LockState& lock) {
+  const auto& [is_engaged, is_locked, edge] = lock;
+  hash.mix(std::uint64_t{is_engaged} | std::uint64_t{is_locked} << 1U, edge);
+}
+
 /// Part of the copyable state of a cycle.
 struct TwinInnerState {
   std::array<LockState, kMaxLocks> locks{};
   std::array<bool, kMaxTwin> sticks{};  ///< Coulomb friction holds this degree of freedom
   TwinParameters parameters;
 };
+
+/// Words of the state hash, in its order: those of the first `dofs` degrees of freedom.
+void hashed(auto& hash, const TwinInnerState& inner, int dofs) {
+  const auto& [locks, sticks, parameters] = inner;
+  hash.mix(locks);
+  hash.mix_first(sticks, dofs);
+  hashed(hash, parameters, dofs);
+}
 
 /// A joint counts as being at its lock within this distance, rad or m.
 inline constexpr double kLockReached = 1e-4;

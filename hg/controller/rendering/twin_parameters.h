@@ -12,6 +12,7 @@
 #include <array>
 
 #include "hg/controller/rendering/twin_model.h"
+#include "hg/core/index.h"
 #include "hg/limits/moving_limits.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/state.h"
@@ -25,11 +26,24 @@ struct DofValues {
   double dq_max = kInfinity;
 };
 
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const DofValues& values) {
+  const auto& [stiffness, rest, preload, damping, quadratic_damping, friction, dq_max] = values;
+  hash.mix(stiffness, rest, preload, damping, quadratic_damping, friction, dq_max);
+}
+
 struct TwinValues {
   std::array<DofValues, kMaxTwin> dofs{};
   Vector6 w_ref = Vector6::Zero();
   model::Loads loads;
 };
+
+/// Words of the state hash, in its order: those of the first `count` degrees of freedom.
+void hashed(auto& hash, const TwinValues& values, int count) {
+  const auto& [dofs, w_ref, loads] = values;
+  hash.mix_first(dofs, count);
+  hash.mix(w_ref, loads.mass, loads.gravity);
+}
 
 struct TwinParameters {
   TwinValues now;                          ///< Values in use
@@ -42,6 +56,18 @@ struct TwinParameters {
   /// Limits that were changed or have conditions: a joint may be found beyond them.
   std::array<bool, kMaxTwin> may_be_overrun{};
 };
+
+/// Words of the state hash, in its order: those of the first `dofs` degrees of freedom.
+void hashed(auto& hash, const TwinParameters& parameters, int dofs) {
+  const auto& [now, target, range, moving, holds, may_be_overrun] = parameters;
+  hashed(hash, now, dofs);
+  hashed(hash, target, dofs);
+  for (std::size_t i = 0; i < index(dofs); ++i) {
+    hash.mix(range[i], moving[i].q, moving[i].is_crossed);
+  }
+  hash.mix(holds);
+  hash.mix_first(may_be_overrun, dofs);
+}
 
 /// Parameters as the twin was set up, nothing changing.
 TwinParameters initial_parameters(const TwinModel& twin);

@@ -8,7 +8,6 @@
 #include <cstdint>
 
 #include "hg/controller/safety/monitor.h"
-#include "hg/core/fields.h"
 #include "hg/signals/fault.h"
 #include "hg/signals/frames.h"
 
@@ -29,15 +28,12 @@ struct BrakeState {
   Fault slip;                ///< Detected slip, kBrakesSlip; latched for the whole run
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<BrakeState> T>
-void fields(Archive& a, T& state) {
-  a("flags", std::uint64_t{state.samples_off} | std::uint64_t{state.was_powered} << 32U |
-                 static_cast<std::uint64_t>(state.slip.code) << 40U);
-  a("broken", state.broken);
-  a("last", state.last);
-  a("from", state.from);
-  a("may_move", state.may_move);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const BrakeState& state) {
+  const auto& [was_powered, samples_off, broken, last, from, may_move, slip] = state;
+  hash.mix(std::uint64_t{samples_off} | std::uint64_t{was_powered} << 32U |
+               static_cast<std::uint64_t>(slip.code) << 40U,
+           broken, last, from, may_move);
 }
 
 /// Checks the brakes; call once per cycle, even where the sample is otherwise unusable. An axis may

@@ -1,11 +1,14 @@
 #include "hg/controller/safety/monitor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <type_traits>
 
 #include "hg/controller/safety/stopping.h"
+#include "hg/core/fields.h"
 #include "hg/core/first_not_finite.h"
 
 namespace hg::safety {
@@ -26,8 +29,37 @@ Fault make_fault(FaultCode code, int index, double value, double limit) noexcept
   return {code, static_cast<std::int16_t>(index), value, limit};
 }
 
-// Index of the first value that is not finite, < 0: none. Order: joints, joint speeds, gantry,
-// wrench, motors, joint torques, accelerometer, gyroscope, motor temperatures, clock.
+// Archive over the fields() of a frame that sums x - x over all numbers: 0, or NaN if one of them
+// is not finite. Skips the members at `unchecked`.
+struct FiniteSum {
+  std::array<const void*, 3> unchecked;
+  double nothing = 0.0;
+
+  template <typename T>
+  void operator()(const char*, const T& value, const char*) noexcept {
+    if (std::ranges::find(unchecked, static_cast<const void*>(&value)) != unchecked.end()) return;
+    if constexpr (HasFields<T>) {
+      fields(*this, value);
+    } else if constexpr (std::is_same_v<T, double>) {
+      nothing += value - value;
+    } else if constexpr (std::is_class_v<T>) {
+      for (Eigen::Index i = 0; i < value.size(); ++i) nothing += value.data()[i] - value.data()[i];
+    } else {
+      static_assert(std::is_integral_v<T> || std::is_enum_v<T>);
+    }
+  }
+};
+
+// The estimation itself leaves out inertial units without readings.
+bool has_bad_value(const SensorFrame& sensors, bool has_imu) noexcept {
+  FiniteSum sum = {.unchecked = {&sensors.inertial}};
+  if (!has_imu) sum.unchecked = {&sensors.inertial, &sensors.a_S, &sensors.omega_S};
+  fields(sum, sensors);
+  return sum.nothing != 0.0;
+}
+
+// Index of the first value that is not finite, for the report. Order: joints, joint speeds, gantry,
+// wrench, motors, joint torques, accelerometer, gyroscope, motor temperatures, clock; -1 = another.
 int first_bad_value(const SensorFrame& sensors, bool has_imu) noexcept {
   const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
   return first_not_finite(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
@@ -54,7 +86,7 @@ std::uint16_t count_up(std::uint16_t count) noexcept {
 }  // namespace
 
 bool is_finite(const SensorFrame& sensors, bool has_imu) noexcept {
-  return first_bad_value(sensors, has_imu) < 0;
+  return !has_bad_value(sensors, has_imu);
 }
 
 bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
@@ -71,8 +103,9 @@ Fault check_sensors(const SensorFrame& sensors, std::uint64_t expected_sequence,
     return make_fault(FaultCode::kSequenceGap, -1, static_cast<double>(sensors.sequence),
                       static_cast<double>(expected_sequence));
   }
-  const int index = first_bad_value(sensors, has_imu);
-  if (index >= 0) return make_fault(FaultCode::kSensorNotFinite, index, NAN, 0.0);
+  if (has_bad_value(sensors, has_imu)) {
+    return make_fault(FaultCode::kSensorNotFinite, first_bad_value(sensors, has_imu), NAN, 0.0);
+  }
   return {};
 }
 

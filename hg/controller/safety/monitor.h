@@ -171,37 +171,18 @@ struct MonitorState {
   ShakingState shaking;
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<MonitorState> T>
-void fields(Archive& a, T& state) {
-  a("broken", state.broken);
-  a("same", state.same);
-  a("flags", static_cast<std::uint64_t>(state.late_in_a_row) |
-                 std::uint64_t{state.has_sample} << 62U | std::uint64_t{state.is_broken} << 63U);
-  a("time_s", state.time_s);
-  a("clock_error", state.clock_error);
-  a("late", state.late);
-  a("w_S", state.w_S);
-  a("imu", state.imu);
-  a("q_m", state.q_m);
-  a("tau_m", state.tau_m);
-  a("pulled_back", state.pulled_back);
-  a("momentum", state.momentum);
-  a("lowest", state.lowest);
-  a("highest", state.highest);
-  a("q_p", state.q_p);
-  a("dq_p_model", state.dq_p_model);
-  a("gantry_gap", state.gantry_gap);
-  a("gantry_drift", state.gantry_drift);
-  a("gantry_way", state.gantry_way);
-  a("lowest_p", state.lowest_p);
-  a("highest_p", state.highest_p);
-  a("stop_from_p", state.stop_from_p);
-  a("braking_ramp_p", state.braking_ramp_p);
-  a("is_stopping", state.is_stopping);
-  a("stop_from", state.stop_from);
-  a("braking_ramp", state.braking_ramp);
-  a("ramp_speed", state.ramp_speed);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const MonitorState& state) {
+  const auto& [broken, is_broken, has_sample, q_m, tau_m, q_p, w_S, imu, time_s, same, clock_error,
+               late, late_in_a_row, dq_p_model, gantry_gap, gantry_drift, gantry_way, pulled_back,
+               momentum, lowest, highest, lowest_p, highest_p, is_stopping, stop_from, braking_ramp,
+               ramp_speed, stop_from_p, braking_ramp_p, shaking] = state;
+  hash.mix(broken, same,
+           static_cast<std::uint64_t>(late_in_a_row) | std::uint64_t{has_sample} << 62U |
+               std::uint64_t{is_broken} << 63U,
+           time_s, clock_error, late, w_S, imu, q_m, tau_m, pulled_back, momentum, lowest, highest,
+           q_p, dq_p_model, gantry_gap, gantry_drift, gantry_way, lowest_p, highest_p, stop_from_p,
+           braking_ramp_p, is_stopping, stop_from, braking_ramp, ramp_speed);
 }
 
 struct Verdict {

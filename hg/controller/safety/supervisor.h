@@ -9,7 +9,6 @@
 
 #include "hg/controller/safety/rules.h"
 #include "hg/controller/safety/transitions.h"
-#include "hg/core/fields.h"
 #include "hg/signals/state.h"
 
 namespace hg::safety {
@@ -27,20 +26,15 @@ struct SupervisorState {
   Mode mode() const noexcept { return mode_of(state); }
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<SupervisorState> T>
-void fields(Archive& a, T& state) {
-  a("flags", static_cast<std::uint64_t>(state.state) |
-                 static_cast<std::uint64_t>(state.last_request) << 8U |
-                 static_cast<std::uint64_t>(state.stop) << 16U |
-                 static_cast<std::uint64_t>(state.fault.code) << 32U |
-                 static_cast<std::uint64_t>(state.also.code) << 48U);
-  a("stop_samples", state.stop_samples);
-  for (const Fault* fault : {&state.fault, &state.also}) {
-    a("index", fault->index);
-    a("value", fault->value);
-    a("limit", fault->limit);
-  }
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const SupervisorState& supervisor) {
+  const auto& [state, last_request, stop, fault, also, stop_samples] = supervisor;
+  hash.mix(static_cast<std::uint64_t>(state) | static_cast<std::uint64_t>(last_request) << 8U |
+               static_cast<std::uint64_t>(stop) << 16U |
+               static_cast<std::uint64_t>(fault.code) << 32U |
+               static_cast<std::uint64_t>(also.code) << 48U,
+           stop_samples);
+  for (const Fault* one : {&fault, &also}) hash.mix(one->index, one->value, one->limit);
 }
 
 /// Inputs of the supervisor, once per cycle.

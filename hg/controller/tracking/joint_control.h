@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "hg/controller/tracking/modes.h"
-#include "hg/core/fields.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/model/chain_data.h"
@@ -80,25 +79,14 @@ struct State {
   bool is_saturated = false;
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<State> T>
-void fields(Archive& a, T& state) {
-  a("flags", std::uint64_t{state.is_started} | std::uint64_t{state.is_saturated} << 1U);
-  a("latency", state.latency);
-  a("counts", static_cast<std::uint64_t>(state.answers) | static_cast<std::uint64_t>(state.late)
-                                                              << 32U);
-  a("w0", state.poles.w0);
-  a("Q", state.modes.Q());
-  a("integral", state.integral);
-  a("friction", state.friction);
-  a("tau_r", state.tau_r);
-  a("dtau_r", state.dtau_r);
-  a("ddtau_r", state.ddtau_r);
-  a("unexplained", state.unexplained);
-  a("stiff", state.stiff);
-  a("w_H", state.w_H);
-  a("dw_H", state.dw_H);
-  if (state.feet.size() > 0) a("feet", state.feet);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const State& state) {
+  const auto& [is_started, latency, answers, late, poles, modes, integral, friction, tau_r, dtau_r,
+               ddtau_r, w_H, dw_H, stiff, feet, unexplained, is_saturated] = state;
+  hash.mix(std::uint64_t{is_started} | std::uint64_t{is_saturated} << 1U, latency,
+           static_cast<std::uint64_t>(answers) | static_cast<std::uint64_t>(late) << 32U, poles.w0,
+           modes.Q(), integral, friction, tau_r, dtau_r, ddtau_r, unexplained, stiff, w_H, dw_H);
+  if (feet.size() > 0) hash.mix(feet);
 }
 
 class JointControl {

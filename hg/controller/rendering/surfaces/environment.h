@@ -53,6 +53,12 @@ struct State {
   double pressed = 0.0;    ///< depth of the handle beyond the dent, m
 };
 
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const State& state) {
+  const auto& [proxy, is_started, dent, taken, stiffness, pressed] = state;
+  hash.mix(proxy, is_started, dent, taken);
+}
+
 class Environment {
  public:
   Environment() = default;  ///< no surfaces

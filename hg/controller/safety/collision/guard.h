@@ -24,7 +24,7 @@
 
 #include "hg/controller/safety/collision/distance.h"
 #include "hg/controller/safety/collision/pairs.h"
-#include "hg/core/fields.h"
+#include "hg/core/index.h"
 #include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
@@ -64,16 +64,11 @@ struct State {
   std::array<double, kMaxPairs> allowed{};  ///< Safe distance, less for pairs that began nearer, m
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<State> T>
-void fields(Archive& a, T& state) {
-  a("count", state.count);
-  a("q", state.q);
-  a("stop", state.stop);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(state.count); ++i) {
-    a("left", state.left[i]);
-    a("allowed", state.allowed[i]);
-  }
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const State& state) {
+  const auto& [count, q, stop, left, allowed] = state;
+  hash.mix(count, q, stop);
+  for (std::size_t i = 0; i < index(count); ++i) hash.mix(left[i], allowed[i]);
 }
 
 struct Prediction {

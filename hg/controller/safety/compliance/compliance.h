@@ -15,7 +15,6 @@
 
 #include <cstdint>
 
-#include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/model/device_model.h"
 #include "hg/signals/touch.h"
@@ -44,16 +43,11 @@ struct State {
   VectorP away;          ///< Velocity of the gantry, m/s or rad/s; empty: its own aim
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<State> T>
-void fields(Archive& a, T& state) {
-  a("flags", std::uint64_t{state.is_started} | std::uint64_t{state.is_told} << 1U);
-  a("dq", state.dq);
-  a("torque", state.torque);
-  a("variance", state.variance);
-  a("load", state.load);
-  a("quiet_s", state.quiet_s);
-  a("away", state.away);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const State& state) {
+  const auto& [is_started, dq, torque, variance, load, is_told, quiet_s, away] = state;
+  hash.mix(std::uint64_t{is_started} | std::uint64_t{is_told} << 1U, dq, torque, variance, load,
+           quiet_s, away);
 }
 
 using JacobianIn = Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>;

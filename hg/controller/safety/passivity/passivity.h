@@ -24,7 +24,6 @@
 
 #include <cstdint>
 
-#include "hg/core/fields.h"
 #include "hg/core/turns.h"
 #include "hg/core/types.h"
 #include "hg/signals/state.h"
@@ -65,11 +64,10 @@ struct Calming {
   double inertia = 1.0;  ///< Factor of the twin's inertia, >= 1
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<Calming> T>
-void fields(Archive& a, T& calming) {
-  a("damping", calming.damping);
-  a("inertia", calming.inertia);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const Calming& calming) {
+  const auto& [damping, inertia] = calming;
+  hash.mix(damping, inertia);
 }
 
 struct State {
@@ -90,22 +88,12 @@ struct State {
   Calming calming;
 };
 
-/// Values of the state hash, in its order.
-template <typename Archive, Is<State> T>
-void fields(Archive& a, T& state) {
-  a("is_started", state.is_started);
-  a("x1", state.x1);
-  a("x2", state.x2);
-  a("x3", state.x3);
-  a("high", state.high);
-  a("low", state.low);
-  a("oscillates_s", state.oscillates_s);
-  a("since_pushed_s", state.since_pushed_s);
-  a("hold_s", state.hold_s);
-  a("restless_s", state.restless_s);
-  a("tank", state.tank);
-  a("energy", state.energy);
-  a("calming", state.calming);
+/// Words of the state hash, in its order.
+void hashed(auto& hash, const State& state) {
+  const auto& [is_started, x1, x2, x3, high, low, in1, in2, tremor1, tremor2, tremor, turns,
+               oscillates_s, since_pushed_s, hold_s, restless_s, tank, energy, calming] = state;
+  hash.mix(is_started, x1, x2, x3, high, low, oscillates_s, since_pushed_s, hold_s, restless_s,
+           tank, energy, calming);
 }
 
 /// Advances by one cycle of `dt` (s) and returns its report; `state.calming` applies to the twin in

@@ -2,13 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "hg/controller/safety/test/test_device.h"
+#include "hg/core/fields.h"
 
 namespace hg::safety {
 namespace {
@@ -83,6 +88,38 @@ TEST(CheckSensors, WhatADeviceWithoutInertialUnitSaysOfItDoesNotMatter) {
   sensors.a_S[0] = sensors.omega_S[0] = kNan;
   EXPECT_TRUE(is_finite(sensors, false));
   EXPECT_EQ(check_sensors(sensors, 7, false).code, FaultCode::kNone);
+}
+
+// Archive over the fields() of a frame: all its numbers, with the names of their members. Empty
+// vectors get an entry.
+struct Numbers {
+  std::vector<std::pair<std::string, double*>> all;
+
+  template <typename T>
+  void operator()(const char* name, T& value, const char*) {
+    if constexpr (HasFields<T>) {
+      fields(*this, value);
+    } else if constexpr (std::is_same_v<T, double>) {
+      all.emplace_back(name, &value);
+    } else if constexpr (std::is_class_v<T>) {
+      if constexpr (T::SizeAtCompileTime == Eigen::Dynamic)
+        value = T::Zero(std::max(value.size(), Eigen::Index{1}));
+      for (Eigen::Index i = 0; i < value.size(); ++i) all.emplace_back(name, value.data() + i);
+    }
+  }
+};
+
+TEST(CheckSensors, LooksAtEveryNumberOfAFrameButInertialUnitsOnLinks) {
+  SensorFrame sensors = good_sensors();
+  Numbers numbers;
+  fields(numbers, sensors);
+  ASSERT_GT(numbers.all.size(), 30U);
+  for (const auto& [name, number] : numbers.all) {
+    const double kept = std::exchange(*number, kNan);
+    const FaultCode code = check_sensors(sensors, 7, true).code;
+    EXPECT_EQ(code == FaultCode::kSensorNotFinite, name != "inertial") << name;
+    *number = kept;
+  }
 }
 
 TEST(CheckSensors, AFaultThatTheDriverReportsComesFirst) {
