@@ -16,7 +16,7 @@
 #                SANITIZER_CXX: clang 20 or newer, for rtsan and fuzz, too
 #   make rtsan   builds with RealtimeSanitizer and runs the control loop: what allocates, locks or
 #                waits in it ends the program. make rtsan-tests: without scenarios
-#   make audit   asks advisory databases about the crates and the page's packages, where they answer
+#   make audit   looks up crates and the page's packages in advisory databases, where they answer
 #   make headers checks that every header compiles alone
 #   make lint    checks names and some common mistakes (clang-tidy)
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
@@ -24,9 +24,9 @@
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
-#                memory, faults and limits; begun again it goes on where it was (tools/soak.py)
+#                memory, faults and limits; a restarted soak continues where it was (tools/soak.py)
 #
-# JOBS=2: compilers or tests at a time; the number of processors unless told otherwise.
+# JOBS=2: compilers or tests at a time; default: the number of processors.
 
 ARGS ?=
 JOBS ?= $(shell nproc)
@@ -98,7 +98,7 @@ sanitizer-set-up:
 	@tools/setup.sh test
 	@SANITIZER_CXX=$(SANITIZER_CXX) tools/setup.sh sanitize
 
-sanitize: sanitizer-set-up  # by itself, so that the compiler that it installs is found
+sanitize: sanitizer-set-up  # a target of its own, so that the compiler that it installs is found
 	$(call run_tests,asan,$(ASAN_TESTS))
 	$(call run_tests,tsan,$(TSAN_TESTS))
 

@@ -1,4 +1,4 @@
-# What the compiler is asked for, by kind of code:
+# Compiler options by kind of code:
 #   loop      the control cycle, and what simulates a machine: as fast as it gets
 #   solver    the same with Eigen under a name of its own, so that a consumer of the package with
 #             other vector flags does not share its functions
@@ -10,7 +10,7 @@
 # and compiles without them (HG_PRECOMPILE=OFF).
 option(HG_PRECOMPILE "Compile the headers that many files include once" ON)
 
-# the macro that tinyxml2 asks its users for, so that they can share headers with all others
+# the macro that tinyxml2 requires of its users, so that they can share headers with all others
 add_compile_definitions(_FILE_OFFSET_BITS=64)
 # the memory is there, and tidying it up takes a fifth of the time
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
@@ -18,7 +18,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 # What makes an error in memory end the program instead of being used: stack protectors, checked
-# calls of the C library, position-independent code, and a table of functions that nobody writes to
+# calls of the C library, position-independent code, and a table of functions that is read-only
 # after the start. Sanitizers see more than the first two, and differently.
 include(CheckPIESupported)
 check_pie_supported()

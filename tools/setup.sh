@@ -2,7 +2,7 @@
 # Prepares everything that building needs: system packages, the private .venv with the rigid-body
 # wheels, and the viewer's packages. Prints what it does; quick when there is nothing to do.
 #
-#   tools/setup.sh build    what the program needs; goes on without recording or page
+#   tools/setup.sh build    what the program needs; continues without recording or page
 #   tools/setup.sh test     that, and what the tests need; fails where anything is missing
 #   tools/setup.sh bench    as build, and what `hapticgiant bench` is compared with
 #   tools/setup.sh count    as build, and what counts instructions

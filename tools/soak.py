@@ -5,7 +5,7 @@
     tools/soak.py build/release/hapticgiant --hours 0.5 --scenarios walk door
 
 Runs of the scenarios follow each other, each with another seed, as fast as the machine allows. What
-has been played is kept in --state: begun again it goes on, and ends at once when the hours are full.
+has been played is kept in --state: a restart continues, and ends at once when the hours are full.
 A run fails on a fault, an exceeded limit, a lost sample, an allocation in the loop, or memory that
 grows while it plays. Exit code 0: no run has failed, 1: some have, they are listed.
 """
@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 
-# simulated seconds of one run; those that walk in circles go on as long as they are told
+# simulated seconds of one run; those that walk in circles have no end of their own
 DURATION_S = {"walk": 1800.0, "path": 600.0}
 LARGEST_GROWTH_KB = 1024
 FEWEST_SAMPLES = 40  # of the memory, for a run to be judged by its growth

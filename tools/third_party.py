@@ -2,7 +2,7 @@
 
     third_party.py            writes it; needs what `tools/setup.sh test` installs
     third_party.py --check    compares it with the lists that say what is installed: quick, offline
-    third_party.py --audit    asks advisory databases (cargo audit, npm audit) where they answer
+    third_party.py --audit    queries advisory databases (cargo audit, npm audit) where they answer
 
 Exit codes: 0 fine, 1 a component without an entry, an entry without a component, a licence that is
 not in ALLOWED, or an advisory.
@@ -185,7 +185,7 @@ def audit():
              ("npm audit", ["npm", "audit", "--omit=dev"], ROOT / "viewer", "npm")]
     for name, command, folder, program in tools:
         if shutil.which(program) is None:
-            print(f"{name}: not installed, not asked")
+            print(f"{name}: not installed, not checked")
             continue
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         answer = done.stdout + done.stderr

@@ -22,7 +22,9 @@ int run_check(const CheckArguments& arguments) {
     if (!report.first_device) throw SetupError("--map: needs a device that could be read");
     check_report_program();
     const ScratchFolder scratch;
-    write_output(arguments.map, report_text(scratch.path(), checks::capability_map(*report.first_device), "map.svg"));
+    write_output(
+        arguments.map,
+        report_text(scratch.path(), checks::capability_map(*report.first_device), "map.svg"));
   }
   return count(report, checks::Severity::kFault) > 0 ? 2 : 0;
 }
@@ -30,8 +32,7 @@ int run_check(const CheckArguments& arguments) {
 void add_check(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand(
-      "check",
-      "What is wrong with configuration files, and how to mend it; datasheet of a device.");
+      "check", "What is wrong with configuration files, and how to fix it; datasheet of a device.");
   command->footer(
       "Examples:\n"
       "  hapticgiant check models/scenarios/door.yaml\n"
@@ -39,7 +40,7 @@ void add_check(CLI::App& app, int& exit_code) {
       "  hapticgiant check models/haptic_giant/device.yaml --map capability.svg");
   command
       ->add_option("files", arguments->files,
-                   "device, twin, scenario, tool or script files; the kind is told from their keys")
+                   "device, twin, scenario, tool or script files; the kind follows from their keys")
       ->required();
   command->add_option("--json", arguments->json,
                       "write findings and datasheets as JSON to this file");

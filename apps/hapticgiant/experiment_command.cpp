@@ -184,7 +184,7 @@ int experiment_contact(const ContactArguments& arguments) {
   studies::ContactConfig config;
   config.seeds = arguments.seeds;
   check_output(arguments.json);
-  print_out(fmt::format("HapticGiant {}  Contact: the arm hits somebody in its way\n\n", kVersion));
+  print_out(fmt::format("HapticGiant {}  Contact: the arm hits a person in its way\n\n", kVersion));
   const studies::ContactMeasures measures =
       studies::measure_contact(walk_scenario(), config, progress_of("cases"));
   return report(studies::to_json(measures), "contact", arguments.json, arguments.docs);
@@ -272,7 +272,7 @@ void add_contact(CLI::App& experiment, int& exit_code) {
   const auto arguments = std::make_shared<ContactArguments>();
   CLI::App* command = experiment.add_subcommand(
       "contact",
-      "the arm hits somebody in its way: force and pressure, with and without giving way");
+      "the arm hits a person in its way: force and pressure, with and without giving way");
   command->add_option("--seeds", arguments->seeds, "seeds per case, from 1 on")
       ->check(whole_number(1.0, 1e3))
       ->capture_default_str();
@@ -285,7 +285,7 @@ void add_contact(CLI::App& experiment, int& exit_code) {
 void add_inertial(CLI::App& experiment, int& exit_code) {
   const auto arguments = std::make_shared<InertialArguments>();
   CLI::App* command = experiment.add_subcommand(
-      "inertial", "what inertial units on the links know that encoders do not");
+      "inertial", "what inertial units on the links measure that encoders do not");
   command->add_option("scenarios", arguments->scenarios, "scenario files or names")
       ->capture_default_str();
   command->add_option("--simulation", arguments->simulation, kSimulationHelp);
@@ -316,7 +316,7 @@ void add_experiment(CLI::App& app, int& exit_code) {
       "them\n"
       "  hapticgiant experiment stability-map --svg stability.svg\n"
       "  hapticgiant experiment impedance --json impedance.json\n"
-      "  hapticgiant experiment contact           the arm hits somebody in its way\n"
+      "  hapticgiant experiment contact           the arm hits a person in its way\n"
       "  hapticgiant experiment inertial --simulation harder\n"
       "  hapticgiant experiment seeds free_space --hands own,stiff --count 16");
   add_paper_experiments(*command, exit_code);

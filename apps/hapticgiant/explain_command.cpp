@@ -115,7 +115,7 @@ int explain_recording(const std::string& file) {
 void add_explain(CLI::App& app, int& exit_code) {
   const auto file = std::make_shared<std::string>();
   CLI::App* command =
-      app.add_subcommand("explain", "Tells in words what happened in a recording, in order.");
+      app.add_subcommand("explain", "Describes what happened in a recording, in order.");
   command->footer("Example:\n  hapticgiant explain recordings/latest.mcap");
   command->add_option("file", *file, "recording, also one that a crash has cut off")
       ->required()

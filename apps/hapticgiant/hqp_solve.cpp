@@ -130,7 +130,7 @@ bool print_times(const Problems& problems, std::size_t first, bool is_warm) {
   return are_settled;
 }
 
-// The problems that are asked for; `first` becomes the index of the first one.
+// The selected problems; `first` becomes the index of the first one.
 Problems read(const HqpSolveArguments& arguments, std::size_t& first) {
   Problems problems = hqp::read_recorded_problems(arguments.file);
   first = 0;

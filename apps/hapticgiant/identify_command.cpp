@@ -50,10 +50,10 @@ void print_estimate(const PayloadEstimate& found) {
   print_out("condition       {:.1f}  (1 = every direction shows alike)\n", found.condition);
 }
 
-void print_comparison(const PayloadEstimate& found, const Payload& told) {
-  if (!(told.mass > 0.0)) return;
-  print_out("device.yaml     {:+.2f} % mass, {:.1f} mm of centre away from what it says\n",
-            100.0 * (found.mass / told.mass - 1.0), 1e3 * (found.com - told.com).norm());
+void print_comparison(const PayloadEstimate& found, const Payload& expected) {
+  if (!(expected.mass > 0.0)) return;
+  print_out("device.yaml     mass {:+.2f} %, centre of mass {:.1f} mm from its values\n",
+            100.0 * (found.mass / expected.mass - 1.0), 1e3 * (found.com - expected.com).norm());
 }
 
 void print_yaml(const PayloadEstimate& found) {
@@ -72,7 +72,7 @@ int identify_payload(const IdentifyArguments& arguments) {
   const std::vector<StaticPose> poses =
       is_simulated ? simulated_poses(device, arguments.poses) : poses_of(arguments.files);
   print_out("{} poses {}\n\n", poses.size(),
-            is_simulated ? "of the simulated " + device.name + ", nobody at the handle"
+            is_simulated ? "of the simulated " + device.name + ", handle not held"
                          : "from " + fmt::format("{}", fmt::join(arguments.files, ", ")));
   const PayloadEstimate found = identification::identify_payload(poses);
   print_estimate(found);

@@ -25,18 +25,18 @@ using identification::JointFriction;
 struct Line {
   const char* key;
   FrictionFigure found;
-  double believed;
+  double nominal;
 };
 
 std::vector<Line> lines_of(const JointFriction& joint) {
   const FrictionEstimate& found = joint.found;
-  const ActuatorModel& believed = joint.believed;
-  return {{"coulomb_friction_Nm", found.coulomb, believed.coulomb_friction},
-          {"viscous_friction_Nms_per_rad", found.viscous, believed.viscous_friction},
-          {"load_friction", found.load, believed.load_friction},
-          {"stiction", found.stiction, believed.stiction},
-          {"stribeck_rad_per_s", found.stribeck_speed, believed.stribeck_speed},
-          {"presliding_rad", found.presliding, believed.presliding}};
+  const ActuatorModel& nominal = joint.nominal;
+  return {{"coulomb_friction_Nm", found.coulomb, nominal.coulomb_friction},
+          {"viscous_friction_Nms_per_rad", found.viscous, nominal.viscous_friction},
+          {"load_friction", found.load, nominal.load_friction},
+          {"stiction", found.stiction, nominal.stiction},
+          {"stribeck_rad_per_s", found.stribeck_speed, nominal.stribeck_speed},
+          {"presliding_rad", found.presliding, nominal.presliding}};
 }
 
 std::string number(double value) { return fmt::format("{:.3g}", value); }
@@ -51,7 +51,7 @@ void print(const JointFriction& joint) {
     print_out("  {:<30}{:>9} {:<12}  device file {}\n", line.key,
               line.found.is_found ? number(line.found.value) : "-",
               line.found.is_found ? fmt::format("+- {}", number(line.found.deviation)) : "",
-              number(line.believed));
+              number(line.nominal));
   }
   for (const std::string& missing : found.missing) print_out("  not found: {}\n", missing);
 }
@@ -87,7 +87,7 @@ nlohmann::ordered_json to_json(const std::vector<JointFriction>& joints) {
         entry["value"] = line.found.value;
         entry["deviation"] = line.found.deviation;
       }
-      entry["device_file"] = line.believed;
+      entry["device_file"] = line.nominal;
     }
     if (found.presliding_elements > 0) joint["presliding_elements"] = found.presliding_elements;
     joint["residual_Nm"] = found.residual;

@@ -133,7 +133,7 @@ class BackgroundOutput::Queue {
     if (texts_.empty() && left_out_ > 0) {
       texts_.push_back(
           {text.file,
-           fmt::format("\n({} texts left out: nobody read them)\n", std::exchange(left_out_, 0)),
+           fmt::format("\n({} texts left out: they were not read)\n", std::exchange(left_out_, 0)),
            BackgroundOutput::Worth::kText});
       waiting_bytes_ += texts_.back().text.size();
     }
@@ -145,7 +145,7 @@ class BackgroundOutput::Queue {
   std::deque<Text> texts_;
   Text under_way_ = {};  // text being written, without its content
   std::size_t waiting_bytes_ = 0;
-  std::uint64_t left_out_ = 0;  // texts, since that was last said
+  std::uint64_t left_out_ = 0;  // texts, since the last report
   bool is_ending_ = false, has_ended_ = false;
 };
 
@@ -194,9 +194,9 @@ int code_after_output(int code) {
   const int error = output_error.load();
   const std::uint64_t lost = lost_texts.load();
   if (error == 0 && lost == 0) return code;
-  const std::string why =
-      error != 0 ? std::strerror(error)
-                 : fmt::format("nobody read {} text{} of it", lost, lost == 1 ? "" : "s");
+  const std::string why = error != 0
+                              ? std::strerror(error)
+                              : fmt::format("{} text{} not read", lost, lost == 1 ? "" : "s");
   // standard error may have the same reader, which does not read
   write_all(STDERR_FILENO, fmt::format("standard output could not be written: {}\n", why),
             Clock::now() + kPatience);

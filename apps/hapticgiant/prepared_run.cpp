@@ -32,7 +32,7 @@ PreparedRun::PreparedRun(const RunArguments& a)
     const start_test::MachineMemory memory = machine_memory(arguments);
     start_test = start_test::check_start_test(memory, scenario.device);
     posture = start_test::check_posture(memory, scenario.device, *connected);
-    // the server may not have heard yet that the session for the posture is over
+    // the server may not know yet that the session for the posture is over
     constexpr double kFarewell = 0.5;  // s
     connected = connect(kFarewell);
   }

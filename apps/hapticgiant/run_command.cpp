@@ -111,7 +111,7 @@ void tell_problems(Observers& observers, const std::string& text) {
   if (!text.empty()) observers.status_line.print(text);
 }
 
-void look_at_recording(Observers& observers, double time_s) {
+void check_recording(Observers& observers, double time_s) {
   const std::string why = observers.recording.news();
   if (!why.empty()) {
     tell(observers, time_s, "recording", "has ended early, the run goes on: " + why);
@@ -130,7 +130,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
     }
     if (any && !observers.is_fast) show(observers, *sample);
     tell_problems(observers, observers.dumps.look_at(runtime.kept_problems()));
-    look_at_recording(observers, sample->record.time_s);
+    check_recording(observers, sample->record.time_s);
     if (is_finished) break;
     if (observers.page != nullptr) {
       observers.page->follow(&runtime, note(observers, *sample));
@@ -156,7 +156,8 @@ runtime::Options runtime_options(const PreparedRun& run, bool goes_on,
   runtime::Options options = scenario::run_options(run.scenario);
   options.stop = &interrupted;
   options.is_fast = arguments.is_fast;
-  if (!arguments.is_fast) options.slow_cycle_us = kSlowCycle * 1e6 / run.scenario.device.model.rate_Hz;
+  if (!arguments.is_fast)
+    options.slow_cycle_us = kSlowCycle * 1e6 / run.scenario.device.model.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
   // a simulated device waits for its controller: late cycles do no harm
   options.tells_late_cycles = !arguments.device_address.empty();
@@ -282,7 +283,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
     tell(observers, 0.0, "start test", run.start_test);
     tell(observers, 0.0, "posture", run.posture);
   } else if (run.remote != nullptr) {
-    print_out("note        the device says that it is a simulation: no start test is asked for\n");
+    print_out("note        the device says that it is a simulation: no start test is required\n");
   }
 
   runtime::Runtime runtime(options, run.cycle, *run.device);

@@ -44,14 +44,17 @@ void add_scenario_options(CLI::App& command, scenario::Options& world) {
   command.add_option("--device", world.device, "device.yaml instead of the scenario's");
   command.add_option("--twin", world.twin,
                      "twin.yaml, or the name of a shipped one, instead of the scenario's");
-  command.add_option("--plant", world.plant, "elastic: all that makes haptics hard; or ideal")
+  command
+      .add_option("--plant", world.plant, "elastic: with springs, friction and delays; or ideal")
       ->check(CLI::IsMember({"elastic", "ideal"}));
   command.add_option("--simulation", world.simulation, kSimulationHelp);
-  command.add_option("--sensors", world.sensors, "real: with all their errors; or ideal")
+  command.add_option("--sensors", world.sensors, "real: with errors and noise; or ideal")
       ->check(CLI::IsMember({"real", "ideal"}));
-  command.add_option("--hand", world.hand, "how hard the simulated hand is made")
+  command.add_option("--hand", world.hand, "stiffness of the simulated hand")
       ->check(CLI::IsMember(names_of(config::kHandPresets)));
-  command.add_option("--seed", world.seed, "of noise and tremor: the same seed, the same run")
+  command
+      .add_option("--seed", world.seed,
+                  "seed of noise and tremor: the same seed gives the same run")
       ->check(whole_number(0.0));
   command.add_option("--step", world.step_s, "largest step of the simulated machine, s")
       ->check(number_that("from 1e-5 to 2e-3",

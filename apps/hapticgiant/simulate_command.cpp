@@ -46,7 +46,7 @@ std::string closing_lines(const udp::SessionReport& report, double rate_Hz) {
                    1e3 * report.mean_answer_s, 1e3 * report.max_answer_s, report.overruns));
   line("link", analysis::link_text(report.link));
   if (!report.other.empty()) {
-    line("others", fmt::format("{} datagrams of somebody else ignored, the first from {}",
+    line("others", fmt::format("{} datagrams of other senders ignored, the first from {}",
                                report.link.from_others, report.other));
   }
   return text;
@@ -70,7 +70,7 @@ int simulate(const SimulateArguments& arguments) {
   print_out(fmt::format("HapticGiant {}  {}, simulated\n", kVersion, scenario.title));
   print_out(fmt::format("address     {}\nstop        Ctrl-C\n", server.address()));
   std::string lost;  // reason why the capture is incomplete
-  const auto look_at_capture = [&] {
+  const auto check_capture = [&] {
     if (!lost.empty()) return;
     lost = server.capture_error();
     if (!lost.empty()) print_error("{}: the capture ended early: {}\n", arguments.capture, lost);
@@ -81,9 +81,9 @@ int simulate(const SimulateArguments& arguments) {
     const udp::SessionReport report = server.serve(device, stop);
     print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.model.rate_Hz),
                           "truth", device.truth_text()));
-    look_at_capture();
+    check_capture();
   }
-  look_at_capture();
+  check_capture();
   return lost.empty() ? 0 : kNotWritten;
 }
 

@@ -71,7 +71,7 @@ int run_tune(const TuneArguments& arguments) {
   }
   const tuning::TuningResult result = tuning::search(
       problem, limits, [](const std::string& what, std::size_t done, std::size_t total) {
-        if (const auto tell = progress_of(what)) tell(done, total);
+        if (const auto report = progress_of(what)) report(done, total);
       });
   const TuneReport report = {.problem = problem,
                              .result = result,

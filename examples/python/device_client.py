@@ -35,7 +35,7 @@ FIELDS = {
 
 
 def read_key(file):
-    """The shared key, which nobody but its owner may read."""
+    """The shared key, which only its owner may read."""
     try:
         with open(file, "rb", opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK)) as stream:
             facts, key = os.fstat(stream.fileno()), stream.read(4097)
@@ -160,16 +160,16 @@ class Client:
         self.socket.connect((host, port))
         self.session = self.number = 0
         self.last = None
-        welcome = self.ask([b"?", 0, 0, 0.0, 1, 0], name)
+        welcome = self.request([b"?", 0, 0, 0.0, 1, 0], name)
         if welcome[1] == 3:  # refused as something else was expected: take the device as it is
-            welcome = self.ask(welcome[3:9], name)
+            welcome = self.request(welcome[3:9], name)
         if welcome[1] != 0:
             raise SystemExit(f"the device refuses: {text(welcome[11])}")
         self.device, (self.n_p, self.n_m, self.rate_Hz, self.interface, self.is_lock_step) = (
             text(welcome[3]), welcome[4:9])
         self.send(READY)
 
-    def ask(self, description, name):
+    def request(self, description, name):
         nonce = random.getrandbits(64)
         self.socket.settimeout(0.1)
         for _ in range(30):
@@ -192,7 +192,7 @@ class Client:
         self.socket.send(encode(kind, self.session, self.number, *values, key=self.key))
 
     def sensors(self, timeout_s=1.0):
-        """The next frame; says the last message again when nothing comes."""
+        """The next frame; repeats the last message when nothing comes."""
         self.socket.settimeout(0.02)
         for _ in range(int(timeout_s / 0.02)):
             try:

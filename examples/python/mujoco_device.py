@@ -24,7 +24,7 @@ from device_client import (COMMAND, GOODBYE, HELLO, READY, SENSORS, WELCOME, dec
 STEP_S = 0.5e-3
 LATENCY_S, CURRENT_LAG_S = 1e-3, 0.5e-3  # from a command's frame to the motors
 TORQUE, LOCK_STEP_TIMEOUT_S, COMMAND_TIMEOUT_S = 2, 5.0, 0.05
-READY_TIMEOUT_S = 5.0  # a client that has said hello and no more keeps others out for as long
+READY_TIMEOUT_S = 5.0  # a client that sends only a hello blocks others for as long
 # rotor inertia, stiffness, damping, Coulomb and viscous friction, peak torque, rad/s with full
 # torque and with none; sizes of joints m1..m6
 SIZES = {

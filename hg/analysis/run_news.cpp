@@ -16,7 +16,7 @@ std::vector<News> RunNews::observe(const Sample& sample) {
   if (record.refusal != Refusal::kNone) {
     news.push_back({"request", std::string(to_string(record.refusal))});
   }
-  if (!std::exchange(is_touched_, record.touch.is_told) && record.touch.is_told) {
+  if (!std::exchange(is_touched_, record.touch.is_reported) && record.touch.is_reported) {
     const int joint = record.touch.joint;
     const std::string where =
         joint < 0 ? "" : " beyond joint " + name_in(names_.joints, joint, "number");

@@ -47,7 +47,7 @@ std::string side_text(LimitState state) {
 std::string_view reaction_text(Stop stop) {
   switch (stop) {
     case Stop::kNone:
-      return "nothing was to be stopped";
+      return "no stop was required";
     case Stop::kSs2:
       return "SS2: brought to rest under control, then drives off";
     case Stop::kSs1:
@@ -204,7 +204,7 @@ void RunStory::add_others(const Sample& sample) {
              record.time_s, record.warning.value);
     }
   }
-  if (record.touch.is_told) {
+  if (record.touch.is_reported) {
     const std::string where =
         record.touch.joint < 0
             ? ""

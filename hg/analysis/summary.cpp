@@ -83,7 +83,7 @@ void Summary::add(const Sample& sample) {
   if (record.touch.torque.size() > 0) {
     feels_touch_ = true;
     max_touch_share_ = std::max(max_touch_share_, record.touch.share);
-    if (record.touch.is_told) touched_s_ += 1.0 / rate_Hz_;
+    if (record.touch.is_reported) touched_s_ += 1.0 / rate_Hz_;
     max_touch_force_ = std::max(max_touch_force_, record.touch.wrench.head<3>().norm());
   }
   max_sync_error_ = std::max(max_sync_error_, record.sync_error);

@@ -18,7 +18,7 @@
 
 namespace hg::analysis {
 
-/// Facts of a run that only the runtime knows.
+/// Facts of a run that only the runtime has.
 struct RunFacts {
   std::string scenario;
   std::string version;

@@ -18,7 +18,7 @@ struct StageTime {
   Distribution us;
 };
 
-/// Timing facts of a run that only the runtime knows.
+/// Timing facts of a run that only the runtime has.
 struct Timing {
   bool is_fast = false;  ///< run without waiting: only overruns, priority 0
   int priority = 0;      ///< SCHED_FIFO priority; 0 = an ordinary thread

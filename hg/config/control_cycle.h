@@ -18,7 +18,7 @@ controller::Cycle make_cycle(const Device& device, const Twin& twin,
                              std::vector<surfaces::Surface> surfaces = {},
                              std::vector<SolverCap> solver_caps = {});
 
-/// The torque loop of a device with elastic joints, as its controller believes it to be.
+/// The torque loop of a device with elastic joints, as modelled by its controller.
 tracking::Loop torque_loop(const Device& device);
 
 /// `count` postures (gantry at 0 first) all over the limits of the joints; a joint without limits

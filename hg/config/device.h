@@ -43,8 +43,8 @@ struct Device {
   Places places;                           ///< places of the keys of the YAML file
 };
 
-/// Sets what follows from law, bounds and control method: whether the law knows the motor torques.
-/// For a scenario, see settle_law() in simulation/scenario.h.
+/// Sets what follows from law, bounds and control method: whether the law models the motor
+/// torques. For a scenario, see settle_law() in simulation/scenario.h.
 void settle_law(Device& device);
 
 /// Throws SetupError where the device cannot be controlled at `rate_Hz`.

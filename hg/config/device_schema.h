@@ -89,8 +89,8 @@ void describe_structure(V& v, DeviceDraft& d) {
       "sensor", [&](auto& child) { describe(child, d.sensor); },
       "force/torque sensor S in the handle frame H");
   v.path("simulation", d.device.simulation_file,
-         "what a simulation of the device needs to know beyond this: its sensors, and how it "
-         "differs from what is said here; without it nothing differs and the sensors are ideal");
+         "of the simulated device: its sensors, and how it differs from this file; without it "
+         "nothing differs and the sensors are ideal");
   v.choice("kinematics", d.device.model.has_closed_form, kKinematics,
            "how the start posture and the gantry's target are found: in closed form or, for any "
            "device, numerically");
@@ -192,7 +192,7 @@ void describe_wrench(V& v, estimation::WrenchConfig& wrench) {
   v.number("angular_low_pass_Hz", wrench.alpha_low_pass_Hz, kNotNegative,
            "first-order low-pass of the gyroscope's differences, 0 = none");
   v.flag("needs_tare", wrench.tare.is_needed,
-         "no arming before the force/torque sensor has been tared, with nobody at the handle");
+         "no arming before the force/torque sensor has been tared, with the handle not held");
   v.number("noise_N", wrench.tare.noise_force, kPositive,
            "rms of a force of the sensor: what varies more is not tared");
   v.number("noise_Nm", wrench.tare.noise_torque, kPositive, "rms of a torque of the sensor");
@@ -284,12 +284,12 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "by how much the handle may get faster than the encoders say, within half a second");
   v.number(
       "tilt_tolerance_rad", monitor.tilt_tolerance, kPositive,
-      "by how much gravity may point elsewhere than the posture says when the device is armed");
+      "largest angle between measured gravity and gravity by the posture when the device is armed");
   v.number("jump_factor", monitor.jump_factor, kFromOne,
            "times what the largest speed allows in a sample, of a measured position");
   v.number("frozen_samples", monitor.frozen_samples, kCount,
            "in a row with the same bits of wrench, inertial unit or a joint torque; 0: these "
-           "sensors have no noise, nobody can tell");
+           "sensors have no noise and are not checked");
   v.number("clock_tolerance", monitor.clock_tolerance, kTolerance,
            "mean error of the device's clock, periods per sample");
   v.number("temperature_max_C", monitor.temperature_max, kPositive, "of a motor");
@@ -310,7 +310,7 @@ void describe(V& v, safety::MonitorConfig& monitor) {
            "within a minute: encoders that drift, drives that creep");
   v.number("gantry_drift_rad", monitor.turn_drift, kPositive, "the same of a revolute axis");
   v.number("safe_speed_m_per_s", monitor.safe_speed, kPositive,
-           "of handle and gantry while nobody holds the handle");
+           "of handle and gantry while the handle is not held");
   v.number("overruns_in_a_row", monitor.overruns_in_a_row, kCount,
            "cycles that may be late one after the other");
   v.number("overruns_per_s", monitor.overruns_per_s, kNotNegative,
@@ -375,13 +375,13 @@ void describe(V& v, rendering::Options& options, std::size_t manipulator_joints)
   v.choice("gantry", options.gantry, kGantries,
            "what moves the gantry: with law gauss its accelerations can be unknowns of the law");
   v.choice("braking", options.braking, kBrakings,
-           "how motors brake before limits: before each by itself, or before all that are near "
-           "together, where law and bounds know the motors");
+           "how motors brake before limits: before each separately, or before all that are near "
+           "together, where law and bounds model the motors");
   v.number("T_C_s", options.T_C, kPositive,
            "bounds paper: time within which virtual joints and frames return, at least a period");
   v.number("solver_budget", options.solver_budget, kCount,
            "active sets after which the solver of a cycle ends with what it has, all limits of the "
-           "device kept; 0: it goes on until its result is proven");
+           "device kept; 0: it continues until its result is proven");
   v.rule(options.solver_budget == std::floor(options.solver_budget), "solver_budget",
          "must be a whole number", model::to_text(options.solver_budget));
   v.number("kP_posture_1_per_s2", options.kP_posture, kNotNegative,
@@ -462,11 +462,11 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       [&](auto& child) {
         child.choice("reaction", d.device.passivity.reaction, kPassivityReactions,
                      "to hand and device shaking each other: nothing, a warning, or "
-                     "more inertia and damping of the twin until they are calm");
+                     "more inertia and damping of the twin until the shaking ends");
         child.number("damping_Ns_per_m", d.device.passivity.damping, kPositive,
-                     "of the handle while it is calmed, besides that of the twin");
+                     "of the handle while shaking is damped, besides that of the twin");
         child.number("least_mass_kg", d.device.passivity.least_mass, kPositive,
-                     "that is felt at the handle while it is calmed");
+                     "that is felt at the handle while shaking is damped");
       },
       "energy and oscillation at the handle, docs/concepts/passivity.md");
   v.group(

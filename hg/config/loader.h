@@ -105,7 +105,7 @@ class Loader {
   /// Whether the keys that follow apply to the current item; the reference page always shows them.
   bool covers(bool applies) const { return applies; }
 
-  /// Reports the keys that no function has asked for, and broken rules. Called last.
+  /// Reports the keys that no function has read, and broken rules. Called last.
   void finish();
 
  private:

@@ -24,8 +24,8 @@ void describe(V& v, Tool& tool) {
   tool.body.T_link_handle = pose_of(handle);
   tool.T_H_S = pose_of(sensor);
   v.flag("dead_man", tool.has_dead_man,
-         "whether the handle has a dead-man switch. Without one nobody notices a hand that lets "
-         "go: the device runs on until it is told to stop");
+         "whether the handle has a dead-man switch. Without one a hand that lets go is not "
+         "detected: the device runs until it is stopped");
 }
 
 }  // namespace hg::config

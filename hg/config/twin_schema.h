@@ -21,7 +21,8 @@ inline constexpr std::array<Choice<Surroundings>, 3> kSurroundings = {
 
 /// Damping and friction of a floating joint, the same in all directions, and its start.
 struct FloatingPart {
-  std::array<double, kFloatingParameters.size()> values{};  ///< as kFloatingParameters
+  std::array<double, kFloatingParameters.size()>
+      values{};  ///< initial values, in the order of kFloatingParameters
   HandPose start;
 };
 

@@ -215,7 +215,7 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
       .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;
   result.refusal = safety::advance(input, supervisor);
-  if (was_fault && supervisor.state != safety::State::kFault) begin_anew();
+  if (was_fault && supervisor.state != safety::State::kFault) reset_controllers();
 
   estimation_.tare(is_new && request == ModeRequest::kTare, !is_moving(supervisor.mode()),
                    state_.estimation);
@@ -245,7 +245,7 @@ Refusal Cycle::refusal_to_arm() const noexcept {
 }
 
 // Resets estimation and control after a fault; keeps what was measured at rest.
-void Cycle::begin_anew() noexcept {
+void Cycle::reset_controllers() noexcept {
   const estimation::TareState tare = state_.estimation.wrench.tare;
   const estimation::InertialCheck& before = state_.estimation.inertial;
   const estimation::InertialCheck inertial = {.bias = before.bias,
@@ -324,7 +324,7 @@ VectorM Cycle::place_reference(Motion motion, const RobotState& robot) noexcept 
   }
   if (!is_moving(motion)) return {};
   const VectorM before = rendering.reference.q_m;
-  if (!rendering_.stay_near(robot, config_.control.error_max, rendering)) return {};
+  if (!rendering_.clamp_reference(robot, config_.control.error_max, rendering)) return {};
   return before - rendering.reference.q_m;
 }
 
@@ -334,7 +334,7 @@ double Cycle::speed_max() const noexcept {
   return is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
 }
 
-// The motion of the gantry that the arm wants, and the range in which the law may lead it.
+// Desired motion of the gantry, and the range in which the law may lead it.
 Cycle::GantryAim Cycle::preposition(Motion motion, const RobotState& robot) noexcept {
   if (!is_moving(motion)) return {};
   const VectorP q_p_target =
@@ -369,7 +369,7 @@ const rendering::LawResult& Cycle::render(Motion motion, bool is_held, const Rob
                                           const GantryAim& gantry) noexcept {
   if (motion == Motion::kNone) return law_;
   const double share = ramp_forces(motion, is_held);
-  const bool is_braked = motion == Motion::kHold || state_.touch.is_told;
+  const bool is_braked = motion == Motion::kHold || state_.touch.is_reported;
   const double ramped_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
   rendering_.step({.robot = robot,
                    .braking_rate = is_braked ? kBrakingRate : ramped_rate,
@@ -393,7 +393,7 @@ PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
   rendering::State& rendering = state_.rendering;
   if (motion == Motion::kHold) {
     state_.passivity = {};
-    rendering.calming = {};
+    rendering.added = {};
   }
   if (motion != Motion::kRender || config_.passivity.reaction == passivity::Reaction::kOff) {
     return {};
@@ -410,8 +410,8 @@ PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
        .speed = twist_E.head<3>().norm(),
        .is_pushed_back = is_pushed_back(law)},
       state_.passivity);
-  const passivity::Calming& calming = state_.passivity.calming;
-  rendering.calming = {calming.damping, calming.inertia};
+  const passivity::AddedImpedance& added = state_.passivity.added;
+  rendering.added = {added.damping, added.inertia};
   const Fault fault = passivity::check(config_.passivity, report, state_.passivity);
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
   return report;
@@ -426,7 +426,7 @@ Motion Cycle::accept(Motion motion, const rendering::LawResult& law) noexcept {
   return Motion::kBrakeJoints;
 }
 
-// Moves reference and twin by one period, and tells the gantry how to move.
+// Moves reference and twin by one period, and determines the motion of the gantry.
 Cycle::Moved Cycle::advance(Motion motion, const RobotState& robot, const GantryAim& gantry,
                             const rendering::LawResult& law) noexcept {
   Moved moved = {.dq_p = VectorP::Zero(state_.dq_p.size())};
@@ -470,7 +470,7 @@ void Cycle::time_stop(Motion motion, const RobotState& robot, const Moved& moved
                           moved.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
                           moved.reference.dq_m.lpNorm<Eigen::Infinity>() < kStandstill &&
                           robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
-  safety::go_on_stopping(is_at_rest, longest_stop_, config_.monitor.stop_time, state_.supervisor);
+  safety::continue_stop(is_at_rest, longest_stop_, config_.monitor.stop_time, state_.supervisor);
 }
 
 // Compares measured and desired values with the thresholds of all rules, and watches the brakes.

@@ -113,9 +113,7 @@ class Cycle {
   const DeviceModel& device() const noexcept { return rendering_.device(); }
 
   /// Time of the next step, s; that of its record. The clock of all that is planned for a run.
-  double time_s() const noexcept {
-    return static_cast<double>(state_.cycle) * device_.dt();
-  }
+  double time_s() const noexcept { return static_cast<double>(state_.cycle) * device_.dt(); }
 
   /// Installs a callback per stage; the default probe does nothing.
   void watch(const StageProbe& probe) noexcept;
@@ -192,7 +190,7 @@ class Cycle {
   // parts of these stages
   Fault check(const SensorFrame& sensors) noexcept;
   Refusal refusal_to_arm() const noexcept;
-  void begin_anew() noexcept;
+  void reset_controllers() noexcept;
   double speed_max() const noexcept;
   double ramp_forces(Motion motion, bool is_held) noexcept;
   Motion accept(Motion motion, const rendering::LawResult& law) noexcept;

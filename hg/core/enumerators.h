@@ -1,4 +1,4 @@
-/// Enumerators of an enum as the compiler knows them, without a second list by hand.
+/// Enumerators of an enum, from the compiler: no second list by hand.
 #pragma once
 
 #include <array>

@@ -1,8 +1,8 @@
 /// Position limits that change at run time without a jump: they move to their new values slowly
 /// enough for bounds R to push the joint along.
 ///
-/// A closing limit can overrun even a viable joint, because the bounds do not know its motion in
-/// advance. With bounds R, f = ddq_rec_factor > 1 and A = ddq_max it gets outside
+/// A closing limit can overrun even a viable joint, because the bounds cannot predict its
+/// motion. With bounds R, f = ddq_rec_factor > 1 and A = ddq_max it gets outside
 /// by at most
 ///   max(v_rec tau_rec, v_rec^2 / (2 A (f - 1))) + v_rec dt
 /// (10.5 mrad with the defaults, 1 kHz and A >= 25 rad/s^2): the lag of the return law, or the way

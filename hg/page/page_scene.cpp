@@ -197,7 +197,7 @@ viewer_server::Choices page_choices(const scenario::Options& options) {
   choices.twins.insert(choices.twins.begin(), {"", "as in the scenario"});
   choices.people.insert(
       choices.people.begin(),
-      {{"", "as in the scenario"}, {"mouse", "Only the mouse"}, {"none", "Nobody"}});
+      {{"", "as in the scenario"}, {"mouse", "Only the mouse"}, {"none", "No person"}});
   for (const auto& law : config::kLaws) {
     choices.laws.push_back({std::string(law.name), title_of(std::string(law.name))});
   }

@@ -259,7 +259,7 @@ std::string RunPage::stop(const Command&, runtime::Runtime* runtime, const Note&
   runtime->request_stop();
   stop_was_asked_ = true;
   has_next_ = false;  // discards the previous choice
-  note("stop", "asked for in the page");
+  note("stop", "requested in the page");
   return {};
 }
 
@@ -274,7 +274,7 @@ std::string RunPage::request_mode(const Command& command, runtime::Runtime* runt
                         runtime->request(ModeRequest::kNone, command.stops) &&
                         runtime->request(named->request, command.stops);
   if (!is_taken) return "too many commands are waiting";
-  note(command.argument, "asked for in the page");
+  note(command.argument, "requested in the page");
   asked_.push_back({command, named->request});
   return {};
 }
@@ -288,7 +288,7 @@ std::string RunPage::set_pace(const Command& command, runtime::Runtime* runtime,
       return {};
     case CommandName::kResume:
       pace.resume();
-      note("resume", "simulated time goes on");
+      note("resume", "simulated time continues");
       return {};
     case CommandName::kStep:
       if (!pace.step(command.value)) {

@@ -8,8 +8,8 @@ constexpr std::uint64_t kPatience = 1000;  // cycles
 // While the latency is unknown, arming is requested for one cycle in kPatience: its refusal reports
 // the cause.
 ModeRequest arm_request(const CycleRecord& record) noexcept {
-  const bool asks = record.is_latency_known || (record.cycle + 1) % kPatience == 0;
-  return asks ? ModeRequest::kArm : ModeRequest::kNone;
+  const bool is_due = record.is_latency_known || (record.cycle + 1) % kPatience == 0;
+  return is_due ? ModeRequest::kArm : ModeRequest::kNone;
 }
 
 ModeRequest ready_request(const CycleRecord& record, bool is_held) noexcept {

@@ -96,7 +96,7 @@ void Runtime::run_cycle() noexcept HG_NONBLOCKING {
   }
   input.hand_target = session_.input().hand_target;
   if (input.change.parameter == Parameter::kNone) parameter_changes_.pop(input.change);
-  look_at_desk(input);
+  read_desk(input);
   session_.step();
   const std::int64_t end_ns = now_ns();
   session_.write();
@@ -219,7 +219,7 @@ void Runtime::operate(bool is_stopping) noexcept {
 }
 
 // Panel of this cycle, and stops of pages: requests made before a stop are dropped.
-void Runtime::look_at_desk(OperatorFrame& input) noexcept {
+void Runtime::read_desk(OperatorFrame& input) noexcept {
   input.panel = script_panel_;
   if (is_reset_pressed_.load(std::memory_order_relaxed)) {
     input.panel.reset = is_reset_pressed_.exchange(false) || input.panel.reset;

@@ -129,7 +129,7 @@ class Runtime {
   void release(CommandFrame& command) noexcept;
   void operate(bool is_stopping) noexcept;
   void play_script(const TimedPanel& due) noexcept;
-  void look_at_desk(OperatorFrame& input) noexcept;
+  void read_desk(OperatorFrame& input) noexcept;
   void prepare_thread() noexcept;
   Schedule new_schedule() const noexcept;
   void wait_for_turn(Schedule& schedule) noexcept;

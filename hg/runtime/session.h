@@ -58,7 +58,7 @@ class Session {
   /// once. A change waits while a planned one is due.
   OperatorFrame& input() noexcept { return next_; }
   /// Data of the last period: sensors, operator input, command, record, and the truth where the
-  /// device knows it.
+  /// device provides it.
   Sample& sample() noexcept { return *sample_; }
   const Sample& sample() const noexcept { return *sample_; }
   const CycleRecord& record() const noexcept { return sample_->record; }

@@ -131,7 +131,7 @@ void place(const config::BystanderInTheWay& bystander, const model::ChainModel& 
   auto* plant = std::get_if<simulator::PlantConfig>(&simulation.plant);
   if (plant == nullptr) {
     throw SetupError(
-        "bystander: only elastic joints can hit somebody, here the drives follow positions: leave "
+        "bystander: only elastic joints can hit a person, here the drives follow positions: leave "
         "it out, or run with --plant elastic");
   }
   plant->bystander = bystander.config;
@@ -191,9 +191,9 @@ simulator::Simulation make_simulation(const config::Scenario& scenario) {
 
 simulator::Simulation make_unheld_simulation(const config::SimulatedDevice& device,
                                              const Start& start) {
-  return simulation_of(
-      device, start,
-      person::Person({.kind = person::PersonKind::kNone}, model::ChainModel::free_body({}), 0, Pose{}));
+  return simulation_of(device, start,
+                       person::Person({.kind = person::PersonKind::kNone},
+                                      model::ChainModel::free_body({}), 0, Pose{}));
 }
 
 std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario) {

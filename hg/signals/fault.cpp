@@ -39,13 +39,13 @@ std::string_view to_string(FaultCode code) noexcept {
     case FaultCode::kMotionUnexplained:
       return "accelerometer and encoders contradict each other";
     case FaultCode::kMotorDeviates:
-      return "motor does not give the torque it is told";
+      return "motor torque differs from its command";
     case FaultCode::kCommandsLost:
       return "no new commands reached the device: lost or held up";
     case FaultCode::kOperatorReleased:
       return "operator released the enabling switch";
     case FaultCode::kScannerField:
-      return "somebody is in the scanner's field";
+      return "a person is in the scanner's field";
     case FaultCode::kSafetyInputsDisagree:
       return "channels of a safety input disagree";
     case FaultCode::kSafeSpeedExceeded:

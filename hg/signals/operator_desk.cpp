@@ -53,7 +53,7 @@ void OperatorDesk::hear(std::uint64_t page, std::int64_t now_ns) noexcept {
 
 void OperatorDesk::leave(std::uint64_t page) noexcept {
   for (std::size_t i = 0; i < kHeldInputs; ++i) {
-    if (owner_[i] == page) let_go(i);
+    if (owner_[i] == page) release(i);
   }
 }
 
@@ -76,7 +76,7 @@ void OperatorDesk::open() noexcept {
 
 void OperatorDesk::look(std::int64_t now_ns, SafetyPanel& panel) noexcept {
   for (std::size_t i = 0; i < kHeldInputs; ++i) {
-    if (is_silent(i, now_ns)) let_go(i);
+    if (is_silent(i, now_ns)) release(i);
   }
   const std::uint32_t bits = bits_.fetch_and(~kUnseenStop);
   const auto is = [bits](std::uint32_t bit) { return (bits & bit) != 0; };
@@ -90,7 +90,7 @@ void OperatorDesk::look(std::int64_t now_ns, SafetyPanel& panel) noexcept {
 }
 
 // Counts a stop only if the input was on.
-void OperatorDesk::let_go(std::size_t input) noexcept {
+void OperatorDesk::release(std::size_t input) noexcept {
   const std::uint32_t is_on = on(static_cast<Input>(input));
   if ((bits_.load() & is_on) == 0 || (bits_.fetch_and(~is_on) & is_on) == 0) return;
   stops_.fetch_add(1);

@@ -92,7 +92,7 @@ class OperatorDesk {
   static constexpr std::uint32_t kStop = 64u;
   static constexpr std::uint32_t kUnseenStop = 128u;  // not yet read by the control thread
 
-  void let_go(std::size_t input) noexcept;
+  void release(std::size_t input) noexcept;
   bool is_silent(std::size_t input, std::int64_t now_ns) const noexcept {
     return now_ns - heard_ns_[input].load() > kPatience_ns;
   }

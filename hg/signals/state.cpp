@@ -61,7 +61,7 @@ std::string_view to_string(TareStatus status) noexcept {
     case TareStatus::kRefusedMoving:
       return "refused: the device moves";
     case TareStatus::kRefusedUnsteady:
-      return "refused: the wrench is not steady, nobody may touch the handle";
+      return "refused: the wrench is not steady, do not touch the handle";
     case TareStatus::kRefusedRunning:
       return "refused: the device runs";
   }
@@ -92,20 +92,20 @@ std::string_view to_string(Refusal refusal) noexcept {
     case Refusal::kOperatorReleased:
       return "not armed: the operator does not hold the enabling switch";
     case Refusal::kNobodyHolds:
-      return "not started: nobody holds the handle";
+      return "not started: the handle is not held";
     case Refusal::kSomebodyHolds:
-      return "not started: somebody holds the handle, let go of it to run without a hand";
+      return "not started: the handle is held, let go of it to run without a hand";
     case Refusal::kNoOverride:
       return "not started: to run without a hand the override key must be turned";
     case Refusal::kFieldOccupied:
-      return "not started: somebody is in the scanner's field";
+      return "not started: a person is in the scanner's field";
     case Refusal::kStillMoving:
       return "not armed: the device still moves";
     case Refusal::kTwinApart:
       return "not armed: the twin cannot be where the handle is; bring the handle back (a remote "
              "device: is it of the same scenario?)";
     case Refusal::kPostureImplausible:
-      return "not armed: the accelerometer says another posture than the encoders; is every joint "
+      return "not armed: accelerometer and encoders give different postures; is every joint "
              "homed?";
   }
   return "unknown";

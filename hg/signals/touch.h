@@ -9,10 +9,10 @@ namespace hg {
 
 /// Detected contact with the arm; see compliance/ in hg/controller/safety.
 struct TouchReport {
-  VectorM torque;        ///< Joint torques of the contact, Nm; empty: detection is inactive
-  double share = 0.0;    ///< Largest ratio of joint torque to its threshold
-  bool is_told = false;  ///< Contact detected: the arm yields
-  int joint = -1;        ///< Most distal joint beyond its threshold: its link is touched; -1 = none
+  VectorM torque;            ///< Joint torques of the contact, Nm; empty: detection is inactive
+  double share = 0.0;        ///< Largest ratio of joint torque to its threshold
+  bool is_reported = false;  ///< Contact detected: the arm yields
+  int joint = -1;  ///< Most distal joint beyond its threshold: its link is touched; -1 = none
   Vector6 wrench = Vector6::Zero();  ///< Equivalent wrench on the handle
 };
 
@@ -20,7 +20,7 @@ template <typename Archive, Is<TouchReport> T>
 void fields(Archive& a, T& touch) {
   a("torque", touch.torque, "joint torques of the contact, Nm; empty: detection is inactive");
   a("share", touch.share, "largest ratio of joint torque to its threshold");
-  a("is_told", touch.is_told, "contact detected: the arm yields");
+  a("is_reported", touch.is_reported, "contact detected: the arm yields");
   a("joint", touch.joint, "most distal joint beyond its threshold; -1 = none");
   a("wrench", touch.wrench, "equivalent wrench on the handle: force N, torque Nm");
 }

@@ -122,7 +122,7 @@ ContactRun play(const config::Scenario& walk, const ContactConfig& config) {
     if (force > 0.0) run.contact += dt;
     if (since < config.settled) run.impulse += dt * force;
     if (since >= config.settled) run.settled_force = std::max(run.settled_force, force);
-    if (record.touch.is_told && run.told < 0.0) run.told = since;
+    if (record.touch.is_reported && run.told < 0.0) run.told = since;
     if (record.mode != Mode::kRunning && run.stopped < 0.0) run.stopped = since;
     if (record.fault.code != FaultCode::kNone) run.fault = record.fault.code;
   }

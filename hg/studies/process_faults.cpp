@@ -48,10 +48,10 @@ constexpr std::uint64_t kUnwritten = 1000;  // samples that a recording may lack
 struct Description {
   ProcessFault fault;
   std::string_view name, what;
-  bool may_die = false;     ///< the controller may end by a signal
-  bool is_recorded = true;  ///< the recording is complete except for its end
-  bool is_told = false;     ///< reported by an exit code other than 0
-  bool is_stop = false;     ///< the device has to stop autonomously: no more commands arrive
+  bool may_die = false;      ///< the controller may end by a signal
+  bool is_recorded = true;   ///< the recording is complete except for its end
+  bool is_reported = false;  ///< reported by an exit code other than 0
+  bool is_stop = false;      ///< the device has to stop autonomously: no more commands arrive
 };
 
 constexpr auto kDescriptions = std::to_array<Description>({
@@ -319,7 +319,7 @@ bool has_done_well(const ProcessCase& result) {
   return result.has_run && !std::isnan(result.rest_s) && result.travel_share <= 1.0 &&
          result.energy <= CampaignConfig{}.energy_bound &&
          (expected.may_die || (result.has_ended && result.exit_code >= 0)) &&
-         (!expected.is_told || result.exit_code != 0) &&
+         (!expected.is_reported || result.exit_code != 0) &&
          (!expected.is_recorded || result.recorded + kUnwritten >= result.periods);
 }
 

@@ -76,7 +76,7 @@ std::string mode_text(const CycleRecord& record) {
     case Mode::kRunning:
       return "running: the hand holds the dead-man switch";
     case Mode::kStopping:
-      return "stopping: asked for, or the hand has let go";
+      return "stopping: requested, or the hand has let go";
     case Mode::kFault:
       return "fault: " + std::string(to_string(record.fault.code));
   }

@@ -62,7 +62,7 @@ def _samples(stream):
 def read_recording(file: str | os.PathLike) -> dict[str, np.ndarray]:
     """Every cycle of an MCAP recording as arrays: the same keys, shapes and types as run().
 
-    Fields that this version does not know are left out; those that the recording does not have are
+    Fields unknown to this version are left out; those that the recording does not have are
     NaN or 0. Raises SetupError where the file is not a recording.
     """
     columns = {name: _Column(like) for name, like in _core.empty_columns().items()}

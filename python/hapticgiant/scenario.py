@@ -37,7 +37,7 @@ def run(scenario: str | os.PathLike | _core.Scenario,
     duration_s: then it is stopped; default: when everything planned has happened.
     Keys are the paths of the fields of a recording, those of the record without "record.":
     "time_s" (n), "twin.q_a" (n, n_a), "robot.w_h" (n, 6), "limits.reaction" (n, limits).
-    Where a cycle has no value, NaN or 0. Raises SetupError. Other threads go on meanwhile.
+    Where a cycle has no value, NaN or 0. Raises SetupError. Other threads run meanwhile.
     """
     if not isinstance(scenario, _core.Scenario):
         scenario = load_scenario(scenario)

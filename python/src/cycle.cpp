@@ -167,11 +167,11 @@ void bind_parts(nb::module_& module) {
           [](const OwnCycle& self, const SensorFrame& sensors) {
             return self.cycle.is_held(sensors);
           },
-          nb::arg("sensors"), "Whether somebody holds the handle: without that nothing runs.")
+          nb::arg("sensors"), "Whether the handle is held; nothing runs otherwise.")
       .def_prop_rw(
           "state", [](const OwnCycle& self) { return self.cycle.state(); },
           [](OwnCycle& self, const controller::State& state) { restore(self.cycle, state); },
-          "copy of what it remembers; assign it to go back");
+          "copy of its memory; assign it to go back");
   nb::class_<OwnDevice>(module, "SimulatedDevice",
                         "The device of a scenario and the person who holds it.")
       .def(nb::init<const Scenario&>(), nb::arg("scenario"))
@@ -189,10 +189,9 @@ void bind_parts(nb::module_& module) {
             self.joints.check(command);
             self.device->write(command);
           },
-          nb::arg("command"), "Lives one period.");
+          nb::arg("command"), "Advances by one period.");
   module.def("next_request", &runtime::next_request, nb::arg("record"), nb::arg("is_held"),
-             nb::arg("is_stopping") = false,
-             "What an operator asks for who wants nothing but to run.");
+             nb::arg("is_stopping") = false, "Request of an operator who only wants to run.");
 }
 
 void bind_session(nb::module_& module) {
@@ -205,12 +204,12 @@ void bind_session(nb::module_& module) {
             self.advance();
             return self.record();
           },
-          "Lives one period; the record is a copy.")
+          "Advances by one period; the record is a copy.")
       .def(
-          "stop", [](Session& self) { self.stop(); }, "From now on the operator asks for a stop.")
+          "stop", [](Session& self) { self.stop(); }, "Requests a stop from now on.")
       .def_prop_ro(
           "is_over", [](Session& self) { return self.is_over(); },
-          "after a fault, or stopped as asked")
+          "after a fault, or after a requested stop")
       .def_prop_ro("sensors", [](Session& self) { return self.sample().sensors; })
       .def_prop_ro("command", [](Session& self) { return self.sample().command; })
       .def_prop_ro("record", [](Session& self) { return self.record(); })

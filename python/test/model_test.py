@@ -18,7 +18,7 @@ class ChainTest(unittest.TestCase):
         self.q, self.dq, self.ddq = self.random.uniform(-1, 1, (3, self.chain.nv))
         self.frame = self.chain.frame_names[-1]
 
-    def test_jacobian_times_speed_is_the_twist_and_the_derivative_of_the_pose(self):
+    def test_jacobian_times_speed_is_the_twist_of_the_pose(self):
         self.chain.update(self.q, self.dq)
         twist = self.chain.twist(self.frame)
         before = self.chain.pose(self.frame)
@@ -108,7 +108,7 @@ class HapticGiant(unittest.TestCase):
         self.assertEqual(status.name, "SOLVED")
         np.testing.assert_allclose(hg.haptic_giant.gantry_target([0.1, -0.2], q_m), q_p, atol=1e-9)
 
-    def test_out_of_reach_is_said(self):
+    def test_out_of_reach_is_reported(self):
         far = hg.Pose([0, 0, 9], hg.haptic_giant.hand_pose([0, 0], [0, 1, 0, 1, 1, 0]).r)
         _, status = hg.haptic_giant.inverse(far, [0, 0])
         self.assertEqual(status.name, "HEIGHT_OUT_OF_REACH")

@@ -104,7 +104,7 @@ class Run(unittest.TestCase):
             with self.assertRaises(hg.SetupError):
                 hg.run("door", duration_s=bad)
 
-    def test_other_threads_go_on_meanwhile(self):
+    def test_other_threads_run_meanwhile(self):
         count = 0
         is_over = threading.Event()
 
@@ -117,7 +117,7 @@ class Run(unittest.TestCase):
         scenario = hg.load_scenario("door")
         thread = threading.Thread(target=work)
         interval = sys.getswitchinterval()
-        sys.setswitchinterval(1000.0)  # s: nobody is made to hand the interpreter over
+        sys.setswitchinterval(1000.0)  # s: no thread has to hand the interpreter over
         try:
             thread.start()
             before = count

@@ -60,18 +60,18 @@ class Check(unittest.TestCase):
         self.assertAlmostEqual(volume, 12.2, delta=0.1)
         self.assertIn("12.23 m^3", first[1])
 
-    def test_json_says_the_same(self):
+    def test_json_has_the_same_content(self):
         file = self.folder / "check.json"
         self.assertEqual(check(DEVICE, "--json", file)[0], 0)
-        told = json.loads(file.read_text())
-        self.assertEqual(told["files"], [{"file": str(DEVICE), "kind": "device"}])
-        self.assertEqual(told["faults"], 0)
-        self.assertEqual(told["warnings"],
-                         sum(f["severity"] == "warning" for f in told["findings"]))
-        for finding in told["findings"]:
+        reported = json.loads(file.read_text())
+        self.assertEqual(reported["files"], [{"file": str(DEVICE), "kind": "device"}])
+        self.assertEqual(reported["faults"], 0)
+        self.assertEqual(reported["warnings"],
+                         sum(f["severity"] == "warning" for f in reported["findings"]))
+        for finding in reported["findings"]:
             self.assertEqual(set(finding), {"severity", "file", "line", "column", "item", "what",
                                             "fix"})
-        sheet = told["datasheets"][0]
+        sheet = reported["datasheets"][0]
         self.assertEqual([joint["name"] for joint in sheet["joints"]][2:],
                          ["m1", "m2", "m3", "m4", "m5", "m6"])
         self.assertIsNone(sheet["joints"][2]["q_min_rad"])
@@ -97,7 +97,7 @@ class Check(unittest.TestCase):
         self.assertIn("2 files: 4 faults", out)
         self.assertIn("docs/reference/configuration.md", out)
 
-    def test_physics_fault_ends_with_2_and_says_how_to_mend_it(self):
+    def test_physics_fault_ends_with_2_and_advises_a_fix(self):
         device = self.changed(DEVICE.parent, "device.yaml", ("kD_rot_1_per_s: 40",
                                                              "kD_rot_1_per_s: 2500"))
         line = 1 + device.read_text().split("kD_rot_1_per_s: 2500")[0].count("\n")
@@ -152,7 +152,7 @@ class Check(unittest.TestCase):
         odd = self.changed(DEVICE.parent, "device.yaml", ("lag_s: 0.040", "lag_s: -1"))
         code, out, _ = check(odd, "--map", self.folder / "map.svg")
         self.assertEqual(code, 2)
-        self.assertIn("drive.lag_s: must be 1e-06 .. 1e+05", out)  # told although there is no map
+        self.assertIn("drive.lag_s: must be 1e-06 .. 1e+05", out)  # reported although there is no map
         code, _, err = check(DEVICE, "--json", self.folder / "none" / "x.json")
         self.assertEqual(code, 2)
         self.assertIn("cannot be written", err)

@@ -50,21 +50,21 @@ class MainJob(TemporaryFolder):
         code, out, err = run("run", "door", "--fast", "--recordings", self.folder / "r",
                              "--summary", summary)
         self.assertEqual((code, err), (0, ""), out)
-        told = json.loads(summary.read_text())
+        reported = json.loads(summary.read_text())
         for key in ("events", "limits", "sync_error", "force", "solver",
                     "acceleration_change_per_cycle", "cycle_time_us", "allocations_in_loop",
                     "version"):
-            self.assertIn(key, told)
-        times = [event["time_s"] for event in told["events"]]
+            self.assertIn(key, reported)
+        times = [event["time_s"] for event in reported["events"]]
         self.assertEqual(times, sorted(times))
         self.assertGreaterEqual(len(times), 6)
-        self.assertEqual(set(told["events"][0]), {"name", "time_s", "what"})
-        self.assertEqual(told["missing_events"], [])
-        self.assertEqual(told["allocations_in_loop"], 0)
-        self.assertEqual(set(told["cycle_time_us"]), {"median", "p99_9", "max", "histogram"})
-        self.assertLess(told["sync_error"]["max_m"], 1e-3)
-        self.assertIn("worst_violation", told["limits"]["hinge"])
-        self.check_recording(pathlib.Path(told["recording"]), told["cycles"])
+        self.assertEqual(set(reported["events"][0]), {"name", "time_s", "what"})
+        self.assertEqual(reported["missing_events"], [])
+        self.assertEqual(reported["allocations_in_loop"], 0)
+        self.assertEqual(set(reported["cycle_time_us"]), {"median", "p99_9", "max", "histogram"})
+        self.assertLess(reported["sync_error"]["max_m"], 1e-3)
+        self.assertIn("worst_violation", reported["limits"]["hinge"])
+        self.check_recording(pathlib.Path(reported["recording"]), reported["cycles"])
 
     def check_recording(self, file, samples):
         with file.open("rb") as stream:
@@ -120,8 +120,8 @@ class MainJob(TemporaryFolder):
         process.send_signal(signal.SIGINT)
         out, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, head + out)
-        told = json.loads((self.folder / "s.json").read_text())
-        with open(told["recording"], "rb") as stream:
+        reported = json.loads((self.folder / "s.json").read_text())
+        with open(reported["recording"], "rb") as stream:
             statistics = make_reader(stream).get_summary().statistics
         self.assertGreater(statistics.message_count, 100)
 
@@ -161,10 +161,10 @@ class MainJob(TemporaryFolder):
             termios.tcflow(secondary, termios.TCOOFF)  # as Ctrl-S
             time.sleep(1.0)
             process.send_signal(number)
-            self.assertEqual(process.wait(timeout=30), 4)  # nobody read the summary
-            told = json.loads(summary.read_text())
-            self.assertEqual(told["dropped_samples"], 0)
-            self.assertLess(told["duration_s"], 60.0)
+            self.assertEqual(process.wait(timeout=30), 4)  # the summary was not read
+            reported = json.loads(summary.read_text())
+            self.assertEqual(reported["dropped_samples"], 0)
+            self.assertLess(reported["duration_s"], 60.0)
 
     def stopped_terminal(self):
         primary, secondary = pty.openpty()
@@ -173,21 +173,21 @@ class MainJob(TemporaryFolder):
         termios.tcflow(secondary, termios.TCOOFF)  # as Ctrl-S
         return secondary
 
-    def test_a_terminal_that_stands_still_holds_up_no_simulated_device(self):
+    def test_a_stopped_terminal_does_not_delay_a_simulated_device(self):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
             free.bind(("127.0.0.1", 0))
             address = "127.0.0.1:%d" % free.getsockname()[1]
         process = subprocess.Popen([PROGRAM, "simulate", "door", "--fast", "--listen", address],
                                    stdout=self.stopped_terminal())
         self.addCleanup(process.kill)
-        for _ in range(2):  # the first one ends with lines that nobody reads
+        for _ in range(2):  # the first one ends with lines that are not read
             code, out, err = run("run", "door", "--fast", "--duration", "1", "--no-recording",
                                  "--device-address", address)
             self.assertEqual((code, err), (1, ""), out)  # events are missing
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=30), 4)  # nobody read its words
+        self.assertEqual(process.wait(timeout=30), 4)  # its output was not read
 
-    def test_a_terminal_that_stands_still_holds_up_no_page_of_a_recording(self):
+    def test_a_stopped_terminal_does_not_delay_a_replay_page(self):
         code, out, _ = run("run", "door", "--fast", "--duration", "1", "--recordings", self.folder)
         self.assertEqual(code, 1, out)
         with socket.socket() as free:
@@ -206,7 +206,7 @@ class MainJob(TemporaryFolder):
         else:
             self.fail("no page")
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=30), 4)  # nobody read its words
+        self.assertEqual(process.wait(timeout=30), 4)  # its output was not read
 
     def test_the_status_line_is_cut_to_the_terminal(self):
         primary, secondary = pty.openpty()
@@ -254,9 +254,9 @@ class MainJob(TemporaryFolder):
         short = ("run", "door", "--user", "none", "--fast", "--duration", "0.5", "--no-recording")
         code, out, err = run(*short, "--summary", "/dev/stdout")
         self.assertEqual((code, err), (0, ""), out)
-        told = json.loads(out[out.index("{"):out.rindex("}") + 1])
-        self.assertTrue(told["fast"])
-        self.assertEqual(told["dropped_samples"], 0)
+        reported = json.loads(out[out.index("{"):out.rindex("}") + 1])
+        self.assertTrue(reported["fast"])
+        self.assertEqual(reported["dropped_samples"], 0)
         self.assertEqual(run(*short, "--summary", "/dev/null")[0], 0)
 
     def test_a_recording_holds_what_the_command_line_changed(self):
@@ -269,8 +269,8 @@ class MainJob(TemporaryFolder):
         self.assertEqual((code, err), (0, ""), out)
         file, = recordings.glob("my_door_*.mcap")
         with file.open("rb") as stream:
-            told = {a.name: a.data.decode() for a in make_reader(stream).iter_attachments()}
-        self.assertEqual(told["arguments"], "--user none\n--rate-hz 2000\n")
+            reported = {a.name: a.data.decode() for a in make_reader(stream).iter_attachments()}
+        self.assertEqual(reported["arguments"], "--user none\n--rate-hz 2000\n")
 
     def test_real_time_without_terminal_ends_when_the_duration_is_over(self):
         begin = time.monotonic()
@@ -304,7 +304,7 @@ class Drafts(TemporaryFolder):
                              "--fast", "--duration", "1", "--no-recording")
         self.assertEqual(code, 0, out + err)
 
-    def test_a_file_that_exists_is_overwritten_only_when_asked(self):
+    def test_a_file_that_exists_is_overwritten_only_on_request(self):
         self.device.write_text("mine")
         code, _, err = run("new", "device", self.folder / "arm.urdf", "-o", self.device)
         self.assertEqual(code, 2)

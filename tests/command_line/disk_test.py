@@ -1,4 +1,4 @@
-"""A run whose disk takes no more: what is told, what is kept.
+"""A run whose disk takes no more: what is reported, what is kept.
 
 Usage: disk_test.py PROGRAM   (from the repository root)
 """
@@ -36,24 +36,24 @@ class FullDisk(TemporaryFolder):
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
         return done.returncode, done.stdout, done.stderr, json.loads(summary.read_text())
 
-    def is_told(self, why, code, out, err, told):
+    def is_reported(self, why, code, out, err, reported):
         self.assertEqual(code, NOT_WRITTEN, out + err)
         told_at, = (n for n, line in enumerate(out.splitlines())
-                    if "has ended early, the run goes on: " + why in line)
+                    if "has ended early, the run continues: " + why in line)
         self.assertTrue(any(" unlocked " in line for line in out.splitlines()[told_at:]), out)
-        self.assertIn(f"{told['unrecorded_samples']} samples of the recording: {why}", out)
+        self.assertIn(f"{reported['unrecorded_samples']} samples of the recording: {why}", out)
         self.assertIn("recording ended early: " + why, err)
-        self.assertTrue(told["recording_error"].startswith(why))
-        self.assertEqual(told["missing_events"], [])
-        code, out, err = run("explain", told["recording"])
+        self.assertTrue(reported["recording_error"].startswith(why))
+        self.assertEqual(reported["missing_events"], [])
+        code, out, err = run("explain", reported["recording"])
         self.assertEqual((code, err), (0, ""))
         kept = int(re.search(r" (\d+) samples; CUT OFF", out)[1])
         # a chunk of 250 samples without its index counts as lost and can be read all the same
-        self.assertIn(kept - told["cycles"] + told["unrecorded_samples"], range(0, 251))
+        self.assertIn(kept - reported["cycles"] + reported["unrecorded_samples"], range(0, 251))
 
     def test_a_limit_of_file_sizes_ends_the_recording_not_the_run(self):
         result = self.play(self.folder / "r", limit=1_000_000)
-        self.is_told("File too large", *result)
+        self.is_reported("File too large", *result)
         self.assertIn("the last seconds could not be written", result[2])
 
     def test_the_last_seconds_go_among_the_temporary_files(self):
@@ -65,7 +65,7 @@ class FullDisk(TemporaryFolder):
         with contextlib.ExitStack() as stack:
             stack.callback(subprocess.run, ["umount", disk], check=True)
             result = self.play(disk)
-            self.is_told("No space left on device", *result)
+            self.is_reported("No space left on device", *result)
             self.assertNotIn("the last seconds could not be written", result[2])
             file, = self.temporary.glob("hapticgiant_*/door_stop_*.mcap")
             self.assertIn(f"explain {file}", result[1])
@@ -90,21 +90,21 @@ class FullDisk(TemporaryFolder):
         out, err = process.communicate(timeout=120)
         return process.returncode, out, err, json.loads(summary.read_text())
 
-    def test_a_recording_that_somebody_deletes_or_cuts_off_is_lost(self):
+    def test_a_deleted_or_truncated_recording_is_lost(self):
         for harm, why, named in (
                 (pathlib.Path.unlink, "the file was deleted, moved or replaced", "none"),
                 (lambda file: os.truncate(file, 3000), "the file was changed: it had", ".partial.mcap"),
                 (lambda file: shutil.rmtree(file.parent), "the file was deleted", "none")):
-            code, out, err, told = self.harm(harm)
+            code, out, err, reported = self.harm(harm)
             self.assertEqual(code, NOT_WRITTEN, out + err)
-            self.assertIn("has ended early, the run goes on: " + why, out)
+            self.assertIn("has ended early, the run continues: " + why, out)
             self.assertRegex(out, rf"recording +(\S+{named}|{named})\n")
-            self.assertIn(f"{told['cycles']} samples of the recording: {why}", out)
-            self.assertEqual(told["unrecorded_samples"], told["cycles"])
+            self.assertIn(f"{reported['cycles']} samples of the recording: {why}", out)
+            self.assertEqual(reported["unrecorded_samples"], reported["cycles"])
             kept = re.search(r"explain (\S+)", out)[1]  # the last seconds
             code, out, err = run("explain", kept)
             self.assertEqual((code, err), (0, ""))
-            self.assertIn(f" {told['cycles']} samples\n", out)
+            self.assertIn(f" {reported['cycles']} samples\n", out)
             shutil.rmtree(self.folder / "r", ignore_errors=True)
 
     def test_what_has_the_name_of_a_recording_or_of_the_link_stays(self):
@@ -129,7 +129,7 @@ class FullDisk(TemporaryFolder):
         self.assertEqual((code, err), (0, ""))
         self.assertNotIn("CUT OFF", out)
 
-    def test_the_page_is_told_when_it_happens(self):
+    def test_the_page_gets_the_event_when_it_happens(self):
         shutil.copytree(MODELS, self.folder / "models")  # the page is looked for beside models
         (self.folder / "viewer/dist").mkdir(parents=True)
         (self.folder / "viewer/dist/index.html").write_text("the page")
@@ -144,7 +144,7 @@ class FullDisk(TemporaryFolder):
             page = Page(link[0])
             self.addCleanup(page.close)
             event = page.next("event", lambda event: event["name"] == "recording")
-            self.assertIn("has ended early, the run goes on: File too large", json.dumps(event))
+            self.assertIn("has ended early, the run continues: File too large", json.dumps(event))
             process.send_signal(signal.SIGINT)
             process.communicate(timeout=60)
             self.assertEqual(process.returncode, NOT_WRITTEN)
@@ -152,7 +152,7 @@ class FullDisk(TemporaryFolder):
             process.kill()
             process.communicate()
 
-    def test_a_summary_that_cannot_be_written_takes_nothing_else_along(self):
+    def test_a_summary_that_cannot_be_written_affects_nothing_else(self):
         code, out, err = run("run", "door", "--fast", "--no-recording", "--summary", "/dev/full")
         self.assertEqual(code, NOT_WRITTEN, out)
         self.assertEqual(err, "/dev/full: could not be written\n")

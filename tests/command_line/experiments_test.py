@@ -32,17 +32,17 @@ class Experiments(TemporaryFolder):
     def events(self, name):
         code, out, err = run("experiment", name, "--out", self.folder, timeout=300)
         self.assertEqual((code, err), (0, ""), out)
-        told = read(self.folder / name / "events.json")
-        self.assertEqual(told["experiment"], name)
-        for event in told["events"]:
+        reported = read(self.folder / name / "events.json")
+        self.assertEqual(reported["experiment"], name)
+        for event in reported["events"]:
             self.assertTrue(event["is_as_expected"], event)
             self.assertTrue(event["condition"] and event["all_of"], event)
             if "expected" in event:
                 self.assertLessEqual(event["expected"]["from_s"], event["found_s"])
                 self.assertGreaterEqual(event["expected"]["to_s"], event["found_s"])
-        times = [event["found_s"] for event in told["events"]]
+        times = [event["found_s"] for event in reported["events"]]
         self.assertEqual(times, sorted(times))
-        return told["events"]
+        return reported["events"]
 
     def results(self, name):
         return read(self.folder / name / "results.json")
@@ -61,12 +61,12 @@ class Experiments(TemporaryFolder):
 
     def test_path_reaches_six_checkpoints_within_5_cm(self):
         self.assertEqual(len(self.events("path")), 6)
-        told = {entry["what"]: entry["ours_simulated"] for entry in
+        reported = {entry["what"]: entry["ours_simulated"] for entry in
                 self.results("path")["statements"]}
         for number in range(1, 7):
-            distance = float(re.match(r"within ([\d.]+) cm", told[f"checkpoint {number}"])[1])
+            distance = float(re.match(r"within ([\d.]+) cm", reported[f"checkpoint {number}"])[1])
             self.assertLessEqual(distance, 5.0)
-        self.assertRegex(told["from the first to the last"], r"[\d.]+ s, [\d.]+ m")
+        self.assertRegex(reported["from the first to the last"], r"[\d.]+ s, [\d.]+ m")
 
     def test_two_runs_write_the_same_files(self):
         for name in ("one", "two"):
@@ -149,7 +149,7 @@ class Experiments(TemporaryFolder):
         self.assertEqual(run("experiment", "door", "--duration", "-1")[0], 2)
         self.assertEqual(run("experiment", "timing", "--rates", "50")[0], 2)
 
-    def test_units_on_the_links_know_more_than_encoders_and_one_may_die(self):
+    def test_link_units_improve_on_encoders_and_one_may_fail(self):
         file = self.folder / "inertial.json"
         code, out, err = run("experiment", "inertial", "walk", "--seeds", 1, "--json", file,
                              timeout=300)
@@ -157,10 +157,10 @@ class Experiments(TemporaryFolder):
         self.assertIn("encoders and units", out)
         runs = {one["units"]: one for one in read(file)["runs"]}
         for name in ("all", "all, one dies", "arm", "last link"):
-            told = runs[name]
+            reported = runs[name]
             for what in ("joint_speed", "joint_acceleration"):
-                self.assertLess(told["inertial"][what], 0.8 * told["reference"][what], name)
-            self.assertEqual(told["least_trust"], 0.0 if "dies" in name else 1.0)
+                self.assertLess(reported["inertial"][what], 0.8 * reported["reference"][what], name)
+            self.assertEqual(reported["least_trust"], 0.0 if "dies" in name else 1.0)
         self.assertLess(runs["all, one dies"]["largest_change"],
                         1.2 * runs["all"]["largest_change"])
         self.assertEqual(run("experiment", "inertial", "walkk")[0], 2)
@@ -201,7 +201,7 @@ class Recordings(TemporaryFolder):
         self.assertIn(code, (0, 1), out + err)
         return (self.folder / name / "latest.mcap").resolve()
 
-    def test_compare_tells_what_changed(self):
+    def test_compare_lists_what_changed(self):
         one = self.record("one", "door", "--duration", 6)
         two = self.record("two", "door", "--duration", 6, "--law", "paper", "--seed", 2)
         code, out, err = run("compare", one, two)
@@ -221,7 +221,7 @@ class Recordings(TemporaryFolder):
             self.assertEqual((code, err), (0, ""), out)
             self.assertRegex(out, r"run again   \d+ cycles, the same bit for bit")
 
-    def test_a_recording_of_any_scenario_says_all_about_it(self):
+    def test_a_recording_of_any_scenario_is_complete(self):
         for scenario in sorted(pathlib.Path("models/scenarios").glob("*.yaml")):
             file = self.record(scenario.stem, scenario, "--duration", 0.8)
             code, out, err = run("replay", file)

@@ -1,4 +1,4 @@
-"""Names on the command line that are no files, or somebody else's.
+"""Names on the command line that are no files, or files of another user.
 
 Usage: files_test.py PROGRAM   (from the repository root)
 """

@@ -118,7 +118,7 @@ class Haptify(TemporaryFolder):
         self.assertEqual(len(rows), len(values))
         return rows, dict(zip(rows, values.values()))
 
-    def test_goals_are_said_at_their_worst(self):
+    def test_goals_are_reported_at_their_worst(self):
         folder, out = self.measure("goals", "--goals")
         rows, values = self.read_goals(folder)
         report = (folder / "goals.md").read_text()

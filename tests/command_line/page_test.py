@@ -80,10 +80,10 @@ class PageTest(TemporaryFolder):
         return answer["reason"]
 
     def resting_time(self, page):
-        """Of a paused run whose last cycle, begun before the pause, has been seen."""
+        """Of a paused run whose last cycle, started before the pause, has been seen."""
         times, speed = [], 0.5
         while len(times) < 5 or len(set(times[-5:])) > 1:
-            speed = 1.25 - speed  # a change is told with the newest cycle
+            speed = 1.25 - speed  # a change is reported with the newest cycle
             self.accept(page, "speed", "", speed)
             frame = page.next("frame", lambda frame: frame["run_state"]["speed"] == speed)
             self.assertTrue(frame["run_state"]["is_paused"])
@@ -276,7 +276,7 @@ class PageTest(TemporaryFolder):
 
     @contextlib.contextmanager
     def running_alone(self):
-        """A door with nobody at it that runs alone, the page that has turned the key, and what
+        """A door without a user that runs alone, the page that has turned the key, and what
         makes that page silent."""
         models = self.folder / "models"
         script = (models / "scripts/door.yaml").read_text()
@@ -411,7 +411,7 @@ class PageTest(TemporaryFolder):
         os.close(secondary)
         return process, link[1].decode()
 
-    def test_a_terminal_that_stands_still_does_not_stop_the_stops_of_the_page(self):
+    def test_a_stopped_terminal_does_not_block_stops_of_the_page(self):
         process, link = self.at_terminal("--no-browser", is_read=False)
         page = Page(link)
         self.addCleanup(page.close)
@@ -425,7 +425,7 @@ class PageTest(TemporaryFolder):
         process.wait(timeout=30)
 
     def open_at_terminal(self, *options, **environment):
-        """The link that the program prints there, and the one that a browser is asked to open."""
+        """The link that the program prints there, and the one that a browser is made to open."""
         opened = self.folder / "opened"
         browser = self.folder / "bin/xdg-open"
         browser.parent.mkdir(exist_ok=True)

@@ -17,22 +17,22 @@ from program import MODELS, PROGRAM, TemporaryFolder, run
 
 
 class Doctor(TemporaryFolder):
-    def test_says_line_by_line_what_is_and_writes_it_as_json(self):
+    def test_prints_line_by_line_and_writes_the_same_as_json(self):
         file = self.folder / "doctor.json"
         code, out, err = run("doctor", "--seconds", "0.1", "--json", file)
-        told = json.loads(file.read_text())
-        self.assertEqual((code, err), (told["exit_code"], ""))
+        reported = json.loads(file.read_text())
+        self.assertEqual((code, err), (reported["exit_code"], ""))
         self.assertIn(code, (0, 1))
-        items = [line["item"] for line in told["lines"]]
+        items = [line["item"] for line in reported["lines"]]
         for item in ("kernel", "priority", "memory", "processors", "clock", "1 kHz", "10 kHz"):
             self.assertIn(item, items)
             self.assertIn(f" {item} ", out)
-        is_bad = any(line["level"] == "bad" for line in told["lines"])
+        is_bad = any(line["level"] == "bad" for line in reported["lines"])
         self.assertEqual(code, 1 if is_bad else 0)
-        for line in told["lines"]:
+        for line in reported["lines"]:
             self.assertEqual(bool(line["fix"]), line["level"] != "ok", line)
-        self.assertEqual(len(told["jitter"]), 4)
-        for jitter in told["jitter"]:
+        self.assertEqual(len(reported["jitter"]), 4)
+        for jitter in reported["jitter"]:
             counted = sum(bin["count"] for bin in jitter["late_us"]["histogram"])
             self.assertEqual(counted, round(0.1 * jitter["rate_Hz"]))
 
@@ -44,27 +44,27 @@ class Doctor(TemporaryFolder):
 
 
 class FlightRecorder(TemporaryFolder):
-    def spoilt(self, what, scenario="door"):
+    def faulty(self, what, scenario="door"):
         """A scenario in which something happens at 3 s."""
         text = (MODELS / "scenarios" / f"{scenario}.yaml").read_text()
         text = text.replace("../", f"{MODELS}/")
         head = text[: text.index("events:")]
-        file = self.folder / "spoilt.yaml"
+        file = self.folder / "faulty.yaml"
         file.write_text(head + what)
         return file
 
     def play(self, *options, what="faults:\n  - {at_s: 3.0, fault: emergency_stop}\n",
              scenario="door"):
-        code, out, err = run("run", self.spoilt(what, scenario), "--fast", "--no-viewer", "--recordings",
+        code, out, err = run("run", self.faulty(what, scenario), "--fast", "--no-viewer", "--recordings",
                              self.folder / "new", *options)
         self.assertEqual(err, "")
-        return code, out, sorted(self.folder.glob("new/spoilt_*.mcap"))
+        return code, out, sorted(self.folder.glob("new/faulty_*.mcap"))
 
     def test_a_fault_is_kept_and_explained_although_nothing_is_recorded(self):
         code, out, files = self.play("--no-recording")
         self.assertEqual(code, 3)
         self.assertEqual(len(files), 1)
-        self.assertTrue(files[0].name.startswith("spoilt_fault102_"))
+        self.assertTrue(files[0].name.startswith("faulty_fault102_"))
         self.assertIn(f"explain {files[0]}", out)
 
         code, out, err = run("explain", files[0])
@@ -176,21 +176,21 @@ class Damaged(TemporaryFolder):
         return [(c.chunk_start_offset, c.chunk_length) for c in summary.chunk_indexes
                 if topic in c.message_index_offsets]
 
-    def test_a_damaged_chunk_is_left_out_and_named_by_all_that_read_recordings(self):
+    def test_a_damaged_chunk_is_left_out_and_named_by_every_reader(self):
         chunks = self.chunks()
         self.assertEqual(len(chunks), 13)  # of 250 samples, 3 s and the cycles of the stop
         for number in (0, 5):
             start, length = chunks[number]
-            # One bit alone may tell the decompressor of another copy of the same bytes: no damage.
+            # A changed bit may make the decompressor copy the same bytes from elsewhere: no damage.
             file = self.flipped(start + length // 2, 32)
-            told = (f"DAMAGED     chunk at byte {start}: 250 samples from {number * 0.25:.3f} to "
+            reported = (f"DAMAGED     chunk at byte {start}: 250 samples from {number * 0.25:.3f} to "
                     f"{number * 0.25 + 0.249:.3f} s are lost")
             for command, expected in ((("explain", file), 0), (("compare", self.file, file), 1),
                                       (("replay", file), 1),
                                       (("plot", file, "--out", self.folder / "figures"), 0)):
                 code, out, err = run(*command)
                 self.assertEqual((code, err), (expected, ""), (command, out))
-                self.assertIn(told, out)
+                self.assertIn(reported, out)
                 if command[0] == "replay" and number > 0:
                     self.assertIn("1250 cycles are the same", out)
 
@@ -208,7 +208,7 @@ class Damaged(TemporaryFolder):
 
 
 class Contact(TemporaryFolder):
-    def test_what_begins_to_touch_the_arm_is_told_once(self):
+    def test_a_new_contact_of_the_arm_is_reported_once(self):
         models = self.folder / "models"
         shutil.copytree(MODELS, models)
         with open(models / "haptic_giant" / "device.yaml", "a") as device:
@@ -219,14 +219,14 @@ class Contact(TemporaryFolder):
                         "fault: torque_sensor_offset, of: m2, magnitude: 25}\n")
         code, out, err = run("run", walk, "--fast", "--no-viewer", "--no-recording")
         self.assertEqual((code, err), (0, ""), out)
-        told = [line for line in out.splitlines() if "something touches the arm" in line]
-        self.assertEqual(len(told), 1, out)
-        self.assertRegex(told[0], r"3\.00\d s  contact +something touches the arm beyond joint m2: "
+        reported = [line for line in out.splitlines() if "something touches the arm" in line]
+        self.assertEqual(len(reported), 1, out)
+        self.assertRegex(reported[0], r"3\.00\d s  contact +something touches the arm beyond joint m2: "
                                   "it gives way")
 
 
 class Signals(TemporaryFolder):
-    def test_those_of_a_terminal_end_a_run_as_ctrl_c_does_and_those_for_users_nothing(self):
+    def test_signals_of_a_terminal_end_a_run_and_user_signals_do_not(self):
         for number in (signal.SIGQUIT, signal.SIGHUP, signal.SIGTERM):
             folder = self.folder / number.name
             process = subprocess.Popen(
@@ -256,7 +256,7 @@ class Stack(TemporaryFolder):
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, kilobytes))
         return done.returncode, done.stdout, done.stderr
 
-    def test_a_small_limit_is_raised_or_told(self):
+    def test_a_small_limit_is_raised_or_reported(self):
         for soft, hard in ((64, -1), (64, 2048), (2048, 2048), (512, 8192)):
             code, out, err = self.play(soft, hard)
             self.assertEqual((code, err), (0, ""), (soft, hard, out))
@@ -274,16 +274,16 @@ class Priority(TemporaryFolder):
         self.assertEqual(err, "")
         return json.loads(file.read_text()), out
 
-    def test_an_ordinary_thread_is_asked_for_and_told(self):
+    def test_an_ordinary_thread_is_requested_and_reported(self):
         cpu = min(os.sched_getaffinity(0))
-        told, out = self.summary("--priority", "0", "--cpu", str(cpu))
-        self.assertEqual((told["real_time"], told["cpu"]), (False, cpu))
+        reported, out = self.summary("--priority", "0", "--cpu", str(cpu))
+        self.assertEqual((reported["real_time"], reported["cpu"]), (False, cpu))
         self.assertIn("priority     normal", out)
         self.assertIn("wake-up", out)
         self.assertIn("stages", out)
-        bins = told["wake_up_us"]["histogram"]
-        self.assertEqual(sum(bin["count"] for bin in bins), told["cycles"] - 1)
-        self.assertIn("solver", told["stage_time_us"])
+        bins = reported["wake_up_us"]["histogram"]
+        self.assertEqual(sum(bin["count"] for bin in bins), reported["cycles"] - 1)
+        self.assertIn("solver", reported["stage_time_us"])
 
 
 if __name__ == "__main__":

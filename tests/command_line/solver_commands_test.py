@@ -31,27 +31,27 @@ class Bench(TemporaryFolder):
 
     def test_a_quick_run_of_the_door_fills_every_table_and_figure(self):
         self.out = self.folder / "new" / "results"
-        told = self.folder / "bench.json"
-        code, out, err = run("bench", "door", "--quick", "--json", told, "--out", self.out)
+        reported = self.folder / "bench.json"
+        code, out, err = run("bench", "door", "--quick", "--json", reported, "--out", self.out)
         self.assertEqual((code, err), (0, ""), out)
         self.assertIn("--quick: only the first 500 problems of each set", out)
         self.assertIn("--quick: only the first 2000 cycles", out)
-        told = json.loads(told.read_text())
+        reported = json.loads(reported.read_text())
         self.assertEqual(out, (self.out / "README.md").read_text())
 
         # both laws play the scenario to its end
-        self.assertEqual([(r["law"], r["bounds"]) for r in told["runs"]],
+        self.assertEqual([(r["law"], r["bounds"]) for r in reported["runs"]],
                          [("gauss", "recoverable"), ("paper", "recoverable"),
                           ("gauss", "paper"), ("paper", "paper")])
-        for played in told["runs"]:
+        for played in reported["runs"]:
             self.assertEqual(played["missing_events"], [])
             self.assertGreater(played["cycles"], 10000)
         self.assertEqual([r["law"] for r in self.rows("laws")],
-                         [r["law"] for r in told["runs"]])
+                         [r["law"] for r in reported["runs"]])
 
         # the solver: recorded problems and reference data, ours without a mistake
         solver = self.rows("solver")
-        self.assertEqual(len(solver), len(told["solver"]))
+        self.assertEqual(len(solver), len(reported["solver"]))
         names = {row["set"] for row in solver}
         self.assertLess({*self.SETS, "exc_two"}, names)
         for row in solver:
@@ -142,12 +142,12 @@ class KeptProblems(TemporaryFolder):
         self.assertEqual(err, "")
         return out
 
-    def test_are_written_told_and_reproduced(self):
+    def test_are_written_reported_and_reproduced(self):
         out = self.play("--slow-solve", 1)
         self.assertEqual(out.count("to look at it:"), 1)
         command = re.search(r"to look at it:\n  (\S+ hqp solve \S.* --explain)\n", out)[1]
-        told = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
-        self.assertIn("problem 0, Door, ", told.stdout)
+        reported = subprocess.run(command, shell=True, capture_output=True, text=True, check=True)
+        self.assertIn("problem 0, Door, ", reported.stdout)
         stem = re.search(r"\n  recording +(.*)\.mcap\n", out)[1]
         self.assertRegex(out, r"\n  problems     in 1\d{3} cycles .*, 5 written: "
                          + re.escape(stem) + r"_hqp_\*\.hqp\n")

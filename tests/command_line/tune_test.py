@@ -19,11 +19,11 @@ class Tune(TemporaryFolder):
         device = self.folder / "haptic_giant"
         shutil.copytree(MODELS / "haptic_giant", device)
         out = self.folder / "out"
-        code, told, err = run("tune", device / "device.yaml", "--postures", 1, "--out", out,
+        code, reported, err = run("tune", device / "device.yaml", "--postures", 1, "--out", out,
                               timeout=900)
-        self.assertEqual((code, err), (0, ""), told)
-        self.assertRegex(told, r"proven +(yes|NO) +yes\n")
-        lines = told[told.index("for device.yaml:\n") + 17:told.index("\nreport ")]
+        self.assertEqual((code, err), (0, ""), reported)
+        self.assertRegex(reported, r"proven +(yes|NO) +yes\n")
+        lines = reported[reported.index("for device.yaml:\n") + 17:reported.index("\nreport ")]
         self.assertEqual(re.findall(r"^(\w+):$", lines, re.M), ["estimation", "control"])
         found = {key: float(value) for key, value in re.findall(r"^  (\w+): (\S+)", lines, re.M)}
 
@@ -33,11 +33,11 @@ class Tune(TemporaryFolder):
                 text = text.replace("\ncontrol:\n", f"\ncontrol:\n  {key}: {value}\n")
             text = re.sub(rf"^(  {key}:) [^ \n]+", rf"\1 {value}", text, flags=re.M)
         (device / "device.yaml").write_text(text)
-        code, told, err = run("check", device / "device.yaml")
-        self.assertEqual(code, 0, told + err)
-        code, told, err = run("tune", device / "device.yaml", "--postures", 1, "--check")
-        self.assertEqual((code, err), (0, ""), told)
-        self.assertIn("holds in 1 of 1 postures", told)
+        code, reported, err = run("check", device / "device.yaml")
+        self.assertEqual(code, 0, reported + err)
+        code, reported, err = run("tune", device / "device.yaml", "--postures", 1, "--check")
+        self.assertEqual((code, err), (0, ""), reported)
+        self.assertIn("holds in 1 of 1 postures", reported)
 
         with open(out / "front.csv", newline="") as file:
             rows = list(csv.DictReader(file, strict=True))
@@ -76,15 +76,15 @@ class Tune(TemporaryFolder):
             text = re.sub(rf"^{section}:\n(?:[ ].*\n|\n)*", "", text, flags=re.M)
         (device / "device.yaml").write_text(text)
         cases = [
-            ((device / "device.yaml",), "its drives follow positions by themselves"),
+            ((device / "device.yaml",), "its drives follow positions on their own"),
             (("devcie.yaml",), "devcie.yaml: no such file"),
             (("--vibration", "-1"), "--vibration"),
             (("--mass", "nan"), "--mass"),
             (("--postures", "0"), "--postures"),
         ]
         for arguments, message in cases:
-            code, told, err = run("tune", *arguments, "--out", self.folder / "none")
-            self.assertEqual(code, 2, (arguments, told, err))
+            code, reported, err = run("tune", *arguments, "--out", self.folder / "none")
+            self.assertEqual(code, 2, (arguments, reported, err))
             self.assertIn(message, err, arguments)
             self.assertFalse((self.folder / "none").exists(), arguments)
 

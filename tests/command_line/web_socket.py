@@ -28,7 +28,7 @@ class Page:
         head = self.read_until(b"\r\n\r\n")
         assert head.startswith(b"HTTP/1.1 101"), head
         self.last_id = 0
-        self.skipped = []  # messages other than frames that nobody has asked for yet
+        self.skipped = []  # messages other than frames that were not requested yet
         self.sending = threading.Lock()
         self.number = self.next("welcome")["page"]
         self.sequence = 0  # of the last heartbeat

@@ -17,7 +17,7 @@ TRAP = "import pathlib; pathlib.Path({!r}).write_text('run')\n"
 
 
 class WorkingDirectory(TemporaryFolder):
-    """A folder of somebody else: models that may be used, and code that may not."""
+    """A folder of another user: models that may be used, and code that may not."""
 
     def setUp(self):
         super().setUp()

@@ -141,7 +141,7 @@ std::string start_message(const config::Scenario& scenario) {
   return "no error";
 }
 
-TEST(Start, OutOfReachSaysHowFarAndWhatToDo) {
+TEST(Start, OutOfReachReportsHowFarAndWhatToDo) {
   const std::string message =
       start_message(scenario_of("ur5", {{"{x_m: 0.56, y_m: 0.30", "{x_m: 2.0, y_m: 0.30"}}));
   EXPECT_NE(message.find("cannot hold its handle at (1.94, "), std::string::npos) << message;
@@ -165,7 +165,7 @@ TEST(Start, ChoosesAPostureThatTheSumsOfJointsPermit) {
   EXPECT_LE(start.q_m[2], -0.2);
 }
 
-TEST(Start, OutsideABoxSaysWhichAndHowFar) {
+TEST(Start, OutsideABoxReportsWhichAndHowFar) {
   const std::string message = start_message(
       scenario_of("ur5", {{"z: {q_min_m: 0.05, q_max_m: 0.8}", "z: {q_max_m: 0.3}"}}));
   EXPECT_NE(message.find("at its start hand z of the device would be at 0.350, outside -inf .. "

@@ -60,7 +60,7 @@ void commands(Bytes bytes) {
   // the same bytes as parts of a request
   const Listener listener{.address = "127.0.0.1", .port = 8080};
   const bool is_own = is_own_host(text, listener);
-  require(!is_own || text == "127.0.0.1:8080" || text == "localhost:8080", "somebody else's host");
+  require(!is_own || text == "127.0.0.1:8080" || text == "localhost:8080", "another host");
   is_own_origin(text, listener);
   bearer_token(text);
   protocol_token(text);

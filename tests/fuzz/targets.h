@@ -25,7 +25,7 @@ void config(Bytes bytes);
 /// A URDF: refused with its name, or a chain whose kinematics can be computed.
 void urdf(Bytes bytes);
 
-/// A datagram, its checksum mended where the first byte is odd: refused, or decoded, and what is
+/// A datagram, its checksum corrected where the first byte is odd: refused, or decoded, and what is
 /// encoded from that is decoded to the same again.
 void protocol(Bytes bytes);
 

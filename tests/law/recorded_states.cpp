@@ -11,7 +11,7 @@ namespace {
 
 const std::string kEnding = ".states.jsonl.gz";
 
-// JSON knows no infinity, the recordings do
+// JSON has no infinity, the recordings do
 nlohmann::json parse(std::string line) {
   const std::string word = "Infinity";
   for (std::size_t at = line.find(word); at != std::string::npos; at = line.find(word, at)) {

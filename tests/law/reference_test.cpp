@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(, RecordedStates, testing::ValuesIn(recording_names()),
 // closed stop, with dq = -sqrt(2 ddq_max q): what bounds B of level 8 allow a slammed door to have.
 //
 // (31) changes the problem of the same state without a lock in three rows and no others, because
-// neither (11), (12) nor (20) knows of locks:
+// neither (11), (12) nor (20) contains locks:
 //   levels 6 and 8, hinge  lb = ub = clip(-dq / dt, +-ddq_max), from tests/reference/README.md: of
 //   the
 //                          accelerations that the rating permits the one that leaves the least

@@ -2,7 +2,7 @@
 
     mujoco_device_test.py BUILD PROGRAM SCENARIO [RATE_HZ ...]
 
-At 1 and 2 kHz unless told otherwise. The package hapticgiant is put into the build folder first.
+At 1 and 2 kHz by default. The package hapticgiant is put into the build folder first.
 Exits with 77, which CTest takes for skipped, where MuJoCo is missing
 (pip install -r tools/requirements-test.txt).
 """

@@ -95,7 +95,7 @@ class Commands(unittest.TestCase):
             self.assertRegex(said, r"link +\d+ sent, \d+ received")
             self.assertRegex(said, r"truth +joint limits .*; force of the user at most \d")
 
-    def test_a_device_whose_sensors_have_no_noise_against_its_description_is_noticed(self):
+    def test_sensors_without_their_described_noise_are_noticed(self):
         with Server("free_space", "--fast", "--sensors", "ideal") as server:
             result = run("free_space", "--fast", "--device-address", server.address)
             self.assertEqual(result.returncode, 3)
@@ -108,7 +108,7 @@ class Commands(unittest.TestCase):
         self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
         self.assertIn("not armed: the twin cannot be where the handle is", result.stdout)
 
-    def test_a_description_without_noise_costs_a_rule_and_the_run_says_so(self):
+    def test_a_description_without_noise_disables_a_rule_with_a_note(self):
         with tempfile.TemporaryDirectory() as folder:
             model = pathlib.Path(folder, "model")
             shutil.copytree("models/haptic_giant", model)
@@ -142,7 +142,7 @@ class Commands(unittest.TestCase):
             run("free_space", "--fast", "--duration", "3", "--summary", summary, *arguments)
             return json.loads(summary.read_text())["state_hash"]
 
-    def test_what_only_a_simulation_looks_at_is_refused_for_a_remote_device(self):
+    def test_options_of_a_simulation_are_refused_for_a_remote_device(self):
         result = run("door", "--device-address", "127.0.0.1:1", "--seed", "7", "--step", "1e-3",
                      "--hand", "stiff", "--sensors", "ideal")
         self.assertEqual(result.returncode, 2)
@@ -161,7 +161,7 @@ class Commands(unittest.TestCase):
             server.close()
             said = process.communicate(timeout=100)[0]
             self.assertEqual(process.returncode, 3, said)
-            self.assertIn("the remote device says: the server was stopped", said)
+            self.assertIn("message of the remote device: the server was stopped", said)
             self.assertIn("104 remote device has ended the session", said)
 
     def test_what_does_not_fit_is_one_clear_sentence(self):
@@ -231,7 +231,7 @@ class Commands(unittest.TestCase):
         self.assertEqual(result.returncode, 2)
         self.assertIn("--device-address", result.stderr)
 
-    def test_a_capture_on_a_full_disk_is_told(self):
+    def test_a_capture_on_a_full_disk_is_reported(self):
         with Server("door", "--fast", "--capture", "/dev/full") as server:
             subprocess.run([sys.executable, CLIENT, server.address, "--seconds", "0.1"], check=True,
                            capture_output=True, timeout=100)
@@ -306,7 +306,7 @@ class StartTest(unittest.TestCase):
             self.assertEqual(failed, [name])
             self.assertIn("only one of its two channels did", items[name]["found"])
 
-    def test_a_fault_of_the_standing_arm_ends_its_item_and_nothing_arms_it_again(self):
+    def test_a_fault_while_armed_ends_its_item_without_arming_again(self):
         # while it is waited for the emergency stop
         result, kept, items = self.start_test("{at_s: 102.2, for_s: 0.01, fault: drive_fault}")
         self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
@@ -330,7 +330,7 @@ class StartTest(unittest.TestCase):
         self.assertFalse(kept["passed"])
 
     def waiting_test(self, machine, folder):
-        """For somebody who does what it asks for."""
+        """With an operator who follows its requests."""
         process = subprocess.Popen(
             [PROGRAM, "start-test", "--fast", "--device-address", machine.address, "--recordings",
              folder], cwd=ROOT, text=True, stdout=subprocess.PIPE)
@@ -350,7 +350,7 @@ class StartTest(unittest.TestCase):
 
 class Machine:
     """Between a server and its clients: makes a machine of the simulation there, and is the person
-    who does what `start-test` asks for."""
+    who follows the requests of `start-test`."""
 
     ACTS = [("turn the override key on", "override_key", 1), ("turn the override key off", "override_key", 0),
             ("step into the field", "is_field_clear", 0), ("leave the field", "is_field_clear", 1),
@@ -419,7 +419,7 @@ class Machine:
 
 
 class MachineTest(unittest.TestCase):
-    def test_a_person_tests_a_machine_and_then_it_runs_until_its_homing_is_wrong(self):
+    def test_a_tested_machine_runs_until_its_homing_is_wrong(self):
         with tempfile.TemporaryDirectory() as folder, Server("free_space", "--fast") as server, \
                 Machine(server.address) as machine:
             here = ("--fast", "--device-address", machine.address, "--recordings", folder)

@@ -1,4 +1,4 @@
-// Rendering begins and ends without a bump, also when somebody leans on the handle.
+// Rendering begins and ends without a bump, also when a person leans on the handle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ TEST(Bumpless, ALeaningHandMakesNoJerkWhenRenderingBegins) {
   EXPECT_LT(after_50_ms, 1.0);
 }
 
-TEST(Bumpless, AStopThatIsAskedForMakesNoJerkForALeaningHand) {
+TEST(Bumpless, ARequestedStopMakesNoJerkForALeaningHand) {
   Leaning run;
   run.prepare();
   for (int k = 0; k < 600; ++k) run.step(k < 5 ? ModeRequest::kRun : ModeRequest::kNone);

@@ -105,7 +105,7 @@ TEST(ElasticSeeds, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
 constexpr int kStuck = 3;                                                    // m4
 constexpr double kSticksFrom = 0.7 + 1.3, kSticksUntil = kSticksFrom + 0.3;  // s
 
-// A device whose joint m4 sticks for 0.3 s: its drive holds it, whatever it is told.
+// A device whose joint m4 sticks for 0.3 s: its drive holds it, on any command.
 class StickingDevice final : public device::Device {
  public:
   StickingDevice(simulator::Simulation simulation, double rate_Hz)

@@ -1,5 +1,5 @@
 /// Fig. 6, the floating body, phase by phase: the column "what else must be true" of [HANDBOOK]
-/// 10.1, as far as records can tell.
+/// 10.1, as far as records show.
 
 #include <gtest/gtest.h>
 

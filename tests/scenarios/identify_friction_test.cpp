@@ -1,4 +1,4 @@
-// What `hapticgiant identify friction` finds of simulated machines, which know the truth.
+// What `hapticgiant identify friction` finds of simulated machines, whose truth is known.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ std::vector<FrictionEstimate> identified(const std::string& simulation) {
   identification::FrictionTraces traces(scenario.device.model,
                                         scenario.device.control.loop.current_lag);
   studies::Player player(scenario);
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool is_running = true; is_running; is_running = player.end()) {
     player.begin();
     player.run();
     traces.add(player.sample());

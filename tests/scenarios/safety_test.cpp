@@ -10,6 +10,7 @@
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/runtime/requests.h"
+#include "hg/scenario/assembly.h"
 #include "hg/scenario/session.h"
 
 namespace hg {
@@ -27,8 +28,8 @@ struct Machine {
   const SensorFrame& sensors = session.sample().sensors;
   const CommandFrame& command = session.sample().command;
   const CycleRecord& record = session.record();
-  bool is_alone = false;  // runs autonomously instead of by hand
-  bool asks = true;       // for what comes next; false: only the test asks
+  bool is_alone = false;      // runs autonomously instead of by hand
+  bool requests_next = true;  // makes the next request; false: only the test does
   double handle_speed = 0.0, gantry_speed = 0.0, last_lateness = 0.0;
   int sanitised = 0;
 
@@ -36,7 +37,7 @@ struct Machine {
   explicit Machine(const std::string& name) : Machine(shipped_scenario(name)) {}
 
   void step() {
-    if (asks) session.request(next());
+    if (requests_next) session.request(next());
     session.advance();
     const Truth& truth = *session.device().truth();
     handle_speed = truth.twist.head<3>().norm();
@@ -63,8 +64,8 @@ struct Machine {
   bool run_until_fast(double speed) {
     return run_until([&] { return record.mode == Mode::kRunning && handle_speed > speed; }, 20.0);
   }
-  void ask(ModeRequest request) {
-    asks = false;
+  void make(ModeRequest request) {
+    requests_next = false;
     step();
     session.request(request);
     step();
@@ -78,7 +79,7 @@ struct Machine {
   }
 };
 
-TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
+TEST(Safety, SensorErrorsTriggerNoRuleInShippedScenarios) {
   struct Case {
     const char* name;
     double rate_Hz;
@@ -107,7 +108,7 @@ TEST(Safety, NoShippedScenarioIsStoppedOrTouchedByARuleWithAllSensorErrors) {
   }
 }
 
-TEST(Safety, AnEmergencyStopBrakesAndSwitchesOffAndAResetLeadsBackToRunning) {
+TEST(Safety, AfterAnEmergencyStopAResetLeadsBackToRunning) {
   Machine machine("path");
   ASSERT_TRUE(machine.run_until_fast(0.6));
   machine.input.panel.emergency_stop = true;
@@ -116,38 +117,38 @@ TEST(Safety, AnEmergencyStopBrakesAndSwitchesOffAndAResetLeadsBackToRunning) {
   EXPECT_EQ(machine.record.stop, Stop::kSs1);
   EXPECT_EQ(machine.record.fault.code, FaultCode::kEmergencyStop);
   ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kFault; }, 2.0));
-  EXPECT_EQ(machine.record.stop, Stop::kSs1) << "it came to rest by itself";
+  EXPECT_EQ(machine.record.stop, Stop::kSs1) << "it came to rest without the safety controller";
   EXPECT_LT(machine.record.time_s - pressed, 1.0);
   EXPECT_LT(machine.handle_speed, 0.1);
   EXPECT_FALSE(machine.command.enable);
 
-  machine.ask(ModeRequest::kReset);
+  machine.make(ModeRequest::kReset);
   EXPECT_EQ(machine.record.refusal, Refusal::kCauseRemains);
   machine.input.panel.emergency_stop = false;
   machine.run(0.1);
-  machine.ask(ModeRequest::kReset);
+  machine.make(ModeRequest::kReset);
   EXPECT_EQ(machine.record.refusal, Refusal::kCauseRemains) << "the safety controller has latched";
   machine.press_reset();
-  machine.ask(ModeRequest::kReset);
+  machine.make(ModeRequest::kReset);
   EXPECT_EQ(machine.record.mode, Mode::kReady);
-  machine.asks = true;
+  machine.requests_next = true;
   EXPECT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kRunning; }, 5.0));
 }
 
 TEST(Safety, AnOperatorWhoLetsGoStopsItAndHoldingAgainStartsNothing) {
   Machine machine("path");
   ASSERT_TRUE(machine.run_until_fast(0.6));
-  machine.asks = false;
+  machine.requests_next = false;
   machine.input.panel.operator_enable = false;
   ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kReady; }, 2.0));
   EXPECT_EQ(machine.record.fault.code, FaultCode::kNone);
   EXPECT_FALSE(machine.command.enable);
-  machine.ask(ModeRequest::kArm);
+  machine.make(ModeRequest::kArm);
   EXPECT_EQ(machine.record.refusal, Refusal::kOperatorReleased);
   machine.input.panel.operator_enable = true;
   machine.run(0.2);
   EXPECT_EQ(machine.record.mode, Mode::kReady);
-  machine.ask(ModeRequest::kArm);
+  machine.make(ModeRequest::kArm);
   EXPECT_EQ(machine.record.mode, Mode::kArmed);
 }
 
@@ -188,7 +189,7 @@ void run_alone(Machine& machine) {
   machine.step();
 }
 
-TEST(Safety, WithNobodyAtTheHandleItNeverMovesFasterThanTheSafeSpeed) {
+TEST(Safety, WithoutAHandItNeverMovesFasterThanTheSafeSpeed) {
   Machine machine(without_person());
   run_alone(machine);
   double handle = 0.0, gantry = 0.0;
@@ -205,7 +206,7 @@ TEST(Safety, WithNobodyAtTheHandleItNeverMovesFasterThanTheSafeSpeed) {
   EXPECT_LE(gantry, 0.25);
 }
 
-TEST(Safety, SomebodyInTheFieldStopsADeviceThatMovesAlone) {
+TEST(Safety, APersonInTheFieldStopsADeviceThatMovesAlone) {
   Machine machine(without_person());
   run_alone(machine);
   machine.run(1.0);
@@ -214,12 +215,12 @@ TEST(Safety, SomebodyInTheFieldStopsADeviceThatMovesAlone) {
   ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kStopping; }, 0.15));
   EXPECT_EQ(machine.record.fault.code, FaultCode::kScannerField);
   ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kFault; }, 2.0));
-  machine.ask(ModeRequest::kReset);
+  machine.make(ModeRequest::kReset);
   EXPECT_EQ(machine.record.refusal, Refusal::kCauseRemains);
   machine.input.panel.person_in_field = false;
   machine.run(0.2);
   machine.press_reset();
-  machine.ask(ModeRequest::kReset);
+  machine.make(ModeRequest::kReset);
   EXPECT_EQ(machine.record.mode, Mode::kReady);
 }
 
@@ -227,11 +228,11 @@ TEST(Safety, TurningTheKeyBackHoldsADeviceThatMovesAlone) {
   Machine machine(without_person());
   run_alone(machine);
   machine.run(1.0);
-  machine.asks = false;
+  machine.requests_next = false;
   machine.input.panel.override_key = false;
   ASSERT_TRUE(machine.run_until([&] { return machine.record.mode == Mode::kArmed; }, 2.0));
   EXPECT_EQ(machine.record.fault.code, FaultCode::kNone);
-  machine.ask(ModeRequest::kAutonomous);
+  machine.make(ModeRequest::kAutonomous);
   EXPECT_EQ(machine.record.refusal, Refusal::kNoOverride);
 }
 

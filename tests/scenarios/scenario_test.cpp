@@ -19,14 +19,14 @@ void set_plant_lag(config::Scenario& scenario, double lag_s) {
   scenario.device.simulation.factors.gantry_lag = lag_s / scenario.device.model.drive.lag;
 }
 
-// the observer and the braking distance know the lag, too
+// the observer and the braking distance include the lag, too
 void set_known_lag(config::Scenario& scenario, double lag_s) {
   scenario.device.model.drive.lag = lag_s;
   set_plant_lag(scenario, lag_s);
 }
 
 // One thing varies at a time: a tremor decides which rows collide for a cycle, and so how hard.
-config::Scenario calm(const std::string& name) {
+config::Scenario undisturbed(const std::string& name) {
   config::Scenario scenario = law_alone(name, 500.0);
   scenario.script.hand.tremor_rms = 0.0;
   return scenario;
@@ -58,7 +58,7 @@ TEST_P(EveryScenario, ShowsTheSameEventsAtHalfAndTwiceTheRate) {
 TEST_P(EveryScenario, ShowsItsEventsWithAGantryFasterOrSlowerThanThought) {
   for (const double lag_s : {0.02, 0.08}) {
     SCOPED_TRACE(lag_s);
-    config::Scenario scenario = calm(GetParam());
+    config::Scenario scenario = undisturbed(GetParam());
     set_plant_lag(scenario, lag_s);
     ScenarioRun run(scenario);
     run.play();
@@ -66,10 +66,10 @@ TEST_P(EveryScenario, ShowsItsEventsWithAGantryFasterOrSlowerThanThought) {
   }
 }
 
-TEST_P(EveryScenario, ShowsItsEventsWithAGantryThatIsKnownToBeFasterOrSlower) {
+TEST_P(EveryScenario, ShowsItsEventsWithAGantryConfiguredFasterOrSlower) {
   for (const double lag_s : {0.02, 0.08}) {
     SCOPED_TRACE(lag_s);
-    config::Scenario scenario = calm(GetParam());
+    config::Scenario scenario = undisturbed(GetParam());
     set_known_lag(scenario, lag_s);
     ScenarioRun run(scenario);
     run.play();
@@ -80,7 +80,7 @@ TEST_P(EveryScenario, ShowsItsEventsWithAGantryThatIsKnownToBeFasterOrSlower) {
 TEST_P(EveryScenario, ShowsItsEventsWithASofterOrStifferHand) {
   for (const double factor : {0.9, 1.1}) {
     SCOPED_TRACE(factor);
-    config::Scenario scenario = calm(GetParam());
+    config::Scenario scenario = undisturbed(GetParam());
     scenario.script.hand.stiffness *= factor;
     scenario.script.hand.angular_stiffness *= factor;
     ScenarioRun run(scenario);

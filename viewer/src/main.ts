@@ -26,7 +26,7 @@ import { current_theme, on_theme_change, start_theme } from "./theme";
 import { Toolbar, build_view_tools } from "./toolbar";
 import { Headset } from "./xr/headset";
 
-const NEWS_S = 1; // a page that is opened later is told what was before, too
+const NEWS_S = 1; // a page that is opened later gets earlier events, too
 const PANEL_GAP_MS = 66; // words and bars change 15 times a second
 
 // What tests and the console may look at.
@@ -103,7 +103,7 @@ class Page {
 
   private listen(): void {
     this.store.subscribe({
-      on_scene: (scene) => void this.furnish(scene),
+      on_scene: (scene) => void this.load(scene),
       on_frame: (frame) => this.note(frame),
       on_event: (event) => {
         this.events.add(event);
@@ -114,7 +114,7 @@ class Page {
       on_events_cleared: () => this.events.clear(),
       on_values: (values) => this.change.take(values),
       on_connection: (is_connected) => {
-        if (!is_connected) this.let_go();
+        if (!is_connected) this.release();
         show_connection(is_connected);
         this.show_link();
       },
@@ -135,24 +135,24 @@ class Page {
     return this.store.is_connected ? this.store.frame : null;
   }
 
-  private let_go(): void {
-    this.drag.let_go();
-    this.headset.let_go();
+  private release(): void {
+    this.drag.release();
+    this.headset.release();
   }
 
-  private async furnish(scene: Scene): Promise<void> {
-    this.let_go(); // the handle is elsewhere now
+  private async load(scene: Scene): Promise<void> {
+    this.release(); // the handle is elsewhere now
     const is_first = this.world === null;
-    this.toolbar.furnish(scene);
-    this.stop.furnish(scene);
-    this.replay.furnish(scene);
-    this.joints.furnish(scene);
-    this.change.furnish(scene);
-    this.safety.furnish(scene);
-    this.plots.furnish(scene);
-    this.hand_controls.furnish(scene);
+    this.toolbar.load(scene);
+    this.stop.load(scene);
+    this.replay.load(scene);
+    this.joints.load(scene);
+    this.change.load(scene);
+    this.safety.load(scene);
+    this.plots.load(scene);
+    this.hand_controls.load(scene);
     document.body.dataset.source = scene.source;
-    this.stage.furnish(scene.box, scene.floor_z_m);
+    this.stage.load(scene.box, scene.floor_z_m);
     if (is_first) this.cameras.frame(scene.box);
     const world = await World.load(scene, this.stage, this.layers).catch((error: unknown) => {
       this.notices.show("world", error instanceof Error ? error.message : String(error));

@@ -39,7 +39,7 @@ export class ReplayBar {
     }
   }
 
-  furnish(scene: Scene): void {
+  load(scene: Scene): void {
     this.part.hidden = scene.source !== "recording";
     this.slider.min = String(scene.begin_s);
     this.slider.max = String(end_of(scene));

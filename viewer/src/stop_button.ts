@@ -62,7 +62,7 @@ export class StopButton {
     addEventListener("keydown", take_key, { capture: true }); // before anything else takes it
   }
 
-  furnish(scene: Scene): void {
+  load(scene: Scene): void {
     this.button.hidden = !scene.commands.includes("emergency_stop");
   }
 

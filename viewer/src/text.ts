@@ -48,7 +48,7 @@ const SMALLEST_FORCE = 1; // N; below both, hands feel nothing
 const SMALLEST_CONTACT = 0.1; // N
 const SMALLEST_TORQUE = 0.2; // Nm
 
-// Whether the user pushes or turns at all: limits also hold what pushes against them by itself.
+// Whether the user pushes or turns at all: a limit may also be pushed by gravity alone.
 export function is_pushing(frame: Frame): boolean {
   return force_of(frame) >= SMALLEST_FORCE || Math.hypot(...frame.torque_Nm) >= SMALLEST_TORQUE;
 }
@@ -91,7 +91,7 @@ export interface ModeText {
   kind: string; // how it is painted
 }
 
-// The state in the bar. What is not known any more is not told.
+// The state in the bar. An outdated state is not shown.
 export function mode_text(frame: Frame | null, link: Link): ModeText {
   if (link === "lost") return { text: "no connection", kind: "unknown" };
   if (link === "silent") return { text: "no data", kind: "unknown" };

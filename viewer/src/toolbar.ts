@@ -64,7 +64,7 @@ export class Toolbar {
     addEventListener("keydown", (event) => this.take_key(event));
   }
 
-  furnish(scene: Scene): void {
+  load(scene: Scene): void {
     document.title = `${scene.title} - HapticGiant`;
     const { scenario, scenarios } = scene.choices;
     fill_choice(
@@ -127,7 +127,7 @@ export class Toolbar {
   private show_pause(is_paused: boolean): void {
     this.is_paused = is_paused;
     this.pause.replaceChildren(icon(is_paused ? "play" : "pause"));
-    this.pause.title = is_paused ? "Go on (P)" : "Pause (P)";
+    this.pause.title = is_paused ? "Continue (P)" : "Pause (P)";
     this.pause.setAttribute("aria-pressed", String(is_paused));
   }
 

@@ -1,4 +1,4 @@
-/// What `run` asks of a remote device that is no simulation: a start test that counts, and a
+/// What `run` requires of a remote device that is no simulation: a start test that counts, and a
 /// posture that is the one in which the last run has left it.
 
 #include <gtest/gtest.h>
@@ -137,7 +137,7 @@ TEST_F(MachineTest, RunsOnlyWithAStartTestThatCounts) {
   expect_part(refusal(), "no start test of HapticGiant that counts: there is none");
   expect_part(refusal(), "--without-start-test");
   keep_result(scenario.device, false);
-  expect_part(refusal(), "it did not come to its end");
+  expect_part(refusal(), "it did not finish");
   config::Device other = scenario.device;
   other.sources.front().content += "# changed";
   keep_result(other);
@@ -146,7 +146,7 @@ TEST_F(MachineTest, RunsOnlyWithAStartTestThatCounts) {
   EXPECT_EQ(refusal(), "");
 }
 
-TEST_F(MachineTest, GoesWithoutAStartTestWhereThatIsSaid) {
+TEST_F(MachineTest, RunsWithoutAStartTestWhereTheFileAllowsIt) {
   const Machine machine(scenario::load(arguments_.world));
   arguments_.device_address = machine.address();
   arguments_.without_start_test = true;
@@ -171,7 +171,7 @@ TEST_F(MachineTest, AMachineTakesNoInjectedFaults) {
   }
 }
 
-TEST_F(MachineTest, ASimulationIsAskedForNothing) {
+TEST_F(MachineTest, ASimulationNeedsNoStartTest) {
   const Machine machine(scenario::load(arguments_.world), true);
   arguments_.device_address = machine.address();
   const apps::PreparedRun run(arguments_);
@@ -196,8 +196,8 @@ TEST_F(MachineTest, AGantryThatWasHomedThirtyCentimetresOffIsRefusedByName) {
   expect_part(refusal(), "ppu1: ");
   arguments_.confirmed_joints = {"ppu1"};
   EXPECT_EQ(refusal(), "");
-  arguments_.confirmed_joints = {"nobody"};
-  expect_part(refusal(), "HapticGiant has no joint 'nobody'");
+  arguments_.confirmed_joints = {"missing"};
+  expect_part(refusal(), "HapticGiant has no joint 'missing'");
 
   arguments_.confirmed_joints.clear();
   std::ofstream(posture_file()) << "{";
@@ -226,7 +226,7 @@ TEST_F(MachineTest, AFileThatCannotBeReadIsNotTakenForNone) {
   arguments_.device_address = machine.address();
   const std::filesystem::path result =
       start_test::start_test_file(folder_.string(), scenario.device, machine.address());
-  ASSERT_EQ(mkfifo(result.c_str(), 0600), 0);  // nobody writes there
+  ASSERT_EQ(mkfifo(result.c_str(), 0600), 0);  // without a writer
   expect_part(refusal(), "expected a file, got a named pipe");
   arguments_.without_start_test = true;
   EXPECT_EQ(refusal(), "");
@@ -272,7 +272,7 @@ TEST_F(MachineTest, ADemoLeavesTheResultOfAMachine) {
   EXPECT_EQ(refusal(), "");
 }
 
-TEST_F(MachineTest, AServerThatStillHasTheSessionBeforeIsAskedAgain) {
+TEST_F(MachineTest, AServerBusyWithTheSessionBeforeIsTriedAgain) {
   const config::Scenario scenario = scenario::load(arguments_.world);
   const Machine machine(scenario);
   arguments_.device_address = machine.address();

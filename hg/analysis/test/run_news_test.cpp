@@ -28,13 +28,13 @@ TEST(RunNews, AResultIsReportedOnceAndARefusalEachTime) {
 TEST(RunNews, AContactBeginsOnceAndNamesItsJoint) {
   RunNews news({.joints = {"m1", "m2"}});
   Sample sample;
-  sample.record.touch.is_told = true;
+  sample.record.touch.is_reported = true;
   sample.record.touch.joint = 1;
   EXPECT_EQ(one(news, sample), "contact: something touches the arm beyond joint m2: it gives way");
   EXPECT_EQ(one(news, sample), "nothing");
-  sample.record.touch.is_told = false;
+  sample.record.touch.is_reported = false;
   EXPECT_EQ(one(news, sample), "nothing");
-  sample.record.touch = {.is_told = true, .joint = -1};
+  sample.record.touch = {.is_reported = true, .joint = -1};
   EXPECT_EQ(one(news, sample), "contact: something touches the arm: it gives way");
 }
 

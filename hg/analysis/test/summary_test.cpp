@@ -204,7 +204,7 @@ TEST(TruthSummary, VibrationIsWhatIsFasterThanPeopleMove) {
   EXPECT_NEAR(vibration_at(20.0).second, rms * std::numbers::sqrt2 / 2.0, 0.01);
 }
 
-TEST(Summary, TellsATimedOutStop) {
+TEST(Summary, ReportsATimedOutStop) {
   const Summary summary(catalogue(), {}, 1000.0);
   const auto text = [&](const RunFacts& facts) { return summary.to_text(facts, {}); };
   EXPECT_EQ(text({}).find("timed out"), std::string::npos);
@@ -232,7 +232,7 @@ TEST(Summary, NamesTheLawThatLeadsTheGantry) {
   EXPECT_EQ(json["gantry"].get<std::string>(), "law");
 }
 
-TEST(Summary, SaysWhereLimitsBrakeTogether) {
+TEST(Summary, ReportsWhereLimitsBrakeTogether) {
   const Summary summary(catalogue(), {}, 1000.0);
   RunFacts facts = {.law = "gauss", .bounds = "recoverable", .braking = "alone"};
   EXPECT_NE(summary.to_text(facts, {}).find("gauss, recoverable bounds\n"), std::string::npos);
@@ -242,7 +242,7 @@ TEST(Summary, SaysWhereLimitsBrakeTogether) {
   EXPECT_EQ(json["braking"].get<std::string>(), "together");
 }
 
-TEST(Summary, SaysHowOftenTheBudgetOfTheSolverWasSpent) {
+TEST(Summary, ReportsHowOftenTheBudgetOfTheSolverWasSpent) {
   Summary summary(catalogue(), {}, 1000.0);
   const auto has = [&](const char* part) {
     return summary.to_text({}, {}).find(part) != std::string::npos;
@@ -296,7 +296,7 @@ TEST(Summary, MoreThanFiveMilliradiansOutsideIsALimitExceeded) {
   EXPECT_FALSE(summary.limits_held());
 }
 
-TEST(Summary, SaysThatHandAndDeviceShookEachOther) {
+TEST(Summary, ReportsThatHandAndDeviceShookEachOther) {
   Summary summary(catalogue(), {}, 1000.0);
   Sample sample;
   for (int n = 0; n < 1000; ++n) {

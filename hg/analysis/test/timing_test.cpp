@@ -11,7 +11,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST(Timing, TellsThePriorityAndWhyThereIsNone) {
+TEST(Timing, ReportsThePriorityAndWhyThereIsNone) {
   EXPECT_EQ(priority_text({.is_fast = true}), "normal (fast)");
   EXPECT_EQ(priority_text({}), "normal");
   EXPECT_TRUE(has(priority_text({.priority_refusal = "Operation not permitted"}),
@@ -21,7 +21,7 @@ TEST(Timing, TellsThePriorityAndWhyThereIsNone) {
   EXPECT_TRUE(has(priority_text({.priority = 70}), "memory not locked"));
 }
 
-TEST(Timing, SaysWhyLateCyclesWereOnlyCounted) {
+TEST(Timing, ReportsWhyLateCyclesWereOnlyCounted) {
   EXPECT_EQ(timing_lines({}), "");
   Timing timing = {.overruns = 7, .most_overruns_in_a_row = 4};
   EXPECT_TRUE(has(timing_lines(timing), "7 cycles, at most 4 in a row; counted only: the thread"));
@@ -33,7 +33,7 @@ TEST(Timing, SaysWhyLateCyclesWereOnlyCounted) {
   EXPECT_EQ(timing_lines(timing), "");
 }
 
-TEST(Timing, WakeUpsStagesAndTheirHistogramAreTold) {
+TEST(Timing, ReportsWakeUpsStagesAndTheirHistogram) {
   Timing timing = {.priority = 80, .stages = {{"solver", {1.5, 3.0, 9.0}}}};
   for (int i = 0; i < 99; ++i) timing.wake_up_us.add(4.0);
   timing.wake_up_us.add(70.0);

@@ -94,7 +94,8 @@ Findings script_findings(const std::string& file, const rendering::TwinModel& tw
 // A script is made for one twin: for one of those at hand, or for a body that moves freely.
 void check_scripts(Check& check) {
   for (const std::string& file : check.scripts) {
-    Findings fewest = script_findings(file, {.chain = model::ChainModel::free_body({}), .q_start = {}});
+    Findings fewest =
+        script_findings(file, {.chain = model::ChainModel::free_body({}), .q_start = {}});
     const auto try_twin = [&](const config::Twin& twin) {
       const Findings findings = script_findings(file, twin.model);
       if (findings.size() < fewest.size()) fewest = findings;

@@ -35,7 +35,7 @@ double delay_of(const config::SimulatedDevice& device) {
   return delay;
 }
 
-// The least along the axes of B, at the start; where the device does not get there it says so
+// The least along the axes of B, at the start; where the device does not get there it is stated
 // itself.
 double braking_of(const config::Device& device, const config::Twin& twin) {
   rendering::Motion motion = {.dq_p = VectorP::Zero(device.model.n_p),

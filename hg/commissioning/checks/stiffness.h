@@ -12,8 +12,8 @@
 namespace hg::checks {
 
 /// Quantities that determine the limits. The acceleration is the deceleration of the handle
-/// available from the motors, or the rating of its Cartesian limits where the law does not know the
-/// motors; without either it is infinite.
+/// available from the motors, or the rating of its Cartesian limits where the law does not model
+/// the motors; without either it is infinite.
 struct StiffnessLimits {
   double mass = 0.0;     ///< mass of the twin in the direction in which it is lightest, kg
   double damping = 0.0;  ///< damping of the twin in that direction, Ns/m

@@ -117,7 +117,7 @@ bool is_inside(const CartesianLimit& limit, const Eigen::Vector3d& p) {
   return true;
 }
 
-// Adds what one posture of the arm reaches by itself and with other positions of the gantry;
+// Adds what one posture of the arm reaches alone and with other positions of the gantry;
 // scene.chain: after update() at q.
 void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, bool at_limits,
                    Random& random, Cloud& cloud) {

@@ -86,7 +86,7 @@ void inspect_limits(const rendering::TwinDof& dof, double start, Collector& out)
 }
 
 // The law holds a spring's torque over a period. With c = d dt / m and k = K dt^2 / m that is
-// stable for k / 2 < c < 2; it shows no more damping than c = 1, whatever is asked for.
+// stable for k / 2 < c < 2; it shows no more damping than c = 1, however large it is set.
 void inspect_spring(const rendering::TwinDof& dof, double inertia, double dt, Collector& out) {
   const double stiffness = dof.stiffness + dof.closer.stiffness;
   const double c = dof.damping * dt / inertia;

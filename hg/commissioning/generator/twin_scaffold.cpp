@@ -33,7 +33,7 @@ struct TwinDraft {
 struct Placement {
   Pose T_B_root;
   double yaw = 0.0;
-  double share = -1.0;  ///< of the postures that the device can follow
+  double share = -1.0;  ///< share of the postures that the device can follow
   bool is_upright = true;
 };
 
@@ -69,7 +69,7 @@ Pose tip(TwinDraft& d, const Eigen::VectorXd& q) {
   return d.chain.pose(d.end_effector);
 }
 
-// asks whether the device can hold its handle at a pose
+// tests whether the device can hold its handle at a pose
 class Reach {
  public:
   explicit Reach(const config::Device& device)

@@ -50,13 +50,13 @@ std::string lack_of(const Rows& rows, const FrictionEstimate& found) {
   return "";
 }
 
-Model believed_model(const ActuatorModel& believed) {
+Model nominal_model(const ActuatorModel& nominal) {
   Model model;
-  model.p[kCoulomb] = std::max(believed.coulomb_friction, 1e-2);
-  model.p[kLoad] = believed.load_friction;
-  model.p[kStiction] = believed.stiction;
-  model.p[kStribeck] = std::log(believed.stribeck_speed);
-  model.p[kViscous] = believed.viscous_friction;
+  model.p[kCoulomb] = std::max(nominal.coulomb_friction, 1e-2);
+  model.p[kLoad] = nominal.load_friction;
+  model.p[kStiction] = nominal.stiction;
+  model.p[kStribeck] = std::log(nominal.stribeck_speed);
+  model.p[kViscous] = nominal.viscous_friction;
   model.p[kPresliding] = std::log(kRigid);
   return model;
 }
@@ -102,12 +102,12 @@ Model scan(const Fit& fit, const Model& start, bool with_presliding, const Free&
   return *best;
 }
 
-// Decides step by step which parameters are identified; unobservable ones are reset to the believed
+// Decides step by step which parameters are identified; unobservable ones are reset to the nominal
 // values.
 class Decision {
  public:
-  Decision(const Rows& rows, const ActuatorModel& believed)
-      : fit_(rows), rows_(rows), believed_(believed), start_(believed_model(believed)) {
+  Decision(const Rows& rows, const ActuatorModel& nominal)
+      : fit_(rows), rows_(rows), nominal_(nominal), start_(nominal_model(nominal)) {
     free_.fill(true);
   }
 
@@ -192,8 +192,8 @@ class Decision {
     improve();
     found.missing.push_back(fmt::format(
         "Stribeck speed: slide slowly, from 0.2 to 3 times {:g} rad/s, both ways; Coulomb friction "
-        "holds for what is believed of it",
-        believed_.stribeck_speed));
+        "assumes the configured one",
+        nominal_.stribeck_speed));
     if (is_sure()) return;
     keep(kStiction);
     improve();
@@ -241,8 +241,8 @@ class Decision {
     found.coulomb = figure(kCoulomb);
     found.coulomb.deviation = std::max(found.coulomb.deviation, coulomb_least_);
     if (!(found.coulomb.deviation <= kSureOfCoulomb * found.coulomb.value)) {
-      found.coulomb = {believed_.coulomb_friction, 0.0, false};
-      found.viscous = {believed_.viscous_friction, 0.0, false};
+      found.coulomb = {nominal_.coulomb_friction, 0.0, false};
+      found.viscous = {nominal_.viscous_friction, 0.0, false};
       found.missing.push_back(
           "Coulomb friction: cannot be distinguished from load friction, likewise with different "
           "loads");
@@ -251,14 +251,14 @@ class Decision {
     found.stribeck_speed = of_logarithm(kStribeck);
     found.presliding = of_logarithm(kPresliding);
     if (found.presliding_elements == 0) {
-      found.presliding = {believed_.presliding, 0.0, false};
+      found.presliding = {nominal_.presliding, 0.0, false};
     }
     found.residual = fit_.rms(model_);
   }
 
   Fit fit_;
   const Rows& rows_;
-  const ActuatorModel& believed_;
+  const ActuatorModel& nominal_;
   Model start_, model_;
   Free free_{};
   double deviation_ = 0.0, loss_ = 0.0;
@@ -269,21 +269,21 @@ class Decision {
 }  // namespace
 }  // namespace friction
 
-FrictionEstimate identify_friction(const FrictionTrace& trace, const ActuatorModel& believed) {
-  const friction::Rows rows(trace, believed.rotor_inertia);
+FrictionEstimate identify_friction(const FrictionTrace& trace, const ActuatorModel& nominal) {
+  const friction::Rows rows(trace, nominal.rotor_inertia);
   FrictionEstimate found;
-  found.coulomb.value = believed.coulomb_friction;
-  found.load.value = believed.load_friction;
-  found.viscous.value = believed.viscous_friction;
-  found.stiction.value = believed.stiction;
-  found.stribeck_speed.value = believed.stribeck_speed;
-  found.presliding.value = believed.presliding;
+  found.coulomb.value = nominal.coulomb_friction;
+  found.load.value = nominal.load_friction;
+  found.viscous.value = nominal.viscous_friction;
+  found.stiction.value = nominal.stiction;
+  found.stribeck_speed.value = nominal.stribeck_speed;
+  found.presliding.value = nominal.presliding;
   friction::describe_motion(rows, found);
   if (std::string lack = friction::lack_of(rows, found); !lack.empty()) {
     found.missing.push_back(std::move(lack));
     return found;
   }
-  friction::Decision(rows, believed).decide(found);
+  friction::Decision(rows, nominal).decide(found);
   return found;
 }
 

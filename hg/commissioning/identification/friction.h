@@ -33,7 +33,7 @@ struct FrictionTrace {
 struct FrictionFigure {
   double value = 0.0;
   double deviation = 0.0;
-  bool is_found = false;  ///< false: not observable from the motion, `value` is the believed one
+  bool is_found = false;  ///< false: not observable from the motion, `value` is the nominal one
 };
 
 struct FrictionEstimate {
@@ -59,8 +59,8 @@ inline constexpr double kReversalWay = 1e-3;  ///< displacement after which a re
 inline constexpr int kFewestReversals = 6;    ///< fewest reversals that show presliding
 inline constexpr int kFewestBlocks = 10;      ///< fewest blocks of 1 s each, for deviations
 
-/// Identifies friction; `believed` gives the rotor inertia, and the values kept where the motion
+/// Identifies friction; `nominal` gives the rotor inertia, and the values kept where the motion
 /// does not show them.
-FrictionEstimate identify_friction(const FrictionTrace& trace, const ActuatorModel& believed);
+FrictionEstimate identify_friction(const FrictionTrace& trace, const ActuatorModel& nominal);
 
 }  // namespace hg::identification

@@ -65,9 +65,9 @@ RecordedFriction identify_recorded_friction(const std::string& file,
   }
   result.used_s = static_cast<double>(traces.used()) * model.dt();
   for (int i = 0; i < model.n_m; ++i) {
-    const ActuatorModel& believed = model.actuators[index(i)];
+    const ActuatorModel& nominal = model.actuators[index(i)];
     result.joints.push_back({model.chain.joints()[index(model.n_p + i)].name,
-                             identify_friction(traces.joints()[index(i)], believed), believed});
+                             identify_friction(traces.joints()[index(i)], nominal), nominal});
   }
   return result;
 }

@@ -14,7 +14,7 @@ namespace hg::identification {
 struct JointFriction {
   std::string name;
   FrictionEstimate found;
-  ActuatorModel believed;  ///< as the device file says
+  ActuatorModel nominal;  ///< as the device file says
 };
 
 struct RecordedFriction {

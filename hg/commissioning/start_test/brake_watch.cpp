@@ -96,9 +96,9 @@ std::vector<Item> BrakeWatch::items() const {
                       1e3 * brake.motion, unit, 1e3 * brake.bound, brake.slipped_under, load_unit);
     } else if (brake.loaded_s < kLoaded) {
       item.outcome = without_load_;
-      item.found = fmt::format(
-          "not loaded: it carried {:.1f} {} at most, and {:.1f} {} for {:g} s says something",
-          brake.load, load_unit, brake.joint.least_load, load_unit, kLoaded);
+      item.found =
+          fmt::format("not loaded: it carried {:.1f} {} at most, {:.1f} {} for {:g} s are needed",
+                      brake.load, load_unit, brake.joint.least_load, load_unit, kLoaded);
     } else {
       item.outcome = Outcome::kPassed;
       item.found = fmt::format("held {:.1f} {}, moved by {:.2f} {} (allowed: {:g})", brake.load,

@@ -112,7 +112,7 @@ Validity check_validity(std::string_view text, const Requirements& required) {
     }
     if (json.at("simulated").get<bool>()) return object("it is of a simulation");
     if (!json.at("passed").get<bool>() || !failed.empty()) {
-      return object(failed.empty() ? "it did not come to its end" : "failed: " + failed);
+      return object(failed.empty() ? "it did not finish" : "failed: " + failed);
     }
     if (json.at("files_sha256") != required.files_sha256) {
       return object("the files of the device have changed since");

@@ -23,15 +23,15 @@ constexpr double kLeaning = 90.0;   // s for all brakes
 constexpr double kReminder = 5.0;   // s between two lists of brakes still to be loaded
 constexpr const char* kReleaseStop =
     "pull the emergency stop out, and press the reset button of the safety controller";
-constexpr const char* kSlips = "a brake slips, so that nothing more is asked for";
+constexpr const char* kSlips = "a brake slips";
 constexpr const char* kOneWire = "only one of its two channels did: a wire or contact is broken";
 
 /// One input: how it looks in a sample, and how it is operated.
 struct Operation {
   SafetyInput input;
   Act act, undo;
-  const char* words;  ///< for act
-  const char* undo_words;
+  const char* words;       ///< instruction for `act`
+  const char* undo_words;  ///< instruction for `undo`
 };
 
 constexpr Operation kOperations[] = {
@@ -45,7 +45,7 @@ constexpr Operation kOperations[] = {
     {SafetyInput::kEmergencyStop, Act::kPressStop, Act::kReleaseStop, "press the emergency stop",
      kReleaseStop},
     {SafetyInput::kEnablingSwitch, Act::kLetGoOfSwitch, Act::kHoldSwitch,
-     "let go of the enabling switch until it is asked for again", "hold the enabling switch again"},
+     "let go of the enabling switch until the next request", "hold the enabling switch again"},
 };
 
 // whether the input is in the state after Operation::act
@@ -104,8 +104,8 @@ class Procedure {
     return setup_.config.has_input[static_cast<std::size_t>(input)];
   }
 
-  void live(Wish wish) {
-    seen_ = station_.live(wish);
+  void advance(Wish wish) {
+    seen_ = station_.advance(wish);
     if (seen_.is_powered) powered_ = seen_;
     has_disagreed_ = has_disagreed_ || seen_.safety.has_disagreement;
     if (!watches_) return;
@@ -120,7 +120,7 @@ class Procedure {
     const double begin_s = seen_.time_s;
     while (!until()) {
       if (seen_.time_s - begin_s > at_most_s) return false;
-      live(wish);
+      advance(wish);
     }
     return true;
   }
@@ -134,14 +134,14 @@ class Procedure {
     const Observation before = seen_;
     const bool is_armed = stops_drives(wanted);
     const auto is_lost = [&] { return is_armed && seen_.mode != Mode::kArmed; };
-    std::array<bool, kSafetyInputCount> is_told{};
+    std::array<bool, kSafetyInputCount> is_named{};
     std::string wrong;
     wait(is_armed ? Wish::kStay : Wish::kOff, kPatience, [&] {
       for (std::size_t i = 0; i < kSafetyInputCount; ++i) {
         const auto other = static_cast<SafetyInput>(i);
         const bool has_changed = is_operated(other, seen_) != is_operated(other, before);
-        if (other == wanted || !has_changed || is_told[i]) continue;
-        is_told[i] = true;
+        if (other == wanted || !has_changed || is_named[i]) continue;
+        is_named[i] = true;
         wrong = to_string(other);
         station_.report(fmt::format("that was the {}, not the {}", wrong, to_string(wanted)));
       }
@@ -161,8 +161,8 @@ class Procedure {
                                            : std::string(to_string(seen_.fault));
   }
 
-  void ask(Act act, const std::string& words, double at_most_s = kPatience) {
-    station_.ask(act, fmt::format("{} ({:g} s)", words, at_most_s));
+  void prompt(Act act, const std::string& words, double at_most_s = kPatience) {
+    station_.prompt(act, fmt::format("{} ({:g} s)", words, at_most_s));
   }
 
   bool fail(Item& item, std::string why) {
@@ -199,7 +199,7 @@ class Procedure {
   }
 
   bool rest(Item& item) {
-    live(Wish::kTare);
+    advance(Wish::kTare);
     watch_brakes();
     stay(Wish::kTare, kRest);
     watches_ = false;
@@ -207,20 +207,20 @@ class Procedure {
       leave_out(item, kSlips);
       return false;
     }
-    std::string asked;
+    std::string shown;
     const bool is_at_rest = wait(Wish::kTare, kPatience, [&] {
       const std::string words = not_at_rest();
-      if (!words.empty() && words != asked) {
+      if (!words.empty() && words != shown) {
         const bool is_stop = seen_.safety.emergency_stop || seen_.safety.has_disagreement;
-        ask(is_stop ? Act::kReleaseStop : Act::kNone, words);
+        prompt(is_stop ? Act::kReleaseStop : Act::kNone, words);
       }
-      asked = words;
+      shown = words;
       return words.empty();
     });
     if (!is_at_rest && seen_.safety.has_disagreement) {
       return fail(item, "two channels of an input disagree, while not operated: " + broken_input());
     }
-    if (!is_at_rest) return fail(item, "still to do: " + asked);
+    if (!is_at_rest) return fail(item, "still to do: " + shown);
     pass(item, "in their rest states");
     return true;
   }
@@ -251,7 +251,7 @@ class Procedure {
     const bool is_stop = stops_drives(operation.input);
     if (is_stop && !arm(item)) return;
     has_disagreed_ = false;
-    ask(operation.act, operation.words);
+    prompt(operation.act, operation.words);
     const double asked_s = seen_.time_s;
     const std::string why_not = wait_for(operation.input);
     bool is_good = why_not.empty();
@@ -273,9 +273,9 @@ class Procedure {
       if (is_good) leave_out(item, kSlips);
       return;
     }
-    ask(operation.undo, has_disagreed_ && operation.undo != Act::kReleaseStop
-                            ? fmt::format("{}, and press the reset button", operation.undo_words)
-                            : std::string(operation.undo_words));
+    prompt(operation.undo, has_disagreed_ && operation.undo != Act::kReleaseStop
+                               ? fmt::format("{}, and press the reset button", operation.undo_words)
+                               : std::string(operation.undo_words));
     const auto is_released = [&] {
       return !is_operated(operation.input, seen_) && !seen_.safety.has_disagreement;
     };
@@ -319,13 +319,13 @@ class Procedure {
 
   bool arm(Item& item) {
     if (seen_.safety.emergency_stop) {  // pressed too late for the item before, or still
-      ask(Act::kReleaseStop, kReleaseStop);
+      prompt(Act::kReleaseStop, kReleaseStop);
       if (!wait(Wish::kOff, kPatience, [&] { return !seen_.safety.emergency_stop; })) {
         return fail(item, "the emergency stop was not released, so that nothing could be armed");
       }
     }
     if (!seen_.safety.operator_enable) {
-      ask(Act::kHoldSwitch, "hold the enabling switch");
+      prompt(Act::kHoldSwitch, "hold the enabling switch");
       if (!wait(Wish::kOff, kPatience, [&] { return seen_.safety.operator_enable; })) {
         return fail(item, "the enabling switch was not held, so that nothing could be armed");
       }
@@ -349,7 +349,7 @@ class Procedure {
     const std::string why = seen_.fault == FaultCode::kNone && refusal != Refusal::kNone
                                 ? std::string(to_string(refusal))
                                 : why_off();
-    live(Wish::kOff);
+    advance(Wish::kOff);
     return fail(item, fmt::format("the device could not be armed for it: {}", why));
   }
 
@@ -366,9 +366,9 @@ class Procedure {
   }
 
   void lean() {
-    live(Wish::kOff);
-    ask(Act::kLean, "push, pull and twist the handle hard, in all directions; the drives are off",
-        kLeaning);
+    advance(Wish::kOff);
+    prompt(Act::kLean,
+           "push, pull and twist the handle hard, in all directions; the drives are off", kLeaning);
     watch_brakes();
     double reported_s = seen_.time_s;
     wait(Wish::kOff, kLeaning, [&] {
@@ -380,7 +380,7 @@ class Procedure {
       return left.empty() || has_slipped_;
     });
     watches_ = false;
-    if (!has_slipped_) ask(Act::kLetGoOfHandle, "let go of the handle");
+    if (!has_slipped_) prompt(Act::kLetGoOfHandle, "let go of the handle");
     stay(Wish::kOff, kHold);
   }
 

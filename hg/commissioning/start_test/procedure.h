@@ -59,7 +59,7 @@ struct Observation {
   Refusal refusal = Refusal::kNone;
 };
 
-/// Exception that ends the periods, with the reason; thrown by Station::live().
+/// Exception that ends the periods, with the reason; thrown by Station::advance().
 struct Ended {
   std::string why;
 };
@@ -68,9 +68,9 @@ class Station {
  public:
   virtual ~Station() = default;
   /// Advances by one period. Throws Ended.
-  virtual Observation live(Wish wish) = 0;
+  virtual Observation advance(Wish wish) = 0;
   /// Asks the operator of the device to act.
-  virtual void ask(Act act, const std::string& words) = 0;
+  virtual void prompt(Act act, const std::string& words) = 0;
   /// Reports a result.
   virtual void report(const std::string& words) = 0;
 };

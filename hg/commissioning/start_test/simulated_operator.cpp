@@ -14,7 +14,7 @@ constexpr double kTwist = 2.0;  // rad
 
 }  // namespace
 
-void SimulatedOperator::ask(Act act) noexcept {
+void SimulatedOperator::prompt(Act act) noexcept {
   next_ = act;
   is_asked_ = true;
   next_s_ = -1.0;

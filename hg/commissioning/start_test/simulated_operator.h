@@ -11,7 +11,7 @@ namespace hg::start_test {
 class SimulatedOperator {
  public:
   /// Requests an action, performed a little later.
-  void ask(Act act) noexcept;
+  void prompt(Act act) noexcept;
   /// Writes the present action into the command of this period; `T_B_H` is the handle.
   void operate(double time_s, const Pose& T_B_H, CommandFrame& command) noexcept;
 

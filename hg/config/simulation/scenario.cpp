@@ -166,7 +166,7 @@ void settle_law(Scenario& scenario) {
       const auto limit = std::ranges::find(scenario.limits, name, &LimitInfo::name);
       if (limit == scenario.limits.end()) {
         throw SetupError("event '" + event.name + "': waits for '" + name +
-                         "', which is a limit only where the law knows the torques of the motors: "
+                         "', which is a limit only where the law models the torques of the motors: "
                          "law gauss, bounds recoverable, plant elastic");
       }
       condition.index = static_cast<int>(limit - scenario.limits.begin());

@@ -55,7 +55,7 @@ Scenario load_scenario(const std::filesystem::path& file);
 Scenario load_scenario(std::vector<SourceText> recorded);
 
 /// Updates the limits; call it after changing law, bounds or control method of the device. Its
-/// motors are limits of the scenario if the law knows them; events still name the same limits.
+/// motors are limits of the scenario if the law models them; events still name the same limits.
 /// Throws SetupError where an event waits for a motor that is no limit any more.
 void settle_law(Scenario& scenario);
 

@@ -159,7 +159,7 @@ void describe_bystander(V& v, BystanderDraft& d) {
         d.bystander.emplace();
         describe(child, d, *d.bystander);
       },
-      "somebody who stands in the way of the arm, whom only a simulated device can hit, "
+      "a person in the way of the arm, whom only a simulated device can hit, "
       "docs/concepts/compliance.md");
 }
 
@@ -186,10 +186,10 @@ void describe(V& v, std::vector<TimedPanel>& panels) {
   v.flag("operator_enable", now.panel.operator_enable, "whether the enabling switch is held");
   v.flag("override_key", now.panel.override_key, "whether the override key is turned");
   v.flag("person_in_field", now.panel.person_in_field,
-         "whether somebody besides the user is in the scanner's field");
+         "whether a person besides the user is in the scanner's field");
   v.flag("reset", now.panel.reset, "presses the reset button of the safety controller");
   v.choice("request", now.request, kRequests,
-           "what is asked for; from the first one on nothing is asked for by itself");
+           "requested mode; after the first request none is made automatically");
   panels.push_back(now);
 }
 
@@ -300,7 +300,7 @@ template <class V>
 void describe_injections(V& v, InjectionsDraft& d) {
   v.list(
       "faults", [&](auto& child) { describe(child, d); },
-      "faults on purpose, which only a simulated device plays");
+      "injected faults, which only a simulated device plays");
 }
 
 // ---- changes of the twin while it runs ----

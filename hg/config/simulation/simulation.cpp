@@ -119,31 +119,31 @@ void check_filters(Loader& loader, const Simulation& simulation) {
 
 }  // namespace
 
-ActuatorModel actual(ActuatorModel told, const RealityFactors& factors) {
-  told.stiffness *= factors.stiffness;
-  told.damping *= factors.damping;
-  told.coulomb_friction *= factors.friction;
-  told.viscous_friction *= factors.friction;
-  told.load_friction *= factors.friction;
-  told.rotor_inertia *= factors.rotor_inertia;
-  return told;
+ActuatorModel actual(ActuatorModel nominal, const RealityFactors& factors) {
+  nominal.stiffness *= factors.stiffness;
+  nominal.damping *= factors.damping;
+  nominal.coulomb_friction *= factors.friction;
+  nominal.viscous_friction *= factors.friction;
+  nominal.load_friction *= factors.friction;
+  nominal.rotor_inertia *= factors.rotor_inertia;
+  return nominal;
 }
 
-TorqueLoop actual(TorqueLoop told, const RealityFactors& factors) {
-  told.latency *= factors.latency;
-  told.current_lag *= factors.current_lag;
-  return told;
+TorqueLoop actual(TorqueLoop nominal, const RealityFactors& factors) {
+  nominal.latency *= factors.latency;
+  nominal.current_lag *= factors.current_lag;
+  return nominal;
 }
 
-DriveModel actual(DriveModel told, const RealityFactors& factors) {
-  told.lag *= factors.gantry_lag;
-  return told;
+DriveModel actual(DriveModel nominal, const RealityFactors& factors) {
+  nominal.lag *= factors.gantry_lag;
+  return nominal;
 }
 
-Payload actual(Payload told, const RealityFactors& factors) {
-  told.mass *= factors.payload;
-  told.inertia *= factors.payload;
-  return told;
+Payload actual(Payload nominal, const RealityFactors& factors) {
+  nominal.mass *= factors.payload;
+  nominal.inertia *= factors.payload;
+  return nominal;
 }
 
 simulator::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,

@@ -56,11 +56,11 @@ struct GearEffects {
 simulator::JointEffects effects_of(const ActuatorModel& actuator, const MotorEffects& motors,
                                    const GearEffects& gears, double gear_ratio);
 
-/// Actual model where the device file says `told`.
-ActuatorModel actual(ActuatorModel told, const RealityFactors& factors);
-TorqueLoop actual(TorqueLoop told, const RealityFactors& factors);
-DriveModel actual(DriveModel told, const RealityFactors& factors);
-Payload actual(Payload told, const RealityFactors& factors);
+/// Actual model where the device file says `nominal`.
+ActuatorModel actual(ActuatorModel nominal, const RealityFactors& factors);
+TorqueLoop actual(TorqueLoop nominal, const RealityFactors& factors);
+DriveModel actual(DriveModel nominal, const RealityFactors& factors);
+Payload actual(Payload nominal, const RealityFactors& factors);
 
 struct Simulation {
   bool is_from_file = false;  ///< false: no simulation file, the device file is exact

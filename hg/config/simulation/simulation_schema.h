@@ -249,11 +249,11 @@ void describe(V& v, simulator::SafetyPlcConfig& safety) {
   v.number("discrepancy_s", safety.discrepancy, kPositive,
            "that the two channels of an input may differ");
   v.number("response_s", safety.response, kNotNegative, "to switches");
-  v.number("scanner_response_s", safety.scanner_response, kNotNegative, "to somebody in a field");
+  v.number("scanner_response_s", safety.scanner_response, kNotNegative, "to a person in a field");
   v.number("stop_time_s", safety.stop_time, kPositive,
            "that a controlled stop may take before the power goes");
   v.number("safe_speed_m_per_s", safety.safe_speed, kPositive,
-           "of handle and gantry while nobody holds the handle; beyond it the scanner's large "
+           "of handle and gantry while the handle is not held; beyond it the scanner's large "
            "field counts");
   v.number("standstill_m_per_s", safety.standstill, kPositive,
            "of handle and gantry while motion is not permitted");
@@ -321,8 +321,7 @@ void describe(V& v, FlexibleDraft& joint) {
 
 template <class V>
 void describe_base(V& v, SimulationDraft& draft) {
-  v.path("base", draft.base,
-         "another simulation file: what this one does not say is as that one says");
+  v.path("base", draft.base, "another simulation file, with the values that are not given here");
 }
 
 /// The first part, which defines the joint names that the second uses.
@@ -336,7 +335,7 @@ void describe_plant(V& v, SimulationDraft& draft) {
   v.rule(draft.seed == std::floor(draft.seed), "seed", "must be a whole number",
          model::to_text(draft.seed));
   v.path("urdf", draft.urdf,
-         "of a plant with more joints than the controller knows; without it that of the device");
+         "of a plant with more joints than the controller models; without it that of the device");
 }
 
 template <class V>
@@ -344,7 +343,7 @@ void describe_effects(V& v, SimulationDraft& draft, const std::vector<std::strin
                       const std::vector<std::string>& manipulator) {
   v.group(
       "motors", [&](auto& child) { describe(child, draft.simulation.motors); },
-      "of the manipulator: what the controller does not know about them");
+      "of the manipulator: what the controller does not model");
   v.group(
       "gears", [&](auto& child) { describe(child, draft.simulation.gears); },
       "of the manipulator, likewise");
@@ -384,7 +383,7 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
         joint.unit = draft.joint_units[i];
         describe(child, joint);
       },
-      "joints of 'urdf' that nobody drives: bending links or frames");
+      "joints of 'urdf' without a drive: bending links or frames");
   v.rule(v.is_given("urdf") || !draft.urdf.empty() || !v.is_given("flexible"), "flexible",
          "needs 'urdf': the device has no joints but those that are driven");
   v.group(

@@ -125,7 +125,7 @@ TEST(OwnDevice, WithoutAGantryNothingOfItIsGiven) {
   EXPECT_EQ(message("handle: l7\nroot_link: l1\n"), "no error");
 }
 
-TEST(OwnDevice, SaysHowSensorsAreReadAndWhatHangsBeyondThem) {
+TEST(OwnDevice, ReportsHowSensorsAreReadAndWhatHangsBeyondThem) {
   SourceReader reader = reader_of(
       "handle: l7\nroot_link: l1\n"
       "estimation: {link_pole_Hz: 80, motor_low_pass_Hz: 150, wrench_low_pass_Hz: 50, has_imu: "
@@ -188,7 +188,7 @@ TEST(OwnDevice, WithoutPrepositioningTheGantryKeepsWithinItsDrive) {
 
 TEST(OwnDevice, WithoutAChainTheRestOfTheFileIsReadAllTheSame) {
   const std::string faults = "rate_Hz: -5\nsynchronisation: {kD_tran_1_per_s: -10}\n";
-  const std::string told =
+  const std::string expected =
       "device.yaml:9:10: rate_Hz: must be 100 .. 20000, got -5\n"
       "device.yaml:10:36: synchronisation.kD_tran_1_per_s: must be 1e-06 .. 1e+05, got -10";
   const auto names = [&](const std::string& gantry) {
@@ -197,8 +197,8 @@ TEST(OwnDevice, WithoutAChainTheRestOfTheFileIsReadAllTheSame) {
            "ddq_max_rad_per_s2: 1}\n";
   };
   const std::string broken = message(names(kGantry), "<robot name='arm'><link");
-  EXPECT_EQ(broken.substr(0, told.size()), told) << broken;
-  const std::string rest = broken.substr(told.size());
+  EXPECT_EQ(broken.substr(0, expected.size()), expected) << broken;
+  const std::string rest = broken.substr(expected.size());
   EXPECT_EQ(rest.find("\narm.urdf:1: "), 0u) << broken;
   EXPECT_EQ(rest.find('\n', 1), std::string::npos) << broken;
 
@@ -207,7 +207,7 @@ TEST(OwnDevice, WithoutAChainTheRestOfTheFileIsReadAllTheSame) {
   const std::string parent = "<parent link='l6'/>";
   branched.replace(branched.find(parent), parent.size(), "<parent link='l5'/>");
   const std::string shape = message(names(kGantry), branched);
-  EXPECT_EQ(shape.substr(0, told.size()), told) << shape;
+  EXPECT_EQ(shape.substr(0, expected.size()), expected) << shape;
   EXPECT_NE(shape.find("branches into"), std::string::npos) << shape;
   EXPECT_EQ(std::count(shape.begin(), shape.end(), '\n'), 2) << shape;
 }
@@ -238,7 +238,7 @@ std::string message_of_list(const std::string& manipulator) {
   return message_of([&] { load_device("device.yaml", reader); });
 }
 
-// Values of the joints are read all the same, so that all faults are told.
+// Values of the joints are read all the same, so that all faults are reported.
 TEST(OwnDevice, ListsOfMoreJointsThanADeviceMayHaveAreRefused) {
   const std::string all = message_of_list("[j0, j1, j2, j3, j4, j5, j6, j7]");
   EXPECT_NE(all.find("at most 7 joints are possible"), std::string::npos) << all;

@@ -1,5 +1,5 @@
 /// Kalman filter of one gantry axis with the drive model: position, speed, and an acceleration that
-/// the model does not know.
+/// the model does not contain.
 ///
 /// Model, [C] 2: q' = v + n_q,  v' = clip((u - v) / lag) + d + n_v,  d' = n_d,  y = q + n_y; u is
 /// the command that has passed the dead time. n_* are white with (two-sided) densities S_*. With
@@ -9,7 +9,7 @@
 /// the spectra |closed loop|^2 / |open loop|^2 and 1 + sum S_i |G_i|^2 / S_y are equal, term by
 /// term in the frequency, and all densities are positive for every f. So f states how much is
 /// trusted: the encoder (large) or the drive model (small). Exact for small periods.
-/// [C] 2 has f = 8 Hz; a gantry that shakes at 4-16 Hz asks for up to 40 Hz.
+/// [C] 2 has f = 8 Hz; a gantry that shakes at 4-16 Hz needs up to 40 Hz.
 #pragma once
 
 #include "hg/signals/drive_model.h"

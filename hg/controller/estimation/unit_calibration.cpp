@@ -18,7 +18,7 @@ constexpr double kMostVariance = 0.05 * 0.05;  // (m/s^2)^2
 constexpr double kMemory_s = 60.0;             // of motion like the present one
 constexpr double kSamplesPerSecond = 2.0 * kCompared_Hz;               // that say something new
 constexpr double kAccelerometerError = 0.05, kGyroscopeError = 0.005;  // m/s^2, rad/s
-// what is believed before anything was seen: 0, with these deviations
+// prior before any measurement: 0, with these deviations
 constexpr double kTurn = 3.0, kGyroscopeBias = 0.1, kBias = 1.0, kPlace = 0.3;
 
 using Turns = Eigen::Matrix<double, UnitCalibration::kTurns, 1>;

@@ -1,6 +1,6 @@
 /// Moves the gantry to its target: P controller (27), velocity bounds. The target: gantry_target.h.
 ///
-/// Differs from [HG]: the bounds know the drive's braking distance instead of (28)-(29).
+/// Differs from [HG]: the bounds use the drive's braking distance instead of (28)-(29).
 /// Prismatic axes: m and m/s, revolute ones rad and rad/s. No allocation, noexcept after set-up.
 #pragma once
 

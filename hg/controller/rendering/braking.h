@@ -18,7 +18,7 @@ struct Motion {
 /// Largest acceleration of the handle along the unit vector `direction`, m/s^2, with unchanged
 /// velocity across and about it and every motor within allowed_torque(): M ddq + J ddq_m + h within
 /// its bounds, M of the links, J of the rotors, h of gravity, Coriolis and w_H. 0 where the motors
-/// cannot even hold the handle. Where the law does not know the motors: rating of the handle along
+/// cannot even hold the handle. Where the law does not model the motors: rating of the handle along
 /// that direction, infinity without one.
 double largest_acceleration(const DeviceModel& device, const Motion& motion,
                             const Eigen::Vector3d& direction);

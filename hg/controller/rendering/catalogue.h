@@ -11,7 +11,7 @@
 
 namespace hg::rendering {
 
-/// Manipulator joints, virtual joints, motors that the law knows, x y z of each Cartesian frame,
+/// Manipulator joints, virtual joints, motors that the law models, x y z of each Cartesian frame,
 /// then one entry per degree of freedom of the twin. Quantities without limits are listed, too:
 /// their range is unbounded.
 LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin);

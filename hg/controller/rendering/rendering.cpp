@@ -186,8 +186,8 @@ SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& res
   update_device(input.robot, state.reference);
   advance_parameters(twin_, state.twin, dt_, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
-  const model::Loads loads = {values.loads.mass * state.calming.inertia,
-                              values.loads.gravity / state.calming.inertia};
+  const model::Loads loads = {values.loads.mass * state.added.inertia,
+                              values.loads.gravity / state.added.inertia};
   twin_now_.update(state.twin.q_a, state.twin.dq_a, loads);
   factor_mass(twin_now_.M(), L_);
   J_H_ = device_now_.jacobian(device_.handle);
@@ -232,9 +232,9 @@ void Rendering::add_torques(const LawInput& input, bool is_released, State& stat
     budget.spring = share * spring_torque(twin_, state.twin.q_a, state.inner.parameters);
     if (share < 1.0) budget.spring -= (1.0 - share) * twin_now_.gravity();
     budget.damping = damping_torque(L_, state.twin.dq_a, dt_, values);
-    if (state.calming.damping > 0.0) {
+    if (state.added.damping > 0.0) {
       const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
-      budget.damping.noalias() += J_a_.topRows<3>().transpose() * (state.calming.damping * v_E);
+      budget.damping.noalias() += J_a_.topRows<3>().transpose() * (state.added.damping * v_E);
     }
     budget.friction = slip_torque(state.twin.dq_a, state.inner);
     budget.surface = J_a_.transpose() * (share * values.w_ref);
@@ -269,7 +269,7 @@ void Rendering::feel_surfaces(const LawInput& input, State& state, LawResult& re
   Eigen::Vector3d push = input.robot.w_H.head<3>();
   if (!environment_.surfaces().empty()) push += push_of_twin(result.budget);
   const double mass_scale =
-      state.inner.parameters.now.loads.mass * state.calming.inertia / twin_.mass_scale;
+      state.inner.parameters.now.loads.mass * state.added.inertia / twin_.mass_scale;
   result.contact = environment_.step(p_E, v_E, push, state.contact, mass_scale);
   if (result.contact.surface < 0) return;
   result.contact.force *= input.force_share;
@@ -327,7 +327,7 @@ void Rendering::align(const RobotState& robot, State& state) noexcept {
   }
 }
 
-bool Rendering::stay_near(const RobotState& robot, double largest, State& state) noexcept {
+bool Rendering::clamp_reference(const RobotState& robot, double largest, State& state) noexcept {
   bool is_far = false;
   for (int i = 0; i < device_.n_m; ++i) {
     double& q = state.reference.q_m[i];
@@ -474,7 +474,7 @@ double Rendering::apparent_mass(const State& state) const noexcept {
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
       J_a_.topRows<3>().transpose();
   L_.triangularView<Eigen::Lower>().solveInPlace(root);
-  return 1.0 / (state.calming.inertia * root.colwise().squaredNorm().maxCoeff());
+  return 1.0 / (state.added.inertia * root.colwise().squaredNorm().maxCoeff());
 }
 
 void Rendering::find_kinematics(const State& state, LawResult& result) const noexcept {

@@ -27,14 +27,14 @@
 namespace hg::rendering {
 
 /// Additional damping and inertia of the twin; see hg/controller/safety/passivity.
-struct Calming {
+struct AddedImpedance {
   double damping = 0.0;  ///< Damping of the end effector in all directions, Ns/m
   double inertia = 1.0;  ///< Factor of the twin's inertia, without more weight
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const Calming& calming) {
-  const auto& [damping, inertia] = calming;
+void hashed(auto& hash, const AddedImpedance& added) {
+  const auto& [damping, inertia] = added;
   hash.mix(damping, inertia);
 }
 
@@ -43,7 +43,7 @@ struct State {
   ReferenceState reference;
   TwinState twin;
   TwinInnerState inner;
-  Calming calming;  ///< Additional damping and inertia in the next step
+  AddedImpedance added;  ///< Additional damping and inertia in the next step
   /// Wrench on the handle that stands for a contact of the arm, in the next step.
   Vector6 touch = Vector6::Zero();
   hqp::ActiveSet active_set;
@@ -57,13 +57,13 @@ struct State {
 /// Words of the state hash, in its order; `rows` of the active set are in use. `touch` is hashed by
 /// the cycle, where contacts of the arm are detected.
 void hashed(auto& hash, const State& state, int rows) {
-  const auto& [reference, twin, inner, calming, touch, active_set, touched, ddq_p, motor_torque,
+  const auto& [reference, twin, inner, added, touch, active_set, touched, ddq_p, motor_torque,
                contact] = state;
   hash.mix(reference, twin);
   hashed(hash, inner, static_cast<int>(twin.dq_a.size()));
   hash.mix_first(active_set.state, rows);
   hash.mix_first(active_set.before, rows);
-  hash.mix(touched, calming, contact, motor_torque, ddq_p);
+  hash.mix(touched, added, contact, motor_torque, ddq_p);
 }
 
 /// Throws SetupError naming the first property of the models that the law cannot use.
@@ -102,7 +102,7 @@ class Rendering {
   /// Keeps the reference within `largest` (rad or m) of the measured joints; [C] 6. Where the
   /// device lags behind, reference and twin are moved back to it, so that the error cannot build up
   /// and release suddenly. True when they were moved.
-  bool stay_near(const RobotState& robot, double largest, State& state) noexcept;
+  bool clamp_reference(const RobotState& robot, double largest, State& state) noexcept;
 
   /// Whether in the last step a joint or virtual joint of the device could not be kept within its
   /// limits: the motion of the gantry at a held twin has priority over them.

@@ -10,7 +10,7 @@
 namespace hg::rendering {
 namespace {
 
-// where the law knows the torques of the motors:
+// where the law models the torques of the motors:
 constexpr double kTrackingMargin = 1e-3;     // rad or m, of a joint behind its reference
 constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its limits
 constexpr double kJumped = 1.5;              // times the speed of a motor without load
@@ -84,7 +84,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& op
       n_a_(twin.chain.nv()),
       n_g_(led_axes(device, options)),
       stop_count_(has_stops ? surfaces::kMostFacing : 0),
-      knows_torques_(!device.motors().empty()),
+      has_torques_(!device.motors().empty()),
       first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
       problem_(capacity_of(device, twin, options, stop_count_)),
       coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
@@ -101,7 +101,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   problem_.add_level();
   coupling_row_ = problem_.rows();
   for (int i = 0; i < 6; ++i) problem_.add_row(coefficients_, {});
-  const double margin = knows_torques_ ? kTrackingMargin : 0.0;
+  const double margin = has_torques_ ? kTrackingMargin : 0.0;
   problem_.add_level();
   for (int i = 0; i < n_m_; ++i) {
     add_limit(device.joint_limits[static_cast<std::size_t>(i)], i, margin);
@@ -110,7 +110,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   for (const VirtualJoint& joint : device.virtual_joints) {
     add_limit(joint.limits, -1, margin * joint.weights.lpNorm<1>());
   }
-  if (knows_torques_) {
+  if (has_torques_) {
     problem_.add_level();
     for (int i = 0; i < n_m_; ++i) {
       add_limit({.ddq_max = device.joint_limits[static_cast<std::size_t>(i)].ddq_max}, -1, 0.0);
@@ -121,7 +121,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
   }
-  if (knows_torques_) {
+  if (has_torques_) {
     for (LimitRow& row : limit_rows_) {
       row.options.is_capped = false;
       row.options.tau_onset = kBrakingOnset;
@@ -133,7 +133,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   }
   for (int i = 0; i < stop_count_; ++i) {
     add_limit({.q_min = 0.0, .ddq_max = stop_rating(device)}, -1, 0.0);
-    if (knows_torques_) limit_rows_.back().options.tau_onset = kTwinBrakingOnset;
+    if (has_torques_) limit_rows_.back().options.tau_onset = kTwinBrakingOnset;
     limit_rows_.back().options.is_capped = false;
   }
   if (options_.bounds == Bounds::kPaper) {
@@ -192,7 +192,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   if (n_g_ > 0) fill_gantry(input);
   fill_coupling(device, twin, input);
   fill_device_limits(device, input);
-  if (knows_torques_) fill_motors(device, input);
+  if (has_torques_) fill_motors(device, input);
   if (joint_braking_) brake_together();
   fill_twin_limits(twin, input);
   if (stop_count_ > 0) fill_stops(input, input.twin_chain.bias_acceleration(twin.end_effector));
@@ -387,7 +387,7 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     }
     row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
     row.options = limits::recoverable_options(effective.limits, dt_, dt_);
-    if (knows_torques_) row.options.tau_onset = kTwinBrakingOnset;
+    if (has_torques_) row.options.tau_onset = kTwinBrakingOnset;
     const bool is_held =
         row.held_by.lower != LimitCause::kNone || row.held_by.upper != LimitCause::kNone;
     row.is_recoverable = options_.bounds == Bounds::kRecoverable || is_held ||
@@ -484,7 +484,7 @@ void Tasks::fill_ranges(const TaskInput& input) noexcept {
 
 void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
   motor_torque_.resize(0);
-  if (!knows_torques_ || !are_torques_known_) return;
+  if (!has_torques_ || !are_torques_known_) return;
   const Eigen::Map<const Eigen::VectorXd> x(solution.x.data(), problem_.variables());
   motor_torque_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {

@@ -7,7 +7,7 @@
 ///   then            coupling of H and E (12), 6 equalities
 ///   then            manipulator joints
 ///   then            virtual joints (singularity)
-///   then            torques of the motors, where the law knows them; motor_torque.h
+///   then            torques of the motors, where the law models them; motor_torque.h
 ///   then            Cartesian limits, a level per frame
 ///   then            twin joints and locks, virtual surfaces that are stops
 ///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
@@ -87,11 +87,11 @@ struct TaskInput {
 double stop_rating(const DeviceModel& device);
 
 /// Whether accelerations of the gantry are unknowns of the law. Where the law cannot have them, or
-/// there is no gantry, a rule leads it, whatever `options` ask for.
+/// there is no gantry, a rule leads it, whatever `options` select.
 bool leads_gantry(const DeviceModel& device, const Options& options) noexcept;
 
-/// Whether limits of the device brake together. Where the law does not know the motors, or bounds
-/// do not brake in time, each brakes separately, whatever `options` ask for.
+/// Whether limits of the device brake together. Where the law does not model the motors, or bounds
+/// do not brake in time, each brakes separately, whatever `options` select.
 bool brakes_together(const DeviceModel& device, const Options& options) noexcept;
 
 class Tasks {
@@ -121,7 +121,7 @@ class Tasks {
   /// Computes the motor torques of `solution`, which solves problem().
   void find_motor_torques(const hqp::Solution& solution) noexcept;
   /// Motor torques found by find_motor_torques(), Nm or N: n_m, or empty where the law does not
-  /// know the motors.
+  /// model the motors.
   const VectorM& motor_torque() const noexcept { return motor_torque_; }
   /// Whether the gantry's accelerations are unknowns.
   bool leads_gantry() const noexcept { return n_g_ > 0; }
@@ -172,7 +172,7 @@ class Tasks {
   int n_m_, n_a_;
   int n_g_;  ///< Gantry axes that the law leads
   int stop_count_;
-  bool knows_torques_;
+  bool has_torques_;
   bool are_torques_known_ = false;  ///< Motor torques are known in this cycle
   int first_motor_;                 ///< Index of the first motor limit
   int limit_row_count_ = 0;

@@ -175,15 +175,15 @@ Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, con
     state.dq_p_model = state.gantry_gap = VectorP::Zero(n_p_);
     state.gantry_drift = state.gantry_way = VectorP::Zero(n_p_);
   }
-  for (int i = 0; i < n_m_; ++i) look_at_joint(i, rendered, watched, state);
-  look_at_motors(rendered.robot, watched, state);
-  look_at_torques(watched);
-  look_at_inertial_unit(watched);
-  look_at_gantry(sensors, rendered, watched, state);
-  look_at_braking(rendered, watched, state);
-  look_at_frames(rendered, watched);
-  look_at_clocks(sensors, watched, state);
-  look_at_sensors(sensors, state);
+  for (int i = 0; i < n_m_; ++i) check_joint(i, rendered, watched, state);
+  check_motors(rendered.robot, watched, state);
+  check_torques(watched);
+  check_inertial_unit(watched);
+  check_gantry(sensors, rendered, watched, state);
+  check_braking(rendered, watched, state);
+  check_frames(rendered, watched);
+  check_clocks(sensors, watched, state);
+  check_sensor_values(sensors, state);
   const Fault shaking = look_for_shaking(sensors, rendered, watched, state);
   Verdict verdict = judge(state);
   if (shaking.code != FaultCode::kNone) verdict.warning = shaking;
@@ -191,8 +191,8 @@ Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, con
   return verdict;
 }
 
-void Monitor::look_at_joint(int joint, const Rendered& rendered, const Watched& watched,
-                            MonitorState& state) noexcept {
+void Monitor::check_joint(int joint, const Rendered& rendered, const Watched& watched,
+                          MonitorState& state) noexcept {
   const std::size_t i = at(joint);
   const double q = rendered.robot.q_m[joint], dq = rendered.robot.dq_m[joint];
   const bool is_on = is_powered(watched.state);
@@ -224,11 +224,11 @@ void Monitor::look_at_joint(int joint, const Rendered& rendered, const Watched& 
 
 // Motor torque that command, spring and inertia do not explain, observed from the momentum without
 // accelerations. Beyond friction, the motor does not follow its command.
-void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
-                             MonitorState& state) noexcept {
-  const bool is_told = watched.tau_m.size() == n_m_ && robot.dtheta_m.size() == n_m_ &&
-                       robot.tau_m.size() == n_m_ && !actuators_.empty();
-  if (!is_told || !is_powered(watched.state)) {
+void Monitor::check_motors(const RobotState& robot, const Watched& watched,
+                           MonitorState& state) noexcept {
+  const bool is_known = watched.tau_m.size() == n_m_ && robot.dtheta_m.size() == n_m_ &&
+                        robot.tau_m.size() == n_m_ && !actuators_.empty();
+  if (!is_known || !is_powered(watched.state)) {
     state.momentum.resize(0);
     return;
   }
@@ -241,8 +241,8 @@ void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
     if (is_new) state.momentum[i] = p;
     const double unexplained = (state.momentum[i] - p) / kMotorMemory_s;
     const double most = torque_available(actuator, watched.tau_m[i] * dtheta > 0.0 ? dtheta : 0.0);
-    const double told = std::clamp(watched.tau_m[i], -most, most);
-    state.momentum[i] += dt_ * (told - tau_J - unexplained);
+    const double commanded = std::clamp(watched.tau_m[i], -most, most);
+    state.momentum[i] += dt_ * (commanded - tau_J - unexplained);
     const double friction =
         coulomb_torque(actuator, 0.0, tau_J) + actuator.viscous_friction * std::abs(dtheta);
     look<FaultCode::kMotorDeviates>(i, std::abs(unexplained) - friction,
@@ -252,7 +252,7 @@ void Monitor::look_at_motors(const RobotState& robot, const Watched& watched,
 
 // Joint torque that neither motion nor the user's wrench explains: contact with the arm, or force
 // sensor and joint torques contradict each other. Running only: a stop need not brake exactly.
-void Monitor::look_at_torques(const Watched& watched) noexcept {
+void Monitor::check_torques(const Watched& watched) noexcept {
   if (mode_of(watched.state) != Mode::kRunning || watched.unexplained.size() != n_m_) return;
   for (int i = 0; i < n_m_ && !actuators_.empty(); ++i) {
     look<FaultCode::kTorqueUnexplained>(
@@ -262,7 +262,7 @@ void Monitor::look_at_torques(const Watched& watched) noexcept {
 }
 
 // Compares the inertial unit at the handle with the encoders.
-void Monitor::look_at_inertial_unit(const Watched& watched) noexcept {
+void Monitor::check_inertial_unit(const Watched& watched) noexcept {
   if (!is_powered(watched.state)) return;
   look<FaultCode::kTurnUnexplained>(-1, watched.turn,
                                     config_.gyroscope_tolerance + watched.turn_uncertainty);
@@ -270,8 +270,8 @@ void Monitor::look_at_inertial_unit(const Watched& watched) noexcept {
                                       config_.accelerometer_tolerance + watched.slip_uncertainty);
 }
 
-void Monitor::look_at_gantry(const SensorFrame& sensors, const Rendered& rendered,
-                             const Watched& watched, MonitorState& state) noexcept {
+void Monitor::check_gantry(const SensorFrame& sensors, const Rendered& rendered,
+                           const Watched& watched, MonitorState& state) noexcept {
   const RobotState& robot = rendered.robot;
   const bool is_on = is_powered(watched.state);
   const double beyond = is_gantry_slide_ ? config_.gantry_tolerance : config_.turn_tolerance;
@@ -313,8 +313,8 @@ void Monitor::look_at_gantry(const SensorFrame& sensors, const Rendered& rendere
 // Checks every axis of a controlled stop against its ramp: a gantry axis against its drive model, a
 // joint against the integrated accelerations of its reference (the reference itself is shifted back
 // to a joint that does not follow). An axis that does not brake as commanded needs its brakes.
-void Monitor::look_at_braking(const Rendered& rendered, const Watched& watched,
-                              MonitorState& state) noexcept {
+void Monitor::check_braking(const Rendered& rendered, const Watched& watched,
+                            MonitorState& state) noexcept {
   const bool is_new = !state.is_stopping;
   state.is_stopping = mode_of(watched.state) == Mode::kStopping;
   if (!state.is_stopping) return;
@@ -353,7 +353,7 @@ void Monitor::look_at_braking(const Rendered& rendered, const Watched& watched,
   }
 }
 
-void Monitor::look_at_frames(const Rendered& rendered, const Watched& watched) noexcept {
+void Monitor::check_frames(const Rendered& rendered, const Watched& watched) noexcept {
   const Mode mode = mode_of(watched.state);
   if (mode != Mode::kRunning && mode != Mode::kStopping) return;
   for (int i = n_m_; i < end_cartesian_; ++i) {
@@ -392,8 +392,8 @@ Fault Monitor::look_for_shaking(const SensorFrame& sensors, const Rendered& rend
   return make_fault(FaultCode::kOscillation, index, found.index, 1.0);
 }
 
-void Monitor::look_at_clocks(const SensorFrame& sensors, const Watched& watched,
-                             MonitorState& state) noexcept {
+void Monitor::check_clocks(const SensorFrame& sensors, const Watched& watched,
+                           MonitorState& state) noexcept {
   if (state.has_sample) {
     const double error = (sensors.time_s - state.time_s) / dt_ - 1.0;
     state.clock_error += kClockMemory * (error - state.clock_error);
@@ -411,7 +411,7 @@ void Monitor::look_at_clocks(const SensorFrame& sensors, const Watched& watched,
   look<FaultCode::kCycleOverrun>(1, state.late, config_.overruns_per_s);
 }
 
-void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept {
+void Monitor::check_sensor_values(const SensorFrame& sensors, MonitorState& state) noexcept {
   look<FaultCode::kWrenchTooLarge>(0, sensors.w_S.head<3>().norm(), config_.force_max);
   look<FaultCode::kWrenchTooLarge>(1, sensors.w_S.tail<3>().norm(), config_.torque_max);
   look<FaultCode::kBusErrors>(-1, sensors.bus_errors, 0.0);
@@ -440,14 +440,14 @@ void Monitor::look_at_sensors(const SensorFrame& sensors, MonitorState& state) n
                                    far * drive_.dq_max);
     }
   }
-  if (config_.frozen_samples > 0.0) look_at_noise(sensors, state);
+  if (config_.frozen_samples > 0.0) check_noise(sensors, state);
   state.q_m = sensors.q_m;
   state.q_p = sensors.q_p;
   state.has_sample = true;
 }
 
 // joint torques by joint, then the components of wrench and inertial unit
-void Monitor::look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept {
+void Monitor::check_noise(const SensorFrame& sensors, MonitorState& state) noexcept {
   const auto compare = [&](int first, const auto& now, const auto& before) {
     const bool can_compare = state.has_sample && now.size() == before.size();
     for (int i = 0; i < now.size(); ++i) {

@@ -219,23 +219,22 @@ class Monitor {
 
   template <FaultCode code>
   void look(int index, double value, double limit) noexcept;
-  void look_at_joint(int joint, const Rendered& rendered, const Watched& watched,
+  void check_joint(int joint, const Rendered& rendered, const Watched& watched,
+                   MonitorState& state) noexcept;
+  void check_sensor_values(const SensorFrame& sensors, MonitorState& state) noexcept;
+  void check_torques(const Watched& watched) noexcept;
+  void check_inertial_unit(const Watched& watched) noexcept;
+  void check_motors(const RobotState& robot, const Watched& watched, MonitorState& state) noexcept;
+  void check_noise(const SensorFrame& sensors, MonitorState& state) noexcept;
+  void check_gantry(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
+                    MonitorState& state) noexcept;
+  void check_braking(const Rendered& rendered, const Watched& watched,
                      MonitorState& state) noexcept;
-  void look_at_sensors(const SensorFrame& sensors, MonitorState& state) noexcept;
-  void look_at_torques(const Watched& watched) noexcept;
-  void look_at_inertial_unit(const Watched& watched) noexcept;
-  void look_at_motors(const RobotState& robot, const Watched& watched,
-                      MonitorState& state) noexcept;
-  void look_at_noise(const SensorFrame& sensors, MonitorState& state) noexcept;
-  void look_at_gantry(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
-                      MonitorState& state) noexcept;
-  void look_at_braking(const Rendered& rendered, const Watched& watched,
-                       MonitorState& state) noexcept;
-  void look_at_frames(const Rendered& rendered, const Watched& watched) noexcept;
+  void check_frames(const Rendered& rendered, const Watched& watched) noexcept;
   Fault look_for_shaking(const SensorFrame& sensors, const Rendered& rendered,
                          const Watched& watched, MonitorState& state) noexcept;
-  void look_at_clocks(const SensorFrame& sensors, const Watched& watched,
-                      MonitorState& state) noexcept;
+  void check_clocks(const SensorFrame& sensors, const Watched& watched,
+                    MonitorState& state) noexcept;
   Verdict judge(MonitorState& state) const noexcept;
 
   MonitorConfig config_;

@@ -46,7 +46,7 @@ ShakingWatch::ShakingWatch(double dt, double mass) noexcept : dt_(dt), mass_(mas
   a2_ = (1.0 - std::numbers::sqrt2 * k + k * k) * norm;
 }
 
-double ShakingWatch::look_at_torque(const Eigen::Vector3d& torque, ShakingState& s) const noexcept {
+double ShakingWatch::check_torque(const Eigen::Vector3d& torque, ShakingState& s) const noexcept {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const double slow = share_of(dt_, 1.0 / (kTurn * kLow_Hz)), mean = share_of(dt_, kMean);
   s.x1 += share_of(dt_, 1.0 / (kTurn * kHigh_Hz)) * (torque - s.x1);
@@ -108,7 +108,7 @@ ShakingReport ShakingWatch::step(const ShakingInput& input, ShakingState& state)
     state.in1 = state.in2 = input.w_S;
     state.is_started = true;
   }
-  const double torque = look_at_torque(input.w_H.tail<3>(), state);
+  const double torque = check_torque(input.w_H.tail<3>(), state);
   look_above(input.w_S, state);
   const double bouncing = look_for_bouncing(input, state);
   ShakingReport report;

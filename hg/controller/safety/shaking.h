@@ -65,7 +65,7 @@ class ShakingWatch {
   ShakingReport step(const ShakingInput& input, ShakingState& state) const noexcept;
 
  private:
-  double look_at_torque(const Eigen::Vector3d& torque, ShakingState& state) const noexcept;
+  double check_torque(const Eigen::Vector3d& torque, ShakingState& state) const noexcept;
   void look_above(const Vector6& w_S, ShakingState& state) const noexcept;
   double look_for_bouncing(const ShakingInput& input, ShakingState& state) const noexcept;
 

@@ -73,7 +73,7 @@ Refusal guard(Event event, const SupervisorInput& input) noexcept {
   }
 }
 
-void look_at_switches(const SupervisorInput& input, SupervisorState& state) noexcept {
+void check_switches(const SupervisorInput& input, SupervisorState& state) noexcept {
   happen(Event::kSample, state);
   if (!input.safety.operator_enable) {
     const State before = state.state;
@@ -95,7 +95,7 @@ Refusal advance(const SupervisorInput& input, SupervisorState& state) noexcept {
   if (input.fault.code != FaultCode::kNone) {
     break_rule(input.fault, state, input.reaction);
   } else {
-    look_at_switches(input, state);
+    check_switches(input, state);
   }
   const std::optional<Event> event = is_edge ? event_of(input.request) : std::nullopt;
   if (!event) return Refusal::kNone;
@@ -125,8 +125,8 @@ void break_rule(const Fault& fault, SupervisorState& state, Stop at_least) noexc
   (has_cause ? state.also : state.fault) = fault;
 }
 
-void go_on_stopping(bool is_at_rest, int longest, double longest_s,
-                    SupervisorState& state) noexcept {
+void continue_stop(bool is_at_rest, int longest, double longest_s,
+                   SupervisorState& state) noexcept {
   if (state.mode() != Mode::kStopping) return;
   ++state.stop_samples;
   if (is_at_rest) {

@@ -58,8 +58,7 @@ void break_rule(const Fault& fault, SupervisorState& state, Stop at_least = Stop
 /// Counts one more sample of a stop. Ends it when the device `is_at_rest`; reports kStopTooSlow
 /// once it has taken longer than `longest_s`, which is `longest` samples. No effect in other
 /// states.
-void go_on_stopping(bool is_at_rest, int longest, double longest_s,
-                    SupervisorState& state) noexcept;
+void continue_stop(bool is_at_rest, int longest, double longest_s, SupervisorState& state) noexcept;
 
 /// Broken rule that the safety controller's inputs mean in the present state, or kNone.
 Fault check_safety_inputs(const SafetyInputs& safety, const SupervisorState& state) noexcept;

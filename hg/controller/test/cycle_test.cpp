@@ -115,7 +115,7 @@ TEST(Cycle, ArmsRunsAndMovesTheTwinWithTheHand) {
 TEST(Cycle, ForcesComeInWithARampWhenRenderingBegins) {
   Loop loop;
   loop.sensors.w_S[0] = 20.0;
-  loop.run(50);  // somebody leans on the handle before it runs
+  loop.run(50);  // a person leans on the handle before it runs
   loop.start_running();
   double last = loop.record.a_H.norm(), largest_change = last;
   for (int k = 0; k < 320; ++k) {
@@ -149,7 +149,7 @@ TEST(Cycle, BeforeRunningNothingMoves) {
   EXPECT_EQ(loop.command.q_m, kPosture);
   EXPECT_TRUE(loop.command.dq_p.isZero());
   EXPECT_TRUE(loop.command.ddq_m.isZero());
-  EXPECT_NEAR(loop.record.robot.w_H.norm(), 30.0, 1e-9);  // what is felt is still told
+  EXPECT_NEAR(loop.record.robot.w_H.norm(), 30.0, 1e-9);  // the user wrench is still reported
 }
 
 TEST(Cycle, AStopBringsEverythingToRestAgainstAPushingHand) {
@@ -212,7 +212,7 @@ TEST(Cycle, ANanInTheWrenchEndsInASafeCommandWithItsCause) {
   EXPECT_EQ(loop.record.fault.index, 16);
 }
 
-TEST(Cycle, AWrenchBeyondTheSensorsRangeIsNotUsedNeitherBeforeTheStopNorInIt) {
+TEST(Cycle, AWrenchBeyondTheSensorsRangeIsNeverUsed) {
   Loop loop;
   loop.start_running();
   loop.sensors.w_S[0] = 4.0;
@@ -256,7 +256,7 @@ TEST(Cycle, ALostSampleStopsTheDevice) {
   expect_safe_stop(loop, FaultCode::kSequenceGap);
 }
 
-TEST(Cycle, ANanBesidesAFaultThatAsksForAControlledStopTakesThePowerAtOnce) {
+TEST(Cycle, ANanDuringAControlledStopSwitchesOffAtOnce) {
   Loop loop;
   loop.start_running();
   loop.sensors.driver_fault = FaultCode::kBusErrors;  // stops under control where it comes alone
@@ -286,7 +286,7 @@ TEST(Cycle, ADeviceThatStillMovesIsNotArmed) {
   EXPECT_TRUE(loop.command.enable);
 }
 
-TEST(Cycle, TheTwinMeetsTheHandleWhereJointsBrakedByThemselvesInAStopThatEndsArmed) {
+TEST(Cycle, AfterAStopOfBrakedJointsTheTwinIsAtTheHandle) {
   Loop loop;
   loop.start_running();
   loop.sensors.w_S[0] = 5.0;
@@ -309,7 +309,7 @@ TEST(Cycle, TheTwinMeetsTheHandleWhereJointsBrakedByThemselvesInAStopThatEndsArm
   EXPECT_LT((loop.record.T_B_H.p - loop.record.T_B_E.p).norm(), 1e-5);
 }
 
-TEST(Cycle, RunsAgainWhenAskedInTheCycleAfterJointsBrakedOneByOne) {
+TEST(Cycle, RunsAgainInTheCycleAfterJointsBrakedOneByOne) {
   Loop loop;
   loop.start_running();
   loop.sensors.w_S[0] = 5.0;
@@ -348,7 +348,7 @@ double force_while_stopping(bool is_alone) {
   loop.operator_input.change = {};
   loop.run(400);
   EXPECT_GT(loop.record.budget.surface.norm(), 1.0);
-  // somebody takes hold, or asks for a stop
+  // a person takes hold, or requests a stop
   loop.sensors.dead_man = true;
   if (!is_alone) loop.operator_input.request = ModeRequest::kStop;
   loop.step();
@@ -356,7 +356,7 @@ double force_while_stopping(bool is_alone) {
   return loop.record.budget.surface.norm();
 }
 
-TEST(Cycle, OnlyAStopThatIsAskedForLetsForcesFadeOut) {
+TEST(Cycle, OnlyARequestedStopLetsForcesFadeOut) {
   EXPECT_GT(force_while_stopping(false), 1.0);
   EXPECT_EQ(force_while_stopping(true), 0.0);
 }
@@ -385,7 +385,7 @@ TEST(Cycle, AFaultLastsUntilItIsResetAndThenRunsAgain) {
   EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
 }
 
-TEST(Cycle, TheEmergencyStopOfThePanelStopsADeviceThatKnowsNothingOfIt) {
+TEST(Cycle, TheEmergencyStopOfThePanelStopsADeviceWithoutOne) {
   Loop loop;
   loop.start_running();
   loop.sensors.w_S[0] = 5.0;
@@ -403,7 +403,7 @@ TEST(Cycle, TheEmergencyStopOfThePanelStopsADeviceThatKnowsNothingOfIt) {
   EXPECT_EQ(loop.record.fault.code, FaultCode::kNone);
 }
 
-TEST(Cycle, AnEmergencyStopThatCutsTheSensorsOffDoesNotSpoilTheEstimation) {
+TEST(Cycle, SensorsCutOffByAnEmergencyStopLeaveEstimationIntact) {
   Loop loop;
   loop.start_running();
   loop.run(20);
@@ -435,17 +435,17 @@ void expect_to_run_again(Loop& loop) {
 }
 
 TEST(Cycle, ANanOfAnySensorOfATorqueLoopIsAFaultAndLeavesNothingBehind) {
-  using Spoil = void (*)(SensorFrame&, double);
-  const std::array<Spoil, 4> spoils = {[](SensorFrame& s, double x) { s.theta_m[2] += x; },
-                                       [](SensorFrame& s, double x) { s.tau_m[0] += x; },
-                                       [](SensorFrame& s, double x) { s.a_S[1] += x; },
-                                       [](SensorFrame& s, double x) { s.omega_S[2] += x; }};
-  for (const Spoil spoil : spoils) {
+  using Corrupt = void (*)(SensorFrame&, double);
+  const std::array<Corrupt, 4> corruptions = {[](SensorFrame& s, double x) { s.theta_m[2] += x; },
+                                              [](SensorFrame& s, double x) { s.tau_m[0] += x; },
+                                              [](SensorFrame& s, double x) { s.a_S[1] += x; },
+                                              [](SensorFrame& s, double x) { s.omega_S[2] += x; }};
+  for (const Corrupt corrupt : corruptions) {
     Loop loop(false, true, true);
     loop.run(110);
     loop.start_running();
     const SensorFrame good = loop.sensors;
-    spoil(loop.sensors, std::numeric_limits<double>::quiet_NaN());
+    corrupt(loop.sensors, std::numeric_limits<double>::quiet_NaN());
     expect_safe_stop(loop, FaultCode::kSensorNotFinite);
     loop.sensors.theta_m = good.theta_m;
     loop.sensors.tau_m = good.tau_m;
@@ -455,7 +455,7 @@ TEST(Cycle, ANanOfAnySensorOfATorqueLoopIsAFaultAndLeavesNothingBehind) {
   }
 }
 
-TEST(Cycle, ATorqueThatIsNotFiniteIsAFaultAndAResetBeginsAnew) {
+TEST(Cycle, ATorqueThatIsNotFiniteIsAFaultAndAResetRestarts) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const bool in_estimation : {false, true}) {
     Loop loop(false, true);
@@ -522,7 +522,7 @@ TEST(Cycle, ALatencyThatGrowsWhileTheDrivesAreOnStopsTheDevice) {
 }
 
 // Commands of so many periods do not reach the device, and from the period `at` on (-1: never) a
-// joint comes away from its reference. The fault; kNone: it goes on.
+// joint comes away from its reference. The fault; kNone: it continues.
 FaultCode fault_of_lost_commands(int periods, int at, bool has_torque_loop = true) {
   Loop loop(false, has_torque_loop, false);
   loop.run(200);
@@ -548,7 +548,7 @@ TEST(Cycle, CommandsThatDoNotReachTheDeviceAreTheCauseThatIsNamed) {
   // which drives that follow positions bear, but what they lead to has the same name
   EXPECT_EQ(fault_of_lost_commands(300, -1, false), FaultCode::kNone);
   EXPECT_EQ(fault_of_lost_commands(40, 10, false), FaultCode::kCommandsLost);
-  // another cause is told all the same
+  // another cause is reported, too
   EXPECT_EQ(fault_of_lost_commands(0, 10), FaultCode::kSpeedExceeded);
   EXPECT_EQ(fault_of_lost_commands(3, 3), FaultCode::kSpeedExceeded);
   EXPECT_EQ(fault_of_lost_commands(40, 150), FaultCode::kSpeedExceeded);
@@ -572,7 +572,7 @@ TEST(Cycle, TheTwinMeetsTheHandleAgainAfterAFaultInMotion) {
   EXPECT_EQ(loop.record.mode, Mode::kRunning);
 }
 
-TEST(Cycle, AnArmThatFallsIsToldThoughAnotherSensorGivesNoNumber) {
+TEST(Cycle, AFallingArmIsReportedThoughAnotherSensorIsNotFinite) {
   Loop loop(false, false, true);
   loop.start_running();
   loop.sensors.a_S[1] = std::numeric_limits<double>::quiet_NaN();
@@ -602,7 +602,7 @@ TEST(Cycle, HandleAndTwinApartIsAFault) {
 }
 
 // the largest speed of the joints falls with no more than their rating, under power, to rest
-TEST(Cycle, WithoutASolutionTheJointsBrakeByThemselvesAndAResetRunsAgain) {
+TEST(Cycle, WithoutASolutionTheJointsBrakeAndAResetRunsAgain) {
   Loop loop;
   loop.start_running();
   loop.sensors.w_S[0] = 5.0;
@@ -624,7 +624,7 @@ TEST(Cycle, WithoutASolutionTheJointsBrakeByThemselvesAndAResetRunsAgain) {
   expect_to_run_again(loop);
 }
 
-TEST(Cycle, AnOperatorWhoLetsGoEndsReadyWithItsCauseToldMeanwhile) {
+TEST(Cycle, AReleasedEnablingSwitchEndsReadyAndItsCauseIsReported) {
   Loop loop;
   loop.start_running();
   loop.sensors.w_S[0] = 5.0;
@@ -671,8 +671,9 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
   }
 }
 
-// The elbow at its wall and the handle caught by a surface: what another cycle goes on from.
-TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
+// The elbow at its wall and the handle caught by a surface: the state from which another cycle
+// continues.
+TEST(Cycle, ASnapshotInContactContinuesBitForBitInAnotherCycle) {
   DeviceModel device = rendering::unlimited_device();
   device.chain.update_poses(
       (Eigen::VectorXd(8) << Eigen::Vector2d::Zero(), Eigen::VectorXd(kPosture)).finished());
@@ -719,7 +720,7 @@ TEST(Cycle, ASnapshotAtAWallAndInASurfaceContinuesBitForBitInAnotherCycle) {
   }
 }
 
-// Somebody goes on pressing: the stop gives way for a third of its time and then brakes.
+// A person keeps pressing: the stop gives way for a third of its time and then brakes.
 TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
   Config config;
   config.compliance.is_on = true;
@@ -733,7 +734,7 @@ TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
   loop.start_running();
   loop.run(100);  // its torque sensors say nothing of its weight: something carries it
   ASSERT_EQ(loop.record.mode, Mode::kRunning);
-  ASSERT_TRUE(loop.record.touch.is_told);
+  ASSERT_TRUE(loop.record.touch.is_reported);
   ASSERT_GT(loop.record.v_H.norm(), 0.05);
   State state = loop.cycle->state();
   safety::break_rule({.code = FaultCode::kTorqueUnexplained}, state.supervisor);
@@ -769,7 +770,7 @@ TEST(Cycle, ARunningStepEndsEveryStageInOrder) {
   loop.start_running();
   loop.sensors.w_S[0] = 3.0;
   std::vector<Stage> stages;
-  stages.reserve(100);  // what is told of a step must not allocate, either
+  stages.reserve(100);  // reports of a step must not allocate, either
   loop.cycle->watch({.ended = note, .listener = &stages});
   loop.step();
   const std::vector<Stage> all = {

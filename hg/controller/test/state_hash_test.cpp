@@ -65,7 +65,7 @@ TEST(StateHash, SeesValuesThatShareAWordOrArePacked) {
       [](State& s) { s.touch.dq = VectorM::Ones(1); },
       [](State& s) {
         s.touch.dq = VectorM::Ones(1);
-        s.touch.is_told = true;
+        s.touch.is_reported = true;
       },
       [](State& s) {
         s.touch.dq = VectorM::Ones(1);

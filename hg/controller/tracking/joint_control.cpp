@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kLatencyMemory = 0.05;    // share of the newest sample in the mean
 constexpr double kLatencyMargin = 0.5;     // periods; with gains for one period two are unstable
-constexpr double kLateFor = 0.05;          // s; a device hears no command for as long, too
+constexpr double kLateFor = 0.05;          // s; time-out of a device without commands, too
 constexpr double kDisturbedFor = 0.005;    // s; three frames that were filled in are less
 constexpr double kFeedforwardShare = 0.7;  // of the peak torque, the rest is for feedback
 constexpr double kUnexplained_s = 0.1;     // averaging time of unexplained torques
@@ -194,7 +194,7 @@ JointControl::JointTorques JointControl::joint_torques(const RobotState& robot,
           .motion = (needed + of_user).cwiseAbs() + of_user.cwiseAbs()};
 }
 
-// Torques of the springs that move the links as the reference says, [C] 1.
+// Torques of the springs that move the links along the reference, [C] 1.
 VectorM JointControl::link_torque(const ReferenceState& reference,
                                   const RobotState& robot) noexcept {
   chain_.update(stacked(robot.q_p, reference.q_m), stacked(robot.dq_p, reference.dq_m));

@@ -1,7 +1,7 @@
 /// Control of the manipulator joints: from the reference to the commands of the drives.
 ///
 /// Drives that follow a position get the reference itself. Series elastic joints get motor torques:
-/// feedforward of everything the model knows (weight, inertia, gantry, user, friction, and the
+/// feedforward of everything in the model (weight, inertia, gantry, user, friction, and the
 /// twist of the springs that all this takes), and feedback that damps the modes of the arm; [C] 1,
 /// where it is compared with others in closed loop. No allocation, noexcept after set-up.
 #pragma once
@@ -100,7 +100,7 @@ class JointControl {
   /// Evaluates the age of the command at work; call once per sample, with drives `on` or off. Off,
   /// the latency is learnt from it; on, it is monitored.
   void listen(const SensorFrame& sensors, bool on, State& state) const noexcept;
-  /// Whether enough commands were answered to know the latency, or there is no torque loop.
+  /// Whether enough commands were answered to determine the latency, or there is no torque loop.
   bool is_latency_known(const State& state) const noexcept {
     return config_.method == Method::kDrives || state.answers >= kAnswersNeeded;
   }

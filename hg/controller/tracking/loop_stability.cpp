@@ -115,9 +115,9 @@ class SampledLoop {
 }  // namespace
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency) {
-  TruePlant as_believed = {loop.device.actuators, loop.config.loop};
-  as_believed.loop.latency = latency;
-  return spectral_radius(loop, q, latency, as_believed);
+  TruePlant as_modelled = {loop.device.actuators, loop.config.loop};
+  as_modelled.loop.latency = latency;
+  return spectral_radius(loop, q, latency, as_modelled);
 }
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,

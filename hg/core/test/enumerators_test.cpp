@@ -18,7 +18,7 @@ TEST(Enumerators, AreAllOfThemInOrder) {
 
 TEST(Enumerators, OnesBeyondTheEndAreNotSeen) { EXPECT_EQ((enumerators<Colour, 7>().size()), 1u); }
 
-TEST(Enumerators, AreToldWithTheirNumbers) {
+TEST(Enumerators, HaveNamesAndNumbers) {
   EXPECT_EQ(numbers_of<Colour>(), "1 red, 7 dark blue, 63 ss2");
 }
 

@@ -24,7 +24,7 @@ TEST(Turns, CountsHalfPeriods) {
   EXPECT_EQ(turns_of(3.0, 1.1, 1.0, 0.2), 6);
 }
 
-TEST(Turns, BeginsAnewAfterAPauseAndLeavesSmallValuesAlone) {
+TEST(Turns, IsResetByAPauseAndIgnoresSmallValues) {
   EXPECT_LE(turns_of(2.0, 5.1, 1.0, 0.2), 1);
   EXPECT_EQ(turns_of(10.0, 1.0, 5.1, 0.2), 0);
 }

@@ -91,8 +91,8 @@ DeviceServer::Event DeviceServer::hear_candidate(Verdict verdict, const Header& 
   return Event::kReady;
 }
 
-// Number of the next session if it is the one of `peer`, welcomed at that time. A client that knows
-// it got the welcome: no record of other clients is needed, however many there are.
+// Number of the next session if it is the one of `peer`, welcomed at that time. A client that sends
+// it has received the welcome: no record of other clients is needed, however many there are.
 std::uint32_t DeviceServer::session_for(const Peer& peer, std::int64_t time_ns) const noexcept {
   const std::int64_t slot = time_ns / std::max<std::int64_t>(1, ns(config_.ready_timeout_s));
   std::array<unsigned char, sizeof sessions_ + sizeof slot + sizeof peer.address> facts{};

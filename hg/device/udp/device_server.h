@@ -112,7 +112,7 @@ class DeviceServer {
   std::unique_ptr<Capture> capture_;
   /// Secret for session numbers: a client that answers with its number was welcomed at its address.
   std::array<unsigned char, crypto_shorthash_KEYBYTES> secret_{};
-  std::uint64_t sessions_ = 0;         ///< sessions begun: a number is valid for one only
+  std::uint64_t sessions_ = 0;         ///< number of sessions; a number is valid for one only
   std::vector<Candidate> candidates_;  ///< oldest first, one per address
   bool has_client_ = false;
   Peer client_;
@@ -123,7 +123,7 @@ class DeviceServer {
   SensorFrame frame_;
   CommandFrame arrived_, command_;  ///< `command_` is in effect
   bool has_command_ = false;        ///< a command has arrived in this session
-  bool has_left_ = false;           ///< the client has said goodbye
+  bool has_left_ = false;           ///< the client has sent a goodbye
   std::int64_t frame_ns_ = 0, heard_ns_ = 0;
   std::int64_t answers_ = 0, answers_ns_ = 0, longest_answer_ns_ = 0;
   std::uint64_t refused_ = 0, late_ = 0, malformed_ = 0, foreign_ = 0, from_others_ = 0;

@@ -8,7 +8,7 @@ namespace {
 
 // extrapolated by one period at the same speed; encoders of endless joints may jump by a turn
 template <typename Vector>
-void go_on(const Vector& before, Vector& last) noexcept {
+void extrapolate(const Vector& before, Vector& last) noexcept {
   if (before.size() != last.size()) return;
   for (int i = 0; i < last.size(); ++i) {
     last[i] += std::remainder(last[i] - before[i], 2.0 * std::numbers::pi);
@@ -56,9 +56,9 @@ void FrameQueue::fill_in() noexcept {
   last_.sequence = next_;
   if (before_.sequence + 1 == before.sequence) {
     last_.time_s += before.time_s - before_.time_s;
-    go_on(before_.q_m, last_.q_m);
-    go_on(before_.theta_m, last_.theta_m);
-    go_on(before_.q_p, last_.q_p);
+    extrapolate(before_.q_m, last_.q_m);
+    extrapolate(before_.theta_m, last_.theta_m);
+    extrapolate(before_.q_p, last_.q_p);
   }
   before_ = before;
   ++held_;

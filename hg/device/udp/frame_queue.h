@@ -2,8 +2,8 @@
 ///
 /// A frame that is missing when a later one has arrived is filled in: moving quantities are
 /// extrapolated, the rest keeps its value. More than kMostHeld in a row are not filled in: the
-/// frame after the gap is returned with its own number, and the sensor check stops the device
-/// ([HANDBOOK] 6.6: three in a row).
+/// frame after the gap is returned with its own number, and the sensor check stops the device.
+/// Differs from [HANDBOOK] 6.6, which stops at the third.
 ///
 /// Pure: no socket, no clock. No allocation, noexcept.
 #pragma once

@@ -56,7 +56,7 @@ Key Key::from_file(const std::string& name) {
   }
   const std::span secret = std::span(bytes).first(size);
   if (std::ranges::all_of(secret, [](std::byte byte) { return byte == std::byte{}; })) {
-    refuse("a key of zeros is none: head -c 32 /dev/urandom makes one");
+    refuse("a key of zeros is not accepted: head -c 32 /dev/urandom makes one");
   }
   const Key key{secret};
   sodium_memzero(bytes.data(), bytes.size());

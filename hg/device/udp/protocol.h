@@ -87,7 +87,7 @@ enum class Refusal : std::uint32_t {
 };
 
 enum class Farewell : std::uint32_t {
-  kDone = 1,    ///< as planned
+  kDone = 1,    ///< session ended as planned
   kFault = 2,   ///< the client stopped because of a fault
   kSilent = 3,  ///< the other side fell silent
 };

@@ -79,7 +79,7 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_p
   if (is_forged && welcome_.refusal == Refusal::kNone) {
     throw SetupError(at + ": the device's answer is not of the key that was given (--key-file)");
   }
-  if (welcome_.refusal == Refusal::kBusy && is_patient) return false;  // busy: ask again
+  if (welcome_.refusal == Refusal::kBusy && is_patient) return false;  // busy: try again
   if (welcome_.refusal != Refusal::kNone) {
     throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.printable()));
   }

@@ -313,8 +313,8 @@ GuessResult check_guess(const Problem& problem, const SolverOptions& options, in
   return is_blocked ? GuessResult::kCorrected : result;
 }
 
-// Determines the states of all rows from their values: a row at its bound is active where the guess
-// says so.
+// Determines the states of all rows from their values: a row at its bound is active where it is
+// active in the guess.
 void read_states(const Problem& problem, const SolverOptions& options, int levels,
                  Iterate& iterate) noexcept {
   const int rows = rows_of(problem, levels);

@@ -1,4 +1,4 @@
-// A solve that is brought to an end keeps what it has got, and the next one goes on from there.
+// A solve that ends early keeps its result, and the next one continues from there.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,7 +69,8 @@ Ended end_all(const SolverOptions& options) {
     EXPECT_EQ(solver.budgets_spent(), is_spent ? 1u : 0u);
     ended.spent += is_spent;
     ended.solved += status == Status::kSolved;
-    EXPECT_EQ(solver.solve(problem, {}, active, solution), Status::kSolved);  // goes on from there
+    EXPECT_EQ(solver.solve(problem, {}, active, solution),
+              Status::kSolved);  // continues from there
     EXPECT_EQ(fault_of(problem, {}, solution), "");
   }
   return ended;

@@ -21,7 +21,7 @@ struct ByteProblem {
   static constexpr int kChanges = 2;
   static constexpr Capacity kCapacity = {.variables = 8, .levels = 16, .rows = 128};
 
-  /// What the bytes may ask for beyond numbers of order 1.
+  /// What the bytes may contain beyond numbers of order 1.
   enum class Numbers : std::uint8_t {
     kTame,     ///< nothing: well-posed, but for rare accidents
     kScaled,   ///< rows 1e-9 and 1e9 times as large as others, bounds too

@@ -189,7 +189,7 @@ std::string fault_of_counts(const Problem& problem, const SolverOptions& options
   }
   if (is_bad && (solution.bad_row < 0 || solution.bad_level != problem.level_of(solution.bad_row) ||
                  completed != solution.bad_level)) {
-    return "the bad row is not where it is said to be";
+    return "the bad row is not at the reported place";
   }
   if (static_cast<int>(solution.x.size()) != problem.variables() ||
       static_cast<int>(solution.state.size()) != problem.rows() ||

@@ -95,7 +95,7 @@ Effort solve_all(const Contradiction& kind, int seeds) {
 
 // A second guess that is wrong in what the first one has just been corrected in is not tried: the
 // first guess and that of the dual method are.
-TEST(DualMethod, ComesBeforeASecondGuessThatIsKnownToBeWrong) {
+TEST(DualMethod, IsTriedBeforeAWrongSecondGuess) {
   constexpr int n = 6;
   Problem problem({.variables = n, .levels = 2, .rows = 2 * n});
   problem.add_level();

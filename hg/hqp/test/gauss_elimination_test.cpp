@@ -115,7 +115,7 @@ TEST(GaussElimination, MeetsContradictoryRowsInTheSenseOfWeightedLeastSquares) {
   EXPECT_LT((gradient + mu * C.row(0).transpose()).norm(), 100 * kRounding);
 }
 
-TEST(GaussElimination, FindsMultipliersAndSaysWhatTheyLeave) {
+TEST(GaussElimination, FindsMultipliersAndTheirResidual) {
   srand(3);
   const Eigen::MatrixXd C = Eigen::MatrixXd::Random(3, 5);
   const Problem problem = problem_of(C);

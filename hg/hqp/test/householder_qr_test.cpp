@@ -129,7 +129,7 @@ TEST(SolveLeastSquares, KeepsSmallRowsAccurateBesideLargeOnes) {
 }
 
 TEST(SolveLeastSquares, PivotsColumnsForStiffRows) {
-  // the large row knows nothing of column 0: taken first, it would be mixed into the small rows
+  // the large row is zero in column 0: taken first, it would be mixed into the small rows
   const double M = 1e10;
   Eigen::MatrixXd A(3, 2);
   A << 0, M, 1, 1, 1, -1;

@@ -28,7 +28,7 @@ Problem example() {
   return problem;
 }
 
-TEST(Explanation, TellsLevelsAndRowsThatAct) {
+TEST(Explanation, ListsLevelsAndRowsThatAct) {
   const Problem problem = example();
   Solver solver(kCapacity);
   Solution solution(kCapacity);
@@ -73,7 +73,7 @@ TEST(Explanation, NamesTheFirstBadRowAndWhatIsIgnored) {
       << text;
 }
 
-TEST(Explanation, SaysWhichLevelsAreNotOptimal) {
+TEST(Explanation, ListsLevelsThatAreNotOptimal) {
   const Problem problem = example();
   Solver solver(kCapacity);
   Solution solution(kCapacity);
@@ -95,7 +95,7 @@ TEST(Explanation, ShortensRows) {
   EXPECT_EQ(to_string(problem, 1), "row 1 (level 0): 0 = 0, weight 2");
 }
 
-TEST(Explanation, TellsOptions) {
+TEST(Explanation, ListsOptions) {
   EXPECT_EQ(
       to_string(SolverOptions{.max_iterations = 7}),
       "rank_tolerance 1e-09, feasibility_tolerance 1e-10, max_iterations 7, freedom left goes "

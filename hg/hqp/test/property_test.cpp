@@ -50,8 +50,8 @@ std::string text_of(const Problem& problem) {
   return text.str();
 }
 
-// Checks `fault`, a function of bytes that tells what is wrong, on random ones. `problem_of` makes
-// a problem of them, to be printed.
+// Checks `fault`, a function of bytes that returns what is wrong, on random ones. `problem_of`
+// makes a problem of them, to be printed.
 template <typename Fault, typename ProblemOf>
 void expect_none(const Fault& fault, const rc::Gen<Bytes>& any, const ProblemOf& problem_of) {
   rc::detail::TestParams params = rc::detail::configuration().testParams;
@@ -235,7 +235,7 @@ TEST(Property, OrderWithinALevelDoesNotMatter) {
   });
 }
 
-TEST(Property, ALevelThatIsRepeatedAsksForNothingNew) {
+TEST(Property, ARepeatedLevelChangesNothing) {
   expect_none([](const Bytes& bytes) {
     const Problem problem = ByteProblem(bytes, Numbers::kTame).problem;
     std::vector<std::vector<Row>> levels;

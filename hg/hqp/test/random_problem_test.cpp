@@ -74,7 +74,7 @@ TEST_P(RandomProblems, HaveOneSolutionWhateverTheGuess) {
   }
 }
 
-// Rows that differ by little more than rank_tolerance: the point asks for an |x| of up to 1e10, and
+// Rows that differ by little more than rank_tolerance: the point needs an |x| of up to 1e10, and
 // which rows are at a bound is a matter of rounding. What is not proven is judged by its values
 // before it is called solved. What is left are problems of which two certificates with different
 // tolerances say different things.
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
     , RandomProblems,
     testing::Values(NamedKind{"ordinary", {}}, NamedKind{"integers", {.has_integers = true}},
                     NamedKind{"badly_scaled", {.row_decades = 1.0}, 5000},
-                    // what a nearly dependent row asks for beyond the others is not done
+                    // what a nearly dependent row demands beyond the others is not done
                     NamedKind{.name = "nearly_dependent", .kind = {.noise = 1e-12}, .gap = 1e-5},
                     NamedKind{"tiny", {.scale = 1e-9}}, NamedKind{"huge", {.scale = 1e9}},
                     NamedKind{

@@ -3,7 +3,7 @@
 /// The cascade [HG] (2)-(6): one quadratic program per level, whose constraints keep what the
 /// levels above have got. Each is solved by the proximal point method, so that only least-distance
 /// programs remain: [LH74] C. Lawson, R. Hanson, Solving Least Squares Problems, 1974, ch. 23
-/// (NNLS, LDP). The smallest |x| is a last level that asks for x = 0.
+/// (NNLS, LDP). The smallest |x| is a last level with x = 0.
 #pragma once
 
 #include <string>

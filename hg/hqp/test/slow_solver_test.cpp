@@ -41,7 +41,7 @@ TEST(SolveSlowly, GivesHigherLevelsWhatTheyWantFirst) {
   EXPECT_NEAR(slow.slack_norms[2], 2.5, 1e-12);
 }
 
-TEST(SolveSlowly, TellsWhenRowsAreNearlyDependent) {
+TEST(SolveSlowly, ReportsNearlyDependentRows) {
   Problem problem({.variables = 2, .levels = 2, .rows = 2});
   problem.add_level();
   problem.add_row(std::vector{1.0, 1.0}, {1.0, 1.0});

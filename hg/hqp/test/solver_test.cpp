@@ -94,7 +94,7 @@ TEST(Solve, GivesHigherLevelsWhatTheyWantFirst) {
   ASSERT_EQ(bench.solve(problem), Status::kSolved);
   EXPECT_NEAR(bench.solution.x[0], 0.5, kExact);
   EXPECT_NEAR(bench.solution.x[1], 1.5, kExact);
-  EXPECT_NEAR(bench.solution.x[2], 0.0, kExact);  // nobody wants it: smallest norm
+  EXPECT_NEAR(bench.solution.x[2], 0.0, kExact);  // in no level: smallest norm
   EXPECT_NEAR(bench.slack(1), 3.0, kExact);
   EXPECT_NEAR(bench.slack(3), 2.5, kExact);
   EXPECT_NEAR(bench.solution.levels[1].slack_squared, 9.0, kExact);
@@ -166,7 +166,7 @@ TEST(Solve, LeavesAProblemWithoutRowsAtZero) {
   EXPECT_EQ(bench.solution.levels[0].freedom, 3);
 }
 
-TEST(Solve, MakesXSmallOnlyWhenAsked) {
+TEST(Solve, MakesXSmallOnlyWhenRequested) {
   // the last level leaves a line of points on which the level-by-level path need not end at the
   // smallest one; both are optimal
   Problem problem = empty_problem(2);
@@ -251,7 +251,7 @@ TEST(Solve, KeepsAFinitePointWhereNumbersOverflow) {
   for (const double x : bench.solution.x) EXPECT_TRUE(std::isfinite(x));
 }
 
-TEST(Solve, SaysWhereSlacksOverflow) {
+TEST(Solve, ReportsWhereSlacksOverflow) {
   Problem problem({.variables = 2, .levels = 2, .rows = 2});
   problem.add_level();
   problem.add_bound(0, {-1.0, 1.0});
@@ -405,7 +405,7 @@ TEST(Multipliers, GoToTheDuplicateOfHighestPriority) {
   EXPECT_NEAR(mu[2], -2.0, kExact);
 }
 
-TEST(Multipliers, TellThatAPointIsNotOptimal) {
+TEST(Multipliers, ShowThatAPointIsNotOptimal) {
   const Problem problem = coupled_limits();
   Bench bench;
   bench.solve(problem);

@@ -114,7 +114,7 @@ TEST(ParseProblems, NamesTheNearestKeyword) {
             "x.hqp:4: expected the end of the line, got '.'");
 }
 
-TEST(ParseProblems, ReadsWhatMayBeSaidBesidesRows) {
+TEST(ParseProblems, ReadsOptionalPartsBesidesRows) {
   const auto problems = parse_recorded_problems(
       "hqp 2 1\nname  cycle 7, a test \r\noptions minimum_norm 0 rank_tolerance 1e-8\n"
       "level 1 3\n0 1 4 weight 0.5\n2 0 0 1\n0 1 0 1 dense\nnan 0 2 1 bad weight -1\n"
@@ -140,7 +140,7 @@ TEST(ParseProblems, ReadsWhatMayBeSaidBesidesRows) {
   EXPECT_TRUE(problems[1].guess.has_value());
 }
 
-TEST(ReadProblems, SaysWhichFileCannotBeRead) {
+TEST(ReadProblems, ReportsWhichFileCannotBeRead) {
   try {
     read_problems("no/such/file.hqp");
     FAIL();

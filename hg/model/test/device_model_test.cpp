@@ -8,9 +8,10 @@ namespace hg {
 namespace {
 
 DeviceModel haptic_giant() {
-  DeviceModel device{.chain = model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf"),
-                     .n_p = 2,
-                     .n_m = 6};
+  DeviceModel device{
+      .chain = model::ChainModel::from_urdf_file("models/haptic_giant/haptic_giant.urdf"),
+      .n_p = 2,
+      .n_m = 6};
   device.handle = device.chain.frame("handle");
   device.elbow = device.chain.frame("elbow");
   device.gantry_range.resize(2);

@@ -139,7 +139,7 @@ TEST(HapticGiant, InverseIsExactWhenTheHandAxisIsVertical) {
   }
 }
 
-TEST(HapticGiant, InverseSaysWhatIsOutOfReachAndReturnsTheNearest) {
+TEST(HapticGiant, InverseReportsWhatIsOutOfReachAndReturnsTheNearest) {
   const Eigen::Vector2d q_p(0.0, 0.0);
   const Vector6 q_m{{0.3, 1.2, -0.4, 1.1, 0.4, 0.7}};
   Pose pose = hand_pose(q_p, q_m);
@@ -161,7 +161,7 @@ TEST(HapticGiant, InverseSaysWhatIsOutOfReachAndReturnsTheNearest) {
   EXPECT_TRUE(solution.allFinite());
 }
 
-TEST(HapticGiant, HeightOutOfReachIsSaidBeforeDistance) {
+TEST(HapticGiant, HeightOutOfReachIsReportedBeforeDistance) {
   Pose pose;
   pose.p << 9.0, 0.0, -9.0;
   Eigen::Vector2d q_p(0.0, 0.0);

@@ -67,7 +67,7 @@ TEST(Tool, AddsItsFrame) {
 
 TEST(Tool, MayBeWithoutMass) { EXPECT_EQ(said({.link = "flange"}), ""); }
 
-TEST(Tool, SaysWhatIsWrong) {
+TEST(Tool, ReportsWhatIsWrong) {
   Tool tool = handle();
   tool.link = "flansch";
   EXPECT_EQ(said(tool),

@@ -57,7 +57,7 @@ TEST_F(FlightRecorderTest, WritesTheLastSecondsAtFullRateWithTheirEvents) {
   EXPECT_EQ(run.configuration().size(), 2u);
 }
 
-TEST_F(FlightRecorderTest, BeginsAnewAfterItHasWritten) {
+TEST_F(FlightRecorderTest, RestartsAfterItHasWritten) {
   FlightRecorder recorder(example_info(temporary_.path()), 0.5);
   push(recorder, 0, 100);
   recorder.write("one");
@@ -70,7 +70,7 @@ TEST_F(FlightRecorderTest, BeginsAnewAfterItHasWritten) {
   EXPECT_EQ(RecordedRun(result.files[1], 0.0).size(), 50u);
 }
 
-TEST_F(FlightRecorderTest, WritesNothingOfNothingAndSaysWhyItCannotWrite) {
+TEST_F(FlightRecorderTest, WritesNothingOfNothingAndReportsWhyItCannotWrite) {
   RecordingInfo info = example_info(temporary_.path());
   FlightRecorder empty(info, 0.5);
   empty.write("nothing");

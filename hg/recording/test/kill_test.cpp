@@ -63,7 +63,7 @@ TEST(Recorder, LeavesAReadableFileWheneverItIsKilled) {
     ASSERT_GE(child, 0);
     if (child == 0) record_for_ever(temporary.path(), pushed);
     while (pushed.load() < moment) {
-      ASSERT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "it died by itself at " << pushed.load();
+      ASSERT_EQ(waitpid(child, nullptr, WNOHANG), 0) << "it died too early at " << pushed.load();
       std::this_thread::sleep_for(std::chrono::microseconds(50));
     }
     ASSERT_EQ(kill(child, SIGKILL), 0);

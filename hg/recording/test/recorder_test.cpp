@@ -211,7 +211,7 @@ TEST_F(RecorderTest, OutlivesAFullDisk) {
   EXPECT_LE(std::filesystem::file_size(summary.file), 1'000'000u);
 }
 
-// what a run is told when `harm` is done to its file in the middle
+// what a run reports when `harm` is done to its file in the middle
 RecordingSummary harmed(const RecordingInfo& info, bool pauses,
                         const std::function<void(const std::filesystem::path&)>& harm) {
   Recorder recorder(info);
@@ -266,7 +266,7 @@ TEST_F(RecorderTest, AFileThatIsDeletedMovedReplacedOrChangedIsLost) {
   }
 }
 
-TEST_F(RecorderTest, SaysAtOnceThatTheDiskIsFull) {
+TEST_F(RecorderTest, ReportsAtOnceThatTheDiskIsFull) {
   std::string message;
   {
     const FileSizeLimit limit(0);
@@ -278,7 +278,7 @@ TEST_F(RecorderTest, SaysAtOnceThatTheDiskIsFull) {
   EXPECT_TRUE(temporary_.names().empty());
 }
 
-TEST_F(RecorderTest, SaysWhichFolderCannotBeWritten) {
+TEST_F(RecorderTest, ReportsWhichFolderCannotBeWritten) {
   RecordingInfo bad = info();
   temporary_.write("file", 1);
   bad.folder = temporary_.path() / "file";

@@ -41,7 +41,7 @@ TEST(RecordingFolder, RefusesANameThatLeavesTheFolder) {
   EXPECT_THROW((void)folder.new_path("", kStart), SetupError);
 }
 
-TEST(RecordingFolder, SaysWhichFolderCannotBeMade) {
+TEST(RecordingFolder, ReportsWhichFolderCannotBeMade) {
   const TemporaryFolder temporary;
   temporary.write("file", 1);
   const std::string path = (temporary.path() / "file" / "recordings").string();

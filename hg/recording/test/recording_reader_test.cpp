@@ -184,12 +184,12 @@ bool check_flipped(const std::filesystem::path& file, std::uint64_t samples) {
     return false;
   }
   gaps.end(samples);
-  const std::string told = to_text(result.losses);
+  const std::string losses = to_text(result.losses);
   EXPECT_TRUE(gaps.is_in_order);
   EXPECT_TRUE(result.is_complete);
-  EXPECT_LE(result.losses.size(), 1u) << told;
+  EXPECT_LE(result.losses.size(), 1u) << losses;
   const bool has_losses = !result.losses.empty() && result.losses[0].samples > 0;
-  EXPECT_EQ(gaps.missing.size(), has_losses ? 1u : 0u) << told;
+  EXPECT_EQ(gaps.missing.size(), has_losses ? 1u : 0u) << losses;
   if (gaps.missing.size() != 1 || !has_losses) return false;
   const auto [first, end] = gaps.missing[0];
   const Loss& loss = result.losses[0];
@@ -282,7 +282,7 @@ TEST_F(RecordedRunTest, ABlockOfZerosOrOnesCostsTheChunksThatItTouches) {
 }
 
 // as where a file was cut off while it was written, or a loss of power has taken its end
-TEST_F(RecordedRunTest, AHoleIsToldWhereverItIs) {
+TEST_F(RecordedRunTest, AHoleIsReportedWhereverItIs) {
   const std::string good = content_of(record(3000));
   struct Case {
     double from, to;
@@ -334,7 +334,7 @@ TEST_F(RecordedRunTest, NamesAConfigurationThatIsDamaged) {
   EXPECT_EQ(RecordedRun(bad, 0.01).losses().size(), 1u);
 }
 
-TEST_F(RecordedRunTest, RefusesWhatIsNoRecordingAndSaysWhich) {
+TEST_F(RecordedRunTest, RefusesOtherFilesAndNamesThem) {
   EXPECT_NE(refusal(temporary_.write("text.mcap", "hello")).find("text.mcap: must be a recording"),
             std::string::npos);
   EXPECT_NE(refusal(temporary_.path() / "nowhere.mcap"), "");
@@ -357,7 +357,7 @@ TEST_F(RecordedRunTest, NeverCrashesOnDamagedFiles) {
   }
 }
 
-TEST(Playback, MovesWithItsSpeedUntilTheEndAndBeginsAnew) {
+TEST(Playback, MovesWithItsSpeedUntilTheEndAndRestarts) {
   Playback playback(10.0);
   ASSERT_TRUE(playback.set_speed(4.0));
   playback.advance(1.0);

@@ -39,7 +39,7 @@ TEST(SchemaText, SpellsTypesAsRosDoes) {
   }
 }
 
-TEST(SchemaText, SaysWhatEveryNumberOfAnEnumMeans) {
+TEST(SchemaText, ExplainsEveryNumberOfAnEnum) {
   const std::string text = schema_text<Sample>();
   for (const char* line :
        {"\nuint8 cause  # 0 none, 1 position, 2 velocity, 3 acceleration, 4 "

@@ -29,21 +29,21 @@ TEST(NextRequest, ArmsRunsAndStops) {
   }
 }
 
-TEST(NextRequest, WaitsForTheLatencyAndAsksNowAndThenSoThatARefusalSaysWhy) {
+TEST(NextRequest, WaitsForTheLatencyButRetriesSoThatARefusalIsReported) {
   CycleRecord record = ready(TareStatus::kNone);
   record.is_tared = true;
-  int asked = 0, in_a_row = 0;
+  int requests = 0, in_a_row = 0;
   ModeRequest last = ModeRequest::kNone;
   for (record.cycle = 0; record.cycle < 3000; ++record.cycle) {
     const ModeRequest request = next_request(record, true, false);
-    asked += request == ModeRequest::kArm;
+    requests += request == ModeRequest::kArm;
     in_a_row += request == ModeRequest::kArm && last == request;
     if (record.cycle < 500) {
       EXPECT_EQ(request, ModeRequest::kNone);
     }
     last = request;
   }
-  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(requests, 3);
   EXPECT_EQ(in_a_row, 0);  // requests act on their edge
   record.is_latency_known = true;
   EXPECT_EQ(next_request(record, true, false), ModeRequest::kArm);
@@ -51,14 +51,14 @@ TEST(NextRequest, WaitsForTheLatencyAndAsksNowAndThenSoThatARefusalSaysWhy) {
 
 TEST(NextRequest, TaresFirstWhereTheDeviceNeedsIt) {
   EXPECT_EQ(next_request(ready(TareStatus::kNone), false, false), ModeRequest::kTare);
-  // even when held: the refusal tells why nothing happens
+  // even when held: the refusal shows why nothing happens
   EXPECT_EQ(next_request(ready(TareStatus::kNone), true, false), ModeRequest::kTare);
   EXPECT_EQ(next_request(ready(TareStatus::kUnderWay), false, false), ModeRequest::kNone);
   EXPECT_EQ(next_request(ready(TareStatus::kRefusedUnsteady), false, false), ModeRequest::kTare);
   EXPECT_EQ(next_request(ready(TareStatus::kRefusedMoving), false, false), ModeRequest::kTare);
 }
 
-TEST(NextRequest, AsksForATareOfAHeldHandleOnlyOnce) {
+TEST(NextRequest, RequestsATareOfAHeldHandleOnlyOnce) {
   EXPECT_EQ(next_request(ready(TareStatus::kRefusedHeld), true, false), ModeRequest::kNone);
   EXPECT_EQ(next_request(ready(TareStatus::kRefusedHeld), false, false), ModeRequest::kTare);
 }

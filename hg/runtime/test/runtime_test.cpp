@@ -83,7 +83,7 @@ TEST(Runtime, RealTimeModePlaysTheWholeDuration) {
   EXPECT_EQ(report.allocations, 0u);
 }
 
-TEST(Runtime, StaysInAFaultWhereSomebodyCanResetItAndAsksForNothingByItselfThen) {
+TEST(Runtime, StaysInAFaultThatCanBeResetAndRequestsNothing) {
   Parts parts;
   parts.device.lost_sample = 50;
   const Options options = {.is_fast = true,
@@ -232,7 +232,7 @@ TEST_F(PagesAtWork, AnEmergencyStopIsInForceInTheNextCycle) {
   EXPECT_TRUE(runtime_->request(ModeRequest::kNone, desk_.stops()));
   EXPECT_TRUE(runtime_->request(ModeRequest::kReset, desk_.stops()));
   EXPECT_EQ(after(4), Mode::kReady);
-  EXPECT_EQ(after(100), Mode::kReady) << "nothing is asked for by itself after a stop";
+  EXPECT_EQ(after(100), Mode::kReady) << "nothing is requested automatically after a stop";
 }
 
 TEST_F(PagesAtWork, HoldAndSwitchesStopItInTheNextCycle) {
@@ -245,7 +245,7 @@ TEST_F(PagesAtWork, HoldAndSwitchesStopItInTheNextCycle) {
   EXPECT_FALSE(next().operator_input.panel.operator_enable);
 }
 
-TEST_F(PagesAtWork, WhatWasAskedForBeforeAStopStartsNothingAfterIt) {
+TEST_F(PagesAtWork, ARequestBeforeAStopStartsNothingAfterIt) {
   begin();
   ASSERT_EQ(after(100), Mode::kRunning);
   desk_.ask_to_hold();
@@ -260,7 +260,7 @@ TEST_F(PagesAtWork, WhatWasAskedForBeforeAStopStartsNothingAfterIt) {
   EXPECT_EQ(after(3), Mode::kRunning);
 }
 
-TEST_F(PagesAtWork, TheRunEndsWhenAPageAsksForIt) {
+TEST_F(PagesAtWork, TheRunEndsOnRequestOfAPage) {
   begin();
   ASSERT_EQ(after(100), Mode::kRunning);
   desk_.ask_to_end();
@@ -288,7 +288,7 @@ TEST_F(PagesAtWork, AScriptsStopIsReleasedByNameAndPressedAgainByTheScriptOnly) 
   EXPECT_TRUE(is_pressed(200));
 }
 
-// Wall time: a page that is silent, while cycles go on.
+// Wall time: a page that is silent, while cycles continue.
 TEST_F(PagesAtWork, WhatASilentPageHoldsIsLetGoByTheLoop) {
   begin();
   after(100);
@@ -325,7 +325,7 @@ TEST(Schedule, LeavesOutWhatItMayNotMakeUpFor) {
   EXPECT_EQ(schedule.advance(800), 0u);
 }
 
-TEST(SpscRing, TellsThatItIsFullWithoutCounting) {
+TEST(SpscRing, ReportsThatItIsFullWithoutCounting) {
   SpscRing<int> ring(1);
   EXPECT_FALSE(ring.is_full());
   ring.push(1);
@@ -380,7 +380,7 @@ void wait_for_sample(Runtime& runtime, Sample& sample) {
   while (!runtime.pop(sample)) std::this_thread::yield();
 }
 
-TEST(Runtime, RunsExactlyTheCyclesThatAreAskedForWhilePaused) {
+TEST(Runtime, RunsExactlyTheRequestedCyclesWhilePaused) {
   Parts parts;
   Runtime runtime({}, *parts.cycle, parts.device);
   runtime.pace().pause();
@@ -432,8 +432,8 @@ TEST(Pace, RefusesWhatIsOutOfRange) {
   EXPECT_FALSE(pace.may_run());  // resuming forgets steps
 }
 
-// Late cycles that the cycle was told about, by sample; the run is over before the device moves.
-std::vector<std::uint32_t> told(const Options& options, bool keeps_time, Report& report) {
+// Late cycles reported to the cycle, by sample; the run is over before the device moves.
+std::vector<std::uint32_t> late_cycles(const Options& options, bool keeps_time, Report& report) {
   Parts parts(200.0);
   parts.device.stalls_at = 20;
   parts.device.keeps_time = keeps_time;
@@ -446,10 +446,11 @@ std::vector<std::uint32_t> told(const Options& options, bool keeps_time, Report&
   return late;
 }
 
-TEST(Runtime, TellsTheCycleWhatWasMissedWhereTheThreadIsRealTime) {
+TEST(Runtime, ReportsMissedCyclesWhereTheThreadIsRealTime) {
   for (const bool keeps_time : {false, true}) {
     Report report;
-    const auto late = told({.duration_s = 0.2, .tells_late_cycles = true}, keeps_time, report);
+    const auto late =
+        late_cycles({.duration_s = 0.2, .tells_late_cycles = true}, keeps_time, report);
     EXPECT_GE(report.overruns, 4u);
     ASSERT_GT(late.size(), 20u);
     EXPECT_EQ(report.told_late_cycles, report.thread.priority > 0);
@@ -458,19 +459,19 @@ TEST(Runtime, TellsTheCycleWhatWasMissedWhereTheThreadIsRealTime) {
   }
 }
 
-TEST(Runtime, TellsNobodyAboutLateCyclesOfADeviceThatWaits) {
+TEST(Runtime, DoesNotReportLateCyclesOfADeviceThatWaits) {
   Report report;
-  const auto late = told({.duration_s = 0.2}, false, report);
+  const auto late = late_cycles({.duration_s = 0.2}, false, report);
   EXPECT_GE(report.overruns, 4u);
   for (const std::uint32_t cycles : late) EXPECT_EQ(cycles, 0u);
 }
 
-TEST(Runtime, AnOrdinaryThreadIsNotToldEither) {
+TEST(Runtime, DoesNotReportLateCyclesOfAnOrdinaryThread) {
   Report report;
-  const auto late = told({.duration_s = 0.2, .thread = {.priority = 0}, .tells_late_cycles = true},
-                         false, report);
+  const auto late = late_cycles(
+      {.duration_s = 0.2, .thread = {.priority = 0}, .tells_late_cycles = true}, false, report);
   EXPECT_EQ(report.thread.priority, 0);
-  EXPECT_EQ(report.thread.priority_error, 0);  // it was not asked for
+  EXPECT_EQ(report.thread.priority_error, 0);  // it was not requested
   EXPECT_FALSE(report.told_late_cycles);
   for (const std::uint32_t cycles : late) EXPECT_EQ(cycles, 0u);
 }
@@ -497,7 +498,7 @@ int first_allowed_processor() {
   return cpu;
 }
 
-TEST(Runtime, RunsOnTheProcessorThatIsAskedFor) {
+TEST(Runtime, RunsOnTheRequestedProcessor) {
   Parts parts;
   std::uint64_t seen = 0;
   const int cpu = first_allowed_processor();

@@ -13,7 +13,7 @@ namespace hg::runtime {
 
 inline const VectorM kPosture = rendering::posture({0.3, 1.5, -0.6, 1.3, 0.2, 0.4});
 
-// Follows perfectly; the gantry stands still whatever it is told.
+// Follows perfectly; the gantry stands still on any command.
 class StillDevice : public device::Device {
  public:
   StillDevice() {
@@ -48,7 +48,7 @@ class StillDevice : public device::Device {
   double period_s = 1e-3;
   bool keeps_time = false;
   std::uint64_t lost_sample = 0;
-  double speed = 0.0;                         ///< that is measured, whatever it is told
+  double speed = 0.0;                         ///< measured speed, for any command
   std::uint64_t stalls_at = 0;                ///< sample during which write() takes 25 ms
   std::uint64_t opens_at = 0, closes_at = 0;  ///< samples with an open dead-man
   CommandFrame last_command;

@@ -9,8 +9,7 @@
 
 namespace hg::scenario {
 
-WatchedDevice::WatchedDevice(std::unique_ptr<device::Device> device,
-                             const DeviceModel& model)
+WatchedDevice::WatchedDevice(std::unique_ptr<device::Device> device, const DeviceModel& model)
     : device_(std::move(device)), model_(model) {}
 
 void WatchedDevice::write(const CommandFrame& command) noexcept {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "hg/model/device_model.h"
 #include "hg/device/device.h"
+#include "hg/model/device_model.h"
 
 namespace hg::scenario {
 

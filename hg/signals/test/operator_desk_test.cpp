@@ -74,7 +74,7 @@ TEST(OperatorDesk, TheStopOfAScriptIsReleasedByName) {
   EXPECT_EQ(desk.script_releases(), 1u);
 }
 
-TEST(OperatorDesk, WhatASilentPageHoldsIsLetGoAndComesBackOnlyWhenItIsTakenAgain) {
+TEST(OperatorDesk, ASilentPageLosesItsInputsUntilItTakesThemAgain) {
   for (const Input input : {Input::kOperatorEnable, Input::kOverrideKey}) {
     OperatorDesk desk;
     desk.open();
@@ -105,7 +105,7 @@ TEST(OperatorDesk, APageThatWasSilentDoesNotHoldWithoutALookInBetween) {
   OperatorDesk desk;
   desk.open();
   desk.set(Input::kOverrideKey, 1, true, 0);
-  desk.hear(1, 500 * kMs);  // a paused run: nobody looked
+  desk.hear(1, 500 * kMs);  // a paused run: look() was not called
   EXPECT_FALSE(look(desk, 501).override_key);
 }
 

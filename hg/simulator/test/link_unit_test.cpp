@@ -26,7 +26,7 @@ Vector6 shown(const LinkUnitConfig& config, const BodyMotion& link, std::uint64_
   return unit.sample(0.0);
 }
 
-TEST(LinkUnit, ShowsGravityAtRestTurnedAsNobodyKnows) {
+TEST(LinkUnit, ShowsGravityAtRestTurnedByItsMounting) {
   const Vector6 first = shown(ideal(), {}), second = shown(ideal(), {}, 1, 1);
   EXPECT_NEAR(first.head<3>().norm(), 9.81, 1e-12);
   EXPECT_GT((first - second).norm(), 0.1);
@@ -43,7 +43,7 @@ TEST(LinkUnit, FeelsTheLeverFromTheOriginOfItsLink) {
   const auto beyond_rest = [&](const BodyMotion& link) {
     return Eigen::Vector3d((shown(config, link) - shown(config, {})).head<3>());
   };
-  // alpha x p about z and x tells p; the centripetal acceleration has to fit it
+  // alpha x p about z and x determines p; the centripetal acceleration has to fit it
   BodyMotion about_z, about_x, turning;
   about_z.acceleration[5] = 1.0;
   about_x.acceleration[3] = 1.0;

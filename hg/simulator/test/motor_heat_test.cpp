@@ -26,7 +26,7 @@ TEST(MotorHeat, ComesNearerByTheTimeConstant) {
   EXPECT_NEAR(after(100.0, 30.0, kExact), 72.0 - 32.0 * std::exp(-1.0), 1e-2);
 }
 
-TEST(MotorHeat, IsToldInSteps) {
+TEST(MotorHeat, IsReportedInSteps) {
   EXPECT_EQ(after(100.0, 30.0, {.time_constant = 100.0}), 60.0);
   MotorHeat unknown(kExact, 0.0, 1e-2);
   EXPECT_EQ(unknown.next(1000.0), kExact.start);

@@ -159,7 +159,7 @@ TEST(PlantJoint, BrakesStopMotorsAtOnceAndForGood) {
   EXPECT_GT(plant.truth().dtheta_m.norm(), 0.0);
 }
 
-TEST(PlantJoint, ABrakeThatClosesByItselfHoldsItsMotorAndAWeakOneHoldsNothing) {
+TEST(PlantJoint, AClosedBrakeHoldsItsMotorAndAWeakOneHoldsNothing) {
   const PlantConfig config = reference_config();
   const model::ChainModel chain = haptic_giant();
   for (const bool brakes_closed : {false, true}) {

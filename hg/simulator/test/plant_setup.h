@@ -29,7 +29,7 @@ inline PlantConfig reference_config() {
   return config;
 }
 
-/// Motors without torque, gantry told to stand.
+/// Motors without torque, gantry commanded to stand.
 inline PlantInput idle(const PlantConfig& config, bool brakes_closed) {
   PlantInput input;
   input.tau_command = VectorM::Zero(config.q_m_start.size());

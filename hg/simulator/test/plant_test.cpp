@@ -163,7 +163,7 @@ TEST(Plant, TruthIsTheMotionOfTheHandle) {
             2e-3 * after.acceleration.norm());
 }
 
-TEST(Plant, CopiesGoOnWithTheSameBits) {
+TEST(Plant, CopiesContinueWithTheSameBits) {
   const PlantConfig config = narrow_config();
   const model::ChainModel chain = haptic_giant();
   Plant plant(config, chain, chain.frame("handle"));
@@ -222,9 +222,9 @@ TEST(Plant, TheGantryMeetsBuffersAtItsEnds) {
 
 TEST(Plant, SetUpNamesWhatCannotBe) {
   const model::ChainModel chain = haptic_giant();
-  const auto message = [&](auto&& spoil) -> std::string {
+  const auto message = [&](auto&& corrupt) -> std::string {
     PlantConfig config = reference_config();
-    spoil(config);
+    corrupt(config);
     try {
       Plant(config, chain, chain.frame("handle"));
     } catch (const SetupError& error) {

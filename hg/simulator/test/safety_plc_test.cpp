@@ -24,7 +24,7 @@ struct Bench {
   }
 };
 
-TEST(SafetyPlc, GivesPowerToAMachineThatNobodyHasAskedToStop) {
+TEST(SafetyPlc, GivesPowerToAMachineWithoutStopRequests) {
   Bench bench;
   EXPECT_TRUE(bench.plc.has_power());
   bench.run(2000);
@@ -36,7 +36,7 @@ TEST(SafetyPlc, GivesPowerToAMachineThatNobodyHasAskedToStop) {
 }
 
 // [HANDBOOK] 6.8, with the words of the formula as a second way to say it
-TEST(SafetyPlc, PermitsMotionAsTheFormulaSaysForAllInputs) {
+TEST(SafetyPlc, PermitsMotionByTheFormulaForAllInputs) {
   for (unsigned bits = 0; bits < 64; ++bits) {
     const bool stop_free = bits & 1U, operator_holds = bits & 2U, user_holds = bits & 4U;
     const bool key = bits & 8U, clear = bits & 16U, slow = bits & 32U;
@@ -167,7 +167,7 @@ TEST(SafetyPlc, ABrokenWireStopsAndAStuckOneIsFoundWhenTheSwitchIsUsed) {
   EXPECT_TRUE(stuck.plc.outputs().has_disagreement);
 }
 
-// with nobody at the handle, the key turned, slowly
+// with the handle not held, the key turned, slowly
 Bench alone() {
   Bench bench;
   bench.input.override_key = TwoChannels::both(true);
@@ -197,7 +197,7 @@ TEST(SafetyPlc, WithoutAHandItTripsBeyondTheSafeSpeedOfHandleOrGantry) {
   EXPECT_EQ(held.plc.trip(), PlcTrip::kNone);
 }
 
-TEST(SafetyPlc, WithoutAHandItTripsWhenSomebodyEntersAndTheLargeFieldCountsWhenItIsFast) {
+TEST(SafetyPlc, WithoutAHandItTripsOnEntryWhenFastInTheLargeField) {
   Bench bench = alone();
   bench.input.field = ScannerField::kLarge;
   bench.run(kSettle);
@@ -221,7 +221,7 @@ TEST(SafetyPlc, WithoutAHandItTripsWhenSomebodyEntersAndTheLargeFieldCountsWhenI
   fast.input.field = ScannerField::kLarge;
   fast.run(kSettle);
   EXPECT_FALSE(fast.plc.outputs().is_field_clear);
-  EXPECT_EQ(fast.plc.trip(), PlcTrip::kNone) << "somebody holds the handle";
+  EXPECT_EQ(fast.plc.trip(), PlcTrip::kNone) << "the handle is held";
 }
 
 TEST(SafetyPlc, ADeviceThatDoesNotStopWhenTheHandLetsGoLosesItsPower) {

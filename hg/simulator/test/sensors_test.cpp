@@ -275,7 +275,7 @@ TEST(Sensors, SwitchingOneEffectOffLeavesTheOthersAsTheyWere) {
   }
 }
 
-TEST(Sensors, ACopyGoesOnByItself) {
+TEST(Sensors, ACopyContinuesIndependently) {
   Sensors sensors(SensorsConfig{}, device());
   for (int k = 0; k < 10; ++k) next(sensors, Motion::truth(0.01 * k));
   Sensors copy = sensors;

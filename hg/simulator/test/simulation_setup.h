@@ -14,7 +14,7 @@ inline const model::ChainModel& device_chain() {
   return chain;
 }
 
-inline person::Person nobody() {
+inline person::Person no_person() {
   const model::ChainModel body = model::ChainModel::free_body({}, {.gravity = false});
   return {{.kind = person::PersonKind::kNone}, body, body.frame("handle"), {}};
 }
@@ -65,7 +65,7 @@ inline Config elastic_world() {
 inline IdealPlantConfig& ideal(Config& config) { return std::get<IdealPlantConfig>(config.plant); }
 inline PlantConfig& elastic(Config& config) { return std::get<PlantConfig>(config.plant); }
 
-inline Simulation make(const Config& config, person::Person person = nobody()) {
+inline Simulation make(const Config& config, person::Person person = no_person()) {
   return Simulation(config, device_chain(), device_chain().frame("handle"), std::move(person));
 }
 

@@ -94,7 +94,7 @@ TEST(IdealSimulation, TheSensorShowsTheHandsWrenchInItsOwnFrame) {
   command.hand_target.active = true;
   command.hand_target.p_B = T_B_H.p + Eigen::Vector3d(0.1, 0.0, 0.0);
   device.step(command);
-  EXPECT_FALSE(device.sensors().dead_man);  // nobody yet
+  EXPECT_FALSE(device.sensors().dead_man);  // not held yet
   EXPECT_EQ(device.sensors().w_S.norm(), 0.0);
   for (int k = 0; k < 8000; ++k) device.step(command);
   EXPECT_TRUE(device.sensors().dead_man);
@@ -135,7 +135,7 @@ double speed_after_one_period(double latency, int periods) {
 TEST(Simulation, ATorqueIsFeltAfterItsLatencyInStepsOfThePlant) {
   EXPECT_LT(std::abs(speed_after_one_period(1e-3, 1)), 1e-9);
   const double all = speed_after_one_period(0.0, 1);
-  EXPECT_NEAR(all, 100.0 / 1.46 * kPeriod, 0.05 * all);  // springs have hardly begun to pull
+  EXPECT_NEAR(all, 100.0 / 1.46 * kPeriod, 0.05 * all);  // springs hardly pull yet
   for (const int quarters : {1, 2, 3}) {
     SCOPED_TRACE(quarters);
     const double share = (4.0 - quarters) / 4.0;
@@ -146,7 +146,7 @@ TEST(Simulation, ATorqueIsFeltAfterItsLatencyInStepsOfThePlant) {
 }
 
 // Sample k is answered by command k, which works from the sample on that comes `latency` later.
-TEST(Simulation, TheAnsweredSequenceTellsTheLatencyInPeriods) {
+TEST(Simulation, TheAnsweredSequenceShowsTheLatencyInPeriods) {
   for (const auto& [latency, periods] : std::vector<std::pair<double, std::uint64_t>>{
            {0.25e-3, 1}, {1e-3, 1}, {1.25e-3, 2}, {2e-3, 2}, {3e-3, 3}}) {
     SCOPED_TRACE(latency);
@@ -203,7 +203,7 @@ TEST(Simulation, WithoutNewCommandsTheDrivesSwitchThemselvesOff) {
   EXPECT_GT(speed(), 0.01);
 }
 
-TEST(Simulation, TheGantryOfADisabledDeviceBrakesWhateverItIsTold) {
+TEST(Simulation, TheGantryOfADisabledDeviceBrakesOnAnyCommand) {
   Simulation device = make(elastic_world());
   CommandFrame command = hold(device);
   command.dq_p[0] = 0.5;
@@ -268,7 +268,7 @@ TEST(Simulation, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
   EXPECT_NE(first, numbers_after(make(noisy_world(2)), 200));
 }
 
-TEST(Simulation, ACopyGoesOnByItselfWithTheSameBits) {
+TEST(Simulation, ACopyContinuesWithTheSameBits) {
   Simulation device = make(noisy_world(3), mouse());
   CommandFrame command = hold(device);
   command.hand_target.active = true;

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "hg/simulator/person/hand.h"
 #include "hg/config/simulation/scenario.h"
+#include "hg/simulator/person/hand.h"
 #include "hg/studies/free_twin.h"
 #include "hg/studies/haptify/benchmark.h"
 #include "hg/studies/haptify/free_space.h"

@@ -13,20 +13,20 @@
 namespace hg::tuning {
 namespace {
 
-Deviation late(const tracking::Loop& believed) {
+Deviation late(const tracking::Loop& nominal) {
   constexpr double kMore = 1.5;
-  tracking::TruePlant plant = {believed.device.actuators, believed.config.loop};
+  tracking::TruePlant plant = {nominal.device.actuators, nominal.config.loop};
   plant.loop.latency *= kMore;
   return {fmt::format("latency x {:g}", kMore), plant};
 }
 
 }  // namespace
 
-std::vector<Deviation> deviations(const tracking::Loop& believed) {
-  const tracking::TruePlant as_believed = {believed.device.actuators, believed.config.loop};
-  std::vector<Deviation> all = {{"as believed", as_believed}};
+std::vector<Deviation> deviations(const tracking::Loop& nominal) {
+  const tracking::TruePlant as_nominal = {nominal.device.actuators, nominal.config.loop};
+  std::vector<Deviation> all = {{"nominal", as_nominal}};
   for (const double factor : {0.75, 1.25}) {
-    tracking::TruePlant rotors = as_believed, springs = as_believed, links = as_believed;
+    tracking::TruePlant rotors = as_nominal, springs = as_nominal, links = as_nominal;
     for (ActuatorModel& actuator : rotors.actuators) actuator.rotor_inertia *= factor;
     for (ActuatorModel& actuator : springs.actuators) actuator.stiffness *= factor;
     links.link_mass = factor;
@@ -34,27 +34,27 @@ std::vector<Deviation> deviations(const tracking::Loop& believed) {
     all.push_back({fmt::format("springs x {:g}", factor), springs});
     all.push_back({fmt::format("links x {:g}", factor), links});
   }
-  all.push_back(late(believed));
+  all.push_back(late(nominal));
   return all;
 }
 
-std::vector<Deviation> deviations_in_hand(const tracking::Loop& believed) {
-  const tracking::TruePlant as_believed = {believed.device.actuators, believed.config.loop};
+std::vector<Deviation> deviations_in_hand(const tracking::Loop& nominal) {
+  const tracking::TruePlant as_nominal = {nominal.device.actuators, nominal.config.loop};
   constexpr double kLighter = 0.65;
-  return {{"as believed", as_believed, 1.0, kLighter},
-          late(believed),
-          {"torques at their bounds", as_believed, 0.5, kLighter}};
+  return {{"nominal", as_nominal, 1.0, kLighter},
+          late(nominal),
+          {"torques at their bounds", as_nominal, 0.5, kLighter}};
 }
 
-std::vector<Deviation> deviations_in_friction(const tracking::Loop& believed) {
+std::vector<Deviation> deviations_in_friction(const tracking::Loop& nominal) {
   std::vector<Deviation> all;
-  if (std::ranges::none_of(believed.device.actuators, has_presliding)) return all;
+  if (std::ranges::none_of(nominal.device.actuators, has_presliding)) return all;
   for (const double real : {0.5, 1.0, 1.25}) {
     for (const double share : {0.5, 1.0, 1.25}) {
-      tracking::TruePlant plant = {believed.device.actuators, believed.config.loop};
-      plant.bristles.resize(static_cast<Eigen::Index>(believed.device.actuators.size()));
+      tracking::TruePlant plant = {nominal.device.actuators, nominal.config.loop};
+      plant.bristles.resize(static_cast<Eigen::Index>(nominal.device.actuators.size()));
       for (Eigen::Index i = 0; i < plant.bristles.size(); ++i) {
-        plant.bristles[i] = real * presliding_stiffness(believed.device.actuators[index(i)]);
+        plant.bristles[i] = real * presliding_stiffness(nominal.device.actuators[index(i)]);
       }
       all.push_back({.what = fmt::format("bristles x {:g}, fed forward x {:g}", real, share * real),
                      .plant = plant,
@@ -80,14 +80,14 @@ std::vector<Grasp> grasps(const Body& body) {
   return all;
 }
 
-Demands::Demands(const tracking::Loop& believed, const Body& body,
+Demands::Demands(const tracking::Loop& nominal, const Body& body,
                  std::vector<Eigen::VectorXd> postures)
     : body_(body),
-      deviations_(deviations(believed)),
-      deviations_in_hand_(deviations_in_hand(believed)),
+      deviations_(deviations(nominal)),
+      deviations_in_hand_(deviations_in_hand(nominal)),
       grasps_(grasps(body)),
       postures_(std::move(postures)) {
-  for (Deviation& deviation : deviations_in_friction(believed))
+  for (Deviation& deviation : deviations_in_friction(nominal))
     deviations_in_hand_.push_back(std::move(deviation));
 }
 

@@ -17,19 +17,19 @@ struct Deviation {
   double fed = -1.0;      ///< factor of presliding friction that is fed forward; < 0 = none
 };
 
-/// Deviations without a hand: none; rotors, springs and links of 0.75 and 1.25 times the believed
+/// Deviations without a hand: none; rotors, springs and links of 0.75 and 1.25 times the nominal
 /// value; each separately, as in deviations_in_hand().
-std::vector<Deviation> deviations(const tracking::Loop& believed);
+std::vector<Deviation> deviations(const tracking::Loop& nominal);
 
 /// Deviations in a hand: none; 1.5 times the latency; torques that follow half as fast. The last
 /// occurs when motors are at their peak (follow_torque() in control/joint_control.cpp) and can make
 /// a stable hand oscillate for ever.
-std::vector<Deviation> deviations_in_hand(const tracking::Loop& believed);
+std::vector<Deviation> deviations_in_hand(const tracking::Loop& nominal);
 
 /// Deviations in joints with presliding: the friction has not slipped, with a stiffness of 0.5, 1
-/// and 1.25 times the believed one; the feedforward is 0.5 to 1.25 times as stiff as the friction.
+/// and 1.25 times the nominal one; the feedforward is 0.5 to 1.25 times as stiff as the friction.
 /// In hands, with the body itself. Empty for a device without presliding.
-std::vector<Deviation> deviations_in_friction(const tracking::Loop& believed);
+std::vector<Deviation> deviations_in_friction(const tracking::Loop& nominal);
 
 /// A hand that holds the handle of a body.
 struct Grasp {
@@ -61,7 +61,7 @@ inline constexpr double kFrictionRadius = 1.0;
 /// All cases that a torque loop must tolerate.
 class Demands {
  public:
-  Demands(const tracking::Loop& believed, const Body& body, std::vector<Eigen::VectorXd> postures);
+  Demands(const tracking::Loop& nominal, const Body& body, std::vector<Eigen::VectorXd> postures);
 
   const std::vector<Eigen::VectorXd>& postures() const { return postures_; }
   /// Whether the case is one of deviations_in_friction().

@@ -25,7 +25,7 @@ Device device_of(const config::SimulatedDevice& device) {
   if (device.control.method == tracking::Method::kDrives) {
     refuse(
         "tune is for joints whose torque we control: the device has no 'actuators', its drives "
-        "follow positions by themselves");
+        "follow positions on their own");
   }
   if (device.control.method != tracking::Method::kModal) {
     refuse("tune is for control.method: modal, got motor_pd");

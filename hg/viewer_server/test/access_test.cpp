@@ -90,7 +90,7 @@ TEST(Token, IsPartOfAnyInput) {
   });
 }
 
-TEST(LoadPage, WithoutIndexSaysHowToBuildIt) {
+TEST(LoadPage, WithoutIndexExplainsHowToBuildIt) {
   try {
     load_page("hg/viewer_server");
     FAIL() << "no SetupError";

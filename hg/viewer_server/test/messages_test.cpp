@@ -250,7 +250,7 @@ TEST(EncodeFrame, StaysSmallForADeviceWithSevenJointsAndATwinWithSix) {
   EXPECT_LT(encode_frame(view, limits, 4).size(), 4096u);
 }
 
-TEST(EncodeFrame, SaysNothingIsFeltWhenTheIndexIsOutsideTheCatalogue) {
+TEST(EncodeFrame, HasNoFeltLimitWhenTheIndexIsOutsideTheCatalogue) {
   View view = make_view();
   for (const int index : {-1, 4, 1'000'000}) {
     view.record.felt_limit = index;

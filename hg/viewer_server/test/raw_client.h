@@ -1,5 +1,5 @@
-/// A browser's side of HTTP and WebSocket on plain sockets, for tests: sends exactly what it is
-/// told.
+/// A browser's side of HTTP and WebSocket on plain sockets, for tests: sends exactly the bytes that
+/// it is given.
 #pragma once
 
 #include <arpa/inet.h>

@@ -147,7 +147,7 @@ TEST_F(ViewerServerTest, NothingOfTheRunIsServedWithoutTheToken) {
   EXPECT_EQ(server_.counters().refused, 24u);
 }
 
-TEST_F(ViewerServerTest, ThePageIsThereForEverybodyAndTheTokenGivesTheRun) {
+TEST_F(ViewerServerTest, ThePageNeedsNoTokenAndTheRunDoes) {
   const std::string answer = get("/", host_);
   EXPECT_TRUE(answer.starts_with("HTTP/1.1 200")) << answer;
   EXPECT_TRUE(answer.ends_with("the page"));
@@ -160,7 +160,7 @@ TEST_F(ViewerServerTest, ThePageIsThereForEverybodyAndTheTokenGivesTheRun) {
   EXPECT_EQ(server_.counters().refused, 0u);
 }
 
-TEST_F(ViewerServerTest, ConnectionsThatSayNothingKeepNobodyOut) {
+TEST_F(ViewerServerTest, SilentConnectionsBlockNoOtherVisitor) {
   const auto page = open_page();
   std::vector<std::unique_ptr<RawClient>> idle;
   for (int i = 0; i < 200; ++i) {
@@ -270,8 +270,8 @@ class DeskTest : public ViewerServerTest {
         .dump();
   }
   // Why not; empty: done.
-  std::string ask(RawClient& page, const std::string& name, const std::string& argument,
-                  double value = 0.0) const {
+  std::string send_command(RawClient& page, const std::string& name, const std::string& argument,
+                           double value = 0.0) const {
     page.send_message(command(name, argument, value));
     return next(page, "answer")["reason"];
   }
@@ -301,22 +301,22 @@ class DeskTest : public ViewerServerTest {
 
 TEST_F(DeskTest, StopsAreInForceWithoutTheProgram) {
   const auto page = open_page();
-  EXPECT_EQ(ask(*page, "emergency_stop", ""), "");
+  EXPECT_EQ(send_command(*page, "emergency_stop", ""), "");
   EXPECT_TRUE(look().emergency_stop);
-  EXPECT_EQ(ask(*page, "panel", "operator_enable", 0.0), "");
+  EXPECT_EQ(send_command(*page, "panel", "operator_enable", 0.0), "");
   EXPECT_FALSE(look().operator_enable);
-  EXPECT_EQ(ask(*page, "mode", "hold"), "");
+  EXPECT_EQ(send_command(*page, "mode", "hold"), "");
   EXPECT_EQ(desk_.holds(), 1u);
   page->send_message(command("stop", "", 0.0));  // answered by the program
   EXPECT_TRUE(eventually([&] { return desk_.end_was_asked(); }));
   EXPECT_EQ(desk_.stops(), 4u);
 
-  const std::vector<Command> told = server_.take_commands();
-  ASSERT_EQ(told.size(), 4u);
-  EXPECT_TRUE(told[0].is_done && told[1].is_done && told[2].is_done);
-  EXPECT_FALSE(told[3].is_done);
-  EXPECT_EQ(told[0].page, newest_page_);
-  EXPECT_EQ(told[1].stops, 2u);
+  const std::vector<Command> commands = server_.take_commands();
+  ASSERT_EQ(commands.size(), 4u);
+  EXPECT_TRUE(commands[0].is_done && commands[1].is_done && commands[2].is_done);
+  EXPECT_FALSE(commands[3].is_done);
+  EXPECT_EQ(commands[0].page, newest_page_);
+  EXPECT_EQ(commands[1].stops, 2u);
 }
 
 TEST_F(DeskTest, AStopIsNeverOneCommandTooMany) {
@@ -333,12 +333,12 @@ TEST_F(DeskTest, AnotherPageReleasesAStopByNameOnly) {
   const auto second = open_page();
   const auto other = static_cast<double>(newest_page_);
   EXPECT_NE(number, other);
-  EXPECT_EQ(ask(*first, "emergency_stop", ""), "");
-  EXPECT_NE(ask(*second, "release_stop", "", other), "");
-  EXPECT_NE(ask(*second, "release_stop", "", 0.0), "");
-  EXPECT_NE(ask(*second, "release_stop", "", -1.0), "");
-  EXPECT_NE(ask(*second, "release_stop", "", 0.5), "");
-  EXPECT_NE(ask(*second, "panel", "emergency_stop", 0.0), "");
+  EXPECT_EQ(send_command(*first, "emergency_stop", ""), "");
+  EXPECT_NE(send_command(*second, "release_stop", "", other), "");
+  EXPECT_NE(send_command(*second, "release_stop", "", 0.0), "");
+  EXPECT_NE(send_command(*second, "release_stop", "", -1.0), "");
+  EXPECT_NE(send_command(*second, "release_stop", "", 0.5), "");
+  EXPECT_NE(send_command(*second, "panel", "emergency_stop", 0.0), "");
   EXPECT_TRUE(look().emergency_stop);
   publish(1.0);
   const nlohmann::json safety = next(*second, "frame")["safety"];
@@ -347,18 +347,18 @@ TEST_F(DeskTest, AnotherPageReleasesAStopByNameOnly) {
   first->close();
   ASSERT_TRUE(eventually([&] { return server_.counters().clients == 1; }));
   EXPECT_TRUE(look().emergency_stop);
-  EXPECT_EQ(ask(*second, "release_stop", "", number), "");
+  EXPECT_EQ(send_command(*second, "release_stop", "", number), "");
   EXPECT_FALSE(look().emergency_stop);
 }
 
 TEST_F(DeskTest, FortyEditsOfTwoPagesNeverReleaseTheStop) {
   const auto first = open_page();
   const auto second = open_page();
-  EXPECT_EQ(ask(*first, "emergency_stop", ""), "");
+  EXPECT_EQ(send_command(*first, "emergency_stop", ""), "");
   for (int i = 0; i < 40; ++i) {
     const bool is_on = i % 4 < 2;
     RawClient& page = i % 2 == 0 ? *first : *second;
-    EXPECT_EQ(ask(page, "panel", "person_in_field", is_on ? 1.0 : 0.0), "");
+    EXPECT_EQ(send_command(page, "panel", "person_in_field", is_on ? 1.0 : 0.0), "");
     const SafetyPanel panel = look();
     EXPECT_TRUE(panel.emergency_stop) << i;
     EXPECT_EQ(panel.person_in_field, is_on) << i;
@@ -371,7 +371,7 @@ TEST_F(DeskTest, WhatAPageHoldsIsLetGoWhenItIsSilent) {
   // a page that a busy machine keeps from being heard loses what it holds, too: try again
   bool has_held = false;
   for (int i = 0; i < 50 && !has_held; ++i) {
-    EXPECT_EQ(ask(*page, "panel", "override_key", 1.0), "");
+    EXPECT_EQ(send_command(*page, "panel", "override_key", 1.0), "");
     has_held = held_s(0.5, [&] { hold(*page, ++sequence); }) > 0.45;
   }
   EXPECT_TRUE(has_held) << "heartbeats hold it beyond 100 ms";
@@ -382,7 +382,7 @@ TEST_F(DeskTest, WhatAPageHoldsIsLetGoWhenItIsSilent) {
 TEST_F(DeskTest, OldSequenceNumbersHoldNothing) {
   const auto page = open_page();
   for (int sequence = 1; sequence <= 50; ++sequence) hold(*page, sequence);
-  EXPECT_EQ(ask(*page, "panel", "override_key", 1.0), "");
+  EXPECT_EQ(send_command(*page, "panel", "override_key", 1.0), "");
   const std::uint64_t refused = server_.counters().refused;
   int old = 0;
   EXPECT_LT(held_s(60.0, [&] { hold(*page, old = old % 50 + 1); }), 50.0);
@@ -392,7 +392,7 @@ TEST_F(DeskTest, OldSequenceNumbersHoldNothing) {
 
 TEST_F(DeskTest, ASwitchIsOnOrOff) {
   const auto page = open_page();
-  EXPECT_EQ(ask(*page, "panel", "override_key", 2.0), "a switch is 0 (off) or 1 (on)");
+  EXPECT_EQ(send_command(*page, "panel", "override_key", 2.0), "a switch is 0 (off) or 1 (on)");
   SafetyPanel panel;
   desk_.look(0, panel);
   EXPECT_FALSE(panel.override_key);
@@ -400,7 +400,7 @@ TEST_F(DeskTest, ASwitchIsOnOrOff) {
 
 TEST_F(DeskTest, AClosedPageLetsGoAtOnce) {
   const auto page = open_page();
-  EXPECT_EQ(ask(*page, "panel", "operator_enable", 1.0), "");
+  EXPECT_EQ(send_command(*page, "panel", "operator_enable", 1.0), "");
   page->close();
   ASSERT_TRUE(eventually([&] { return server_.counters().clients == 0; }));
   SafetyPanel panel;
@@ -411,11 +411,11 @@ TEST_F(DeskTest, AClosedPageLetsGoAtOnce) {
 TEST_F(DeskTest, BetweenRunsStopsCountForTheNextOneAndNothingElseIsTaken) {
   const auto page = open_page();
   desk_.close();
-  EXPECT_NE(ask(*page, "panel", "operator_enable", 1.0), "");
+  EXPECT_NE(send_command(*page, "panel", "operator_enable", 1.0), "");
   EXPECT_EQ(desk_.stops(), 0u);
-  EXPECT_EQ(ask(*page, "panel", "operator_enable", 0.0), "");
-  EXPECT_EQ(ask(*page, "mode", "hold"), "");
-  EXPECT_EQ(ask(*page, "emergency_stop", ""), "");
+  EXPECT_EQ(send_command(*page, "panel", "operator_enable", 0.0), "");
+  EXPECT_EQ(send_command(*page, "mode", "hold"), "");
+  EXPECT_EQ(send_command(*page, "emergency_stop", ""), "");
   EXPECT_EQ(desk_.stops(), 3u);
   EXPECT_TRUE(look().emergency_stop);
 }
@@ -554,7 +554,7 @@ TEST_F(ViewerServerTest, AFloodIsRefusedAndTheConnectionLives) {
   EXPECT_TRUE(receives(*page, 4.5));
 }
 
-TEST_F(ViewerServerTest, APageThatNeverReadsLosesFramesAndHoldsUpNobody) {
+TEST_F(ViewerServerTest, APageThatNeverReadsLosesFramesAndDelaysNoOther) {
   const auto slow = open_page(4096);
   double time_s = 0.0;
   EXPECT_TRUE(eventually([&] {
@@ -605,7 +605,7 @@ TEST_F(ViewerServerTest, SetUpErrorsNameTheItem) {
   options.address = "not an address";
   EXPECT_NE(message(options, make_scene()).find("not an address"), std::string::npos);
   options = make_options();
-  options.address = "192.0.2.7";  // of documentation: nobody has it
+  options.address = "192.0.2.7";  // for documentation: no host has it
   EXPECT_NE(message(options, make_scene()).find("192.0.2.7"), std::string::npos);
   options = make_options();
   options.token = "not a token";

@@ -27,7 +27,7 @@ def main():
     parser.add_argument("folder", nargs="?", type=pathlib.Path)
     parser.add_argument("runs", nargs="*", type=pathlib.Path, help="folders with run.json")
     parser.add_argument("--docs", type=pathlib.Path, help="refresh the page of this folder")
-    parser.add_argument("--check", action="store_true", help="only tell whether it would work")
+    parser.add_argument("--check", action="store_true", help="only check whether it would work")
     arguments = parser.parse_args()
     needed = ("numpy", "scipy", "matplotlib", "jinja2")
     if not all(importlib.util.find_spec(name) for name in needed):

@@ -22,7 +22,7 @@ METHOD = (
     "Free motion is that of a rendered free body, which a device under admittance control cannot do "
     "without; Touch and Touch X under impedance control are only switched off.",
 )
-# the figures that tell most, for the first page: identifier and a short name
+# the most important figures, for the first page: identifier and a short name
 KEY_FIGURES = (
     ("workspace_volume", "workspace"), ("free_space_force", "force in free space"),
     ("free_space_extra", "of it, added by the device"), ("free_space_vibration", "vibration"),

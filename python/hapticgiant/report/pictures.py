@@ -13,7 +13,7 @@ from ..figures import COLOURS, SETTINGS, STYLES, columns_that_fit
 WIDTH = 7.2  # inches
 THREE_DB = (1 / 1.4125, 1.4125)
 AXES = "xyz"
-# colour and letter of a verdict, from calm to bad
+# colour and letter of a verdict, from stable to bad
 VERDICTS = {"stable": ("#009e73", "."), "slow decay": ("#8fd3bd", "r"), "hunts": ("#e69f00", "h"),
             "sustained": ("#d55e00", "U"), "diverges": ("#8b1a1a", "X"), "failed": ("#bbbbbb", "-")}
 

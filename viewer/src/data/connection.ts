@@ -1,4 +1,4 @@
-// The WebSocket to the program: hands messages on, reconnects by itself.
+// The WebSocket to the program: passes messages on, reconnects automatically.
 
 import type { Command, Hand, Hold } from "../messages";
 import { type Message, read_message } from "./read_message";
@@ -23,7 +23,7 @@ export class Connection {
     return this.socket?.readyState === WebSocket.OPEN;
   }
 
-  // False when there is nobody to take it.
+  // False while there is no connection.
   send(message: Hand | Hold | Command): boolean {
     if (!this.is_connected) return false;
     this.socket!.send(JSON.stringify(message));

@@ -15,7 +15,7 @@ export class Freshness {
   tick(): void {
     this.ticks += 1;
   }
-  // `is_expected`: time goes on in the program, so that frames have to come.
+  // `is_expected`: time advances in the program, so that frames have to come.
   link(is_connected: boolean, is_expected: boolean): Link {
     if (!is_connected) return "lost";
     return is_expected && this.ticks >= PATIENCE_TICKS ? "silent" : "open";

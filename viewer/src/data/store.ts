@@ -1,4 +1,4 @@
-// All that the page knows: connection -> store -> views. Views read; only the store changes.
+// All data of the page: connection -> store -> views. Views read; only the store changes.
 
 import type { Event, Frame, Scene, Values } from "../messages";
 import { Commands, type Refusal } from "./commands";
@@ -14,7 +14,7 @@ const RETRY_MS = 1000; // of the scene
 const BACK_S = 0.05; // time that goes back by less has been rounded
 
 export interface Listener {
-  on_scene?(scene: Scene): void; // another run has begun, or the first one
+  on_scene?(scene: Scene): void; // another run has started, or the first one
   on_frame?(frame: Frame): void;
   on_event?(event: Event): void;
   on_events_cleared?(): void;
@@ -52,7 +52,7 @@ export class Store {
         if (is_sent) this.holder.note(command);
         return is_sent;
       },
-      (refusal) => this.tell((listener) => listener.on_refusal?.(refusal)),
+      (refusal) => this.notify((listener) => listener.on_refusal?.(refusal)),
     );
     setInterval(() => this.freshness.tick(), TICK_MS);
   }
@@ -77,13 +77,13 @@ export class Store {
     if (this.scene) listener.on_scene?.(this.scene);
   }
 
-  private tell(what: (listener: Listener) => void): void {
+  private notify(what: (listener: Listener) => void): void {
     for (const listener of this.listeners) what(listener);
   }
 
   private take(message: Message): void {
     if (message.type === "frame") this.take_frame(message);
-    else if (message.type === "event") this.tell((listener) => listener.on_event?.(message));
+    else if (message.type === "event") this.notify((listener) => listener.on_event?.(message));
     else if (message.type === "values") this.take_values(message);
     else if (message.type === "welcome") this.page = message.page;
     else this.commands.take(message);
@@ -92,7 +92,7 @@ export class Store {
   private take_values(values: Values): void {
     this.values = values;
     if (values.values.length !== this.scene?.settings.length) return;
-    this.tell((listener) => listener.on_values?.(values));
+    this.notify((listener) => listener.on_values?.(values));
   }
 
   private take_frame(frame: Frame): void {
@@ -103,7 +103,7 @@ export class Store {
     this.freshness.note();
     this.frame = frame;
     this.note(this.scene, frame);
-    this.tell((listener) => listener.on_frame?.(frame));
+    this.notify((listener) => listener.on_frame?.(frame));
   }
 
   // Times of the history rise; a step back is a place that was sought, or a restart.
@@ -115,7 +115,7 @@ export class Store {
 
   private note_unreadable(reason: string): void {
     this.unreadable += 1;
-    this.tell((listener) => listener.on_unreadable?.(this.unreadable, reason));
+    this.notify((listener) => listener.on_unreadable?.(this.unreadable, reason));
   }
 
   private note_state(is_connected: boolean): void {
@@ -123,10 +123,10 @@ export class Store {
     this.holder.end();
     this.freshness.note();
     if (is_connected) {
-      this.tell((listener) => listener.on_events_cleared?.()); // all are sent again
+      this.notify((listener) => listener.on_events_cleared?.()); // all are sent again
       void this.load_scene(); // the program may be another one now
     }
-    this.tell((listener) => listener.on_connection?.(is_connected));
+    this.notify((listener) => listener.on_connection?.(is_connected));
   }
 
   private async load_scene(): Promise<void> {
@@ -139,7 +139,7 @@ export class Store {
       this.frame = null;
       this.scene = scene;
       this.history = history_of(scene);
-      this.tell((listener) => listener.on_scene?.(scene));
+      this.notify((listener) => listener.on_scene?.(scene));
       if (this.values) this.take_values(this.values);
     } catch {
       if (this.is_connected) setTimeout(() => void this.load_scene(), RETRY_MS);

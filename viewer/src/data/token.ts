@@ -1,5 +1,5 @@
 // The secret of the link: taken out of the address at once, kept for this tab and this port, and
-// shown to the program with everything that is asked of it.
+// sent to the program with every request.
 
 const KEPT_AS = "hapticgiant.token";
 const NAME = "token";

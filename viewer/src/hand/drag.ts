@@ -53,15 +53,15 @@ export class Drag {
     area.addEventListener("pointerdown", (event) => this.grab(event), { capture: true });
     area.addEventListener("pointermove", (event) => this.move(event));
     for (const name of ["pointerup", "pointercancel"] as const) {
-      addEventListener(name, (event) => this.release(event.pointerId), { capture: true });
+      addEventListener(name, (event) => this.end_pointer(event.pointerId), { capture: true });
     }
     addEventListener("blur", () => {
       this.key_mode = null; // the key is released elsewhere
-      this.let_go();
+      this.release();
     });
-    document.addEventListener("visibilitychange", () => document.hidden && this.let_go());
-    addEventListener("pagehide", () => this.let_go());
-    setInterval(() => this.target && this.tell(), RESEND_MS);
+    document.addEventListener("visibilitychange", () => document.hidden && this.release());
+    addEventListener("pagehide", () => this.release());
+    setInterval(() => this.target && this.send_hand(), RESEND_MS);
   }
 
   get is_dragging(): boolean {
@@ -91,10 +91,10 @@ export class Drag {
     if (this.is_pressing === is_pressing || !this.can_hold) return;
     this.is_pressing = is_pressing;
     if (!this.is_dragging) this.target = is_pressing ? this.handle : null;
-    this.tell();
+    this.send_hand();
   }
 
-  let_go(): void {
+  release(): void {
     this.is_pressing = false;
     if (this.target === null) return;
     this.pointer = null;
@@ -102,7 +102,7 @@ export class Drag {
     this.turn = null;
     this.cameras.controls.enabled = this.cameras.current !== "first person";
     this.stage.canvas.style.cursor = "";
-    this.tell();
+    this.send_hand();
   }
 
   private get handle(): Vec3 | null {
@@ -124,7 +124,7 @@ export class Drag {
     this.last_pointer.set(event.clientX, event.clientY);
     this.target = handle;
     this.restart();
-    this.tell();
+    this.send_hand();
   }
 
   private move(event: PointerEvent): void {
@@ -146,9 +146,9 @@ export class Drag {
     if (met && handle) this.target = within_reach(add(met, this.offset), handle, REACH);
   }
 
-  private release(pointer: number): void {
+  private end_pointer(pointer: number): void {
     this.others.delete(pointer);
-    if (pointer === this.pointer) this.let_go();
+    if (pointer === this.pointer) this.release();
   }
 
   // From now on the target moves with the pointer, starting where it is.
@@ -185,7 +185,7 @@ export class Drag {
     return Math.hypot(event.clientX - x, event.clientY - y) <= GRAB_RADIUS_PX;
   }
 
-  private tell(): void {
+  private send_hand(): void {
     const p_B_m = this.target ?? this.handle ?? [0, 0, 0];
     const active = this.target !== null;
     this.send({ type: "hand", active, p_B_m, quaternion_B_H: this.turn, press: this.press });

@@ -59,7 +59,7 @@ export class HandControls {
     addEventListener("keyup", (event) => this.take_key(event, false));
   }
 
-  furnish(scene: Scene): void {
+  load(scene: Scene): void {
     const lever = has_lever(scene);
     this.press_part.hidden = !lever;
     this.drag.can_hold = scene.source === "run";

@@ -45,7 +45,7 @@ export class ChangePanel {
     private readonly commands: Commands,
   ) {}
 
-  furnish(scene: Scene): void {
+  load(scene: Scene): void {
     this.scene = scene;
     this.section.replaceChildren();
     const refusal = scene.source === "recording" ? PLAYED : scene.refusal;

@@ -25,7 +25,7 @@ export class JointsPanel {
     section.append(this.body);
   }
 
-  furnish(scene: Scene): void {
+  load(scene: Scene): void {
     this.device = rows_of(scene, scene.device.joints, "manipulator");
     this.twin = rows_of(scene, scene.twin.joints, "twin");
     this.body.replaceChildren(make("h2", "", "Twin"));

@@ -9,15 +9,15 @@ type Switch = "operator_enable" | "override_key" | "person_in_field";
 
 const SWITCHES: readonly [Switch, string, string][] = [
   ["operator_enable", "Enabling switch held", "While this page is open and seen. Let go: braked, then drives off"],
-  ["override_key", "Override key", "May move slowly with nobody at the handle, while this page is open and seen"],
-  ["person_in_field", "Somebody in the field", "Of the scanner, besides the user"],
+  ["override_key", "Override key", "May move slowly while the handle is not held, as long as this page is open and seen"],
+  ["person_in_field", "Person in the field", "Of the scanner, besides the user"],
 ];
 
 const REQUESTS = [
   ["reset", "Reset", "After a fault, once its cause is gone"],
   ["arm", "Arm", "Drives on, brakes open, the device is held"],
-  ["run", "Run", "By hand: somebody holds the handle"],
-  ["run_alone", "Run alone", "With the override key, slowly, with nobody at the handle"],
+  ["run", "Run", "By hand: the handle is held"],
+  ["run_alone", "Run alone", "With the override key, slowly, handle not held"],
   ["hold", "Hold", "Braked, then held under power"],
 ] as const;
 type Request = (typeof REQUESTS)[number][0];
@@ -48,7 +48,7 @@ export class SafetyPanel {
   private readonly answers = make("div", "buttons safety-answers");
   private pressed_by: number[] = [];
   private is_pressed = false;
-  private asks = false; // whether to release what somebody else has pressed
+  private is_asking = false; // whether to release a stop that another page has pressed
 
   constructor(
     section: HTMLElement,
@@ -63,12 +63,12 @@ export class SafetyPanel {
     );
     this.stop.className = "emergency-stop";
     this.answers.append(
-      make_button("Release it", "The stop of somebody else", () => {
+      make_button("Release it", "The stop of another page", () => {
         this.pull_out(this.pressed_by[0] ?? 0);
       }),
-      make_button("Leave it", "It stays pressed", () => this.ask(false)),
+      make_button("Leave it", "It stays pressed", () => this.show_question(false)),
     );
-    this.ask(false);
+    this.show_question(false);
     for (const [name, text, title] of SWITCHES) {
       const box = make_check_box(text, name === "operator_enable", (is_on) => flip(name, is_on));
       box.title = title;
@@ -94,7 +94,7 @@ export class SafetyPanel {
     );
   }
 
-  furnish(scene: Scene): void {
+  load(scene: Scene): void {
     this.stop.hidden = !scene.commands.includes("emergency_stop");
     this.panel.hidden = !scene.commands.includes("panel");
     this.requests.hidden = !scene.commands.includes("mode");
@@ -102,7 +102,7 @@ export class SafetyPanel {
   }
 
   show({ mode, safety, run_state }: Frame): void {
-    write(this.mode, safety.is_autonomous ? `${mode}, nobody at the handle` : mode);
+    write(this.mode, safety.is_autonomous ? `${mode}, handle not held` : mode);
     // after a fault the drives go off in any case
     const is_held = safety.stop === "SS2" && safety.fault === 0;
     write(this.how, is_held ? "braked, then held" : STOP_TEXT[safety.stop]);
@@ -112,8 +112,8 @@ export class SafetyPanel {
     write(this.warning, safety.warning === "" ? "" : `Near: ${safety.warning}`);
     this.is_pressed = safety.emergency_stop;
     this.pressed_by = safety.stop_pressed_by;
-    if (!this.is_pressed) this.ask(false);
-    if (this.asks) this.ask(true); // it may be somebody else's by now
+    if (!this.is_pressed) this.show_question(false);
+    if (this.is_asking) this.show_question(true); // it may be that of another page by now
     write(this.stop, this.is_pressed ? "Emergency stop: pull it out" : "Emergency stop");
     this.stop.setAttribute("aria-pressed", String(this.is_pressed));
     for (const [name, box] of this.boxes) {
@@ -124,21 +124,21 @@ export class SafetyPanel {
     for (const [name, button] of this.by_request) button.dataset.next = String(name === next);
   }
 
-  // What somebody else has pressed is released by name, after a question.
+  // A stop of another page is released by its number, after a question.
   private press_or_release(): void {
     if (!this.is_pressed) this.commands.send("emergency_stop");
     else if (this.pressed_by.includes(this.own_page())) this.pull_out(this.own_page());
-    else this.ask(true);
+    else this.show_question(true);
   }
 
   private pull_out(page: number): void {
-    this.ask(false);
+    this.show_question(false);
     this.commands.send("release_stop", "", page);
   }
 
-  private ask(asks: boolean): void {
-    this.asks = asks;
-    this.question.hidden = this.answers.hidden = !asks;
+  private show_question(is_asking: boolean): void {
+    this.is_asking = is_asking;
+    this.question.hidden = this.answers.hidden = !is_asking;
     const by = presser_text(this.pressed_by[0] ?? 0, this.own_page());
     write(this.question, `The stop was pressed by ${by}. Release it?`);
   }

@@ -22,7 +22,7 @@ export interface Span {
 }
 
 // At most about `most` of the rows from `first` to before `end`, and always the same ones while
-// time goes on: `first_row` rows have been forgotten. A line through others would shiver.
+// time advances: `first_row` rows have been forgotten. A line through other rows would flicker.
 export function thinned_rows(
   first: number,
   end: number,

@@ -32,14 +32,14 @@ export class PlotDrawer {
   private offers: Offer[] = [];
   private shown = new Set<string>(stored_choice());
   private plots = new Map<string, Plot>();
-  private live_s = LIVE_S; // shown while time goes on
+  private live_s = LIVE_S; // shown while time advances
   private held: TimeRange | null = null; // shown while it stands still
 
   constructor(
     private readonly part: HTMLElement,
     private readonly store: Store,
   ) {
-    this.pause_button = make_button("pause", "Plots stand still; double click goes on", () => {
+    this.pause_button = make_button("pause", "Plots are paused; double click continues", () => {
       this.hold(this.held ? null : this.range);
     });
     this.pause_button.id = "hold-plots";
@@ -63,7 +63,7 @@ export class PlotDrawer {
     return !this.part.hidden;
   }
 
-  furnish(scene: Scene): void {
+  load(scene: Scene): void {
     const zoom = (range: TimeRange): void => this.hold(range);
     this.offers = [
       ...time_specs(scene).map((spec) => ({

@@ -110,7 +110,7 @@ export class TimePlot implements Plot {
     };
   }
 
-  // At least as high as the plot asks for, with some air.
+  // At least the plot's smallest range, with a margin.
   private span(low: number | null, high: number | null): uPlot.Range.MinMax {
     const [from, to] = [low ?? 0, high ?? 0];
     const missing = Math.max(0, this.spec.smallest_span - (to - from));

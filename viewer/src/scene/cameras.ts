@@ -43,7 +43,7 @@ export class Cameras {
     return this.view;
   }
 
-  // Looks into the cell through its open side, beside the person, like somebody tall.
+  // Looks into the cell through its open side, from beside and above the person.
   frame(box: SceneBox): void {
     this.low.set(...box.min_m);
     this.high.set(...box.max_m);

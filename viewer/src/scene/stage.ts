@@ -99,7 +99,7 @@ export class Stage {
     });
   }
 
-  furnish(box: SceneBox, floor_z_m: number): void {
+  load(box: SceneBox, floor_z_m: number): void {
     this.floor_z_m = this.floor.position.z = floor_z_m;
     this.grid.mesh.position.z = floor_z_m + 0.002;
     const lines = new Box3Helper(new Box3(new Vector3(...box.min_m), new Vector3(...box.max_m)));

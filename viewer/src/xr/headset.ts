@@ -51,7 +51,7 @@ export class Headset {
     xr.setReferenceSpaceType("local-floor");
     this.controllers = [0, 1].map((index) => xr.getController(index));
     for (const controller of this.controllers) this.connect(controller);
-    xr.addEventListener("sessionend", () => this.take_off());
+    xr.addEventListener("sessionend", () => this.exit());
     setInterval(() => this.tell_where(), RESEND_MS);
     void this.offer();
   }
@@ -75,7 +75,7 @@ export class Headset {
       const is_there = await navigator.xr?.isSessionSupported(mode).catch(() => false);
       if (!is_there) continue;
       const button = make_button(text, title, () => {
-        this.put_on(mode).catch((error: unknown) => this.on_problem(`${text}: ${String(error)}`));
+        this.enter(mode).catch((error: unknown) => this.on_problem(`${text}: ${String(error)}`));
       });
       button.id = `enter-${text.toLowerCase()}`;
       button.className = "with-icon";
@@ -84,7 +84,7 @@ export class Headset {
     }
   }
 
-  private async put_on(mode: XRSessionMode): Promise<void> {
+  private async enter(mode: XRSessionMode): Promise<void> {
     const session = await navigator.xr!.requestSession(mode, { requiredFeatures: ["local-floor"] });
     const frame = this.frame();
     if (frame) {
@@ -98,8 +98,8 @@ export class Headset {
     await this.stage.renderer.xr.setSession(session);
   }
 
-  private take_off(): void {
-    this.let_go();
+  private exit(): void {
+    this.release();
     this.stage.set_see_through(false);
     this.stage.rig.position.set(0, 0, 0);
     this.stage.rig.quaternion.identity();
@@ -115,7 +115,7 @@ export class Headset {
     this.stage.rig.add(controller);
     controller.addEventListener("selectstart", () => this.take_hold(controller));
     for (const end of ["selectend", "disconnected"] as const) {
-      controller.addEventListener(end, () => this.grip?.controller === controller && this.let_go());
+      controller.addEventListener(end, () => this.grip?.controller === controller && this.release());
     }
   }
 
@@ -132,11 +132,11 @@ export class Headset {
     this.tell_where();
   }
 
-  let_go(): void {
+  release(): void {
     if (!this.grip) return;
     this.grip = null;
     this.target = null;
-    this.tell(false);
+    this.send_hand(false);
   }
 
   private tell_where(): void {
@@ -147,11 +147,11 @@ export class Headset {
     const { p_B, turn } = grip_target(this.grip, now, attitude);
     this.target = p_B;
     this.turn = turn;
-    this.tell(true);
+    this.send_hand(true);
   }
 
   // Who holds the handle presses its lever.
-  private tell(active: boolean): void {
+  private send_hand(active: boolean): void {
     const p_B_m = this.target ?? this.frame()?.p_B_H_m ?? [0, 0, 0];
     const quaternion_B_H = active ? this.turn : null;
     this.send({ type: "hand", active, p_B_m, quaternion_B_H, press: active ? 1 : 0 });

@@ -92,7 +92,7 @@ export function cheap(link) {
   return `${link}&quality=fast`;
 }
 
-// Waits until what the page knows now has been drawn.
+// Waits until the present data of the page has been drawn.
 export async function pictures(page) {
   await page.evaluate(async () => {
     for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame);
@@ -158,7 +158,7 @@ export function arc(handle, hinge, angles) {
 }
 
 // Number of pixels of the scene that change when `layer` is switched off, and come back with it; what
-// moves by itself does not count.
+// moves on its own does not count.
 export async function hide_and_compare(page, layer) {
   const { x, y, width, height } = await page.locator("#stage").boundingBox();
   const clip = { x, y: y + 70, width, height: height - 140 }; // without what lies over it

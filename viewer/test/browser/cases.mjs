@@ -35,14 +35,14 @@ export async function page_is_live({ browser, program, expect }) {
   const hint = await page.isVisible("#grip-text");
   expect(hint, "a hint at the handle says what to do");
 
-  // how many the program sends tells tools/page_timing.py; a busy machine draws fewer
+  // tools/page_timing.py measures how many the program sends; a busy machine draws fewer
   const count = () =>
     page.evaluate(() => [window.hapticgiant.frames, window.hapticgiant.frame.time_s]);
   const [frames, time] = await count();
-  const goes_on = await comes_true(page, (f) => f.time_s > time + 1);
+  const is_running = await comes_true(page, (f) => f.time_s > time + 1);
   const [later_frames, later_time] = await count();
   const rate = (later_frames - frames) / (later_time - time);
-  const is_live = goes_on && later_frames > frames;
+  const is_live = is_running && later_frames > frames;
   expect(is_live, `frames arrive, ${rate.toFixed(1)} for each second of the program`);
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
   await close();
@@ -66,7 +66,7 @@ export async function drag_opens_door({ browser, program, expect }) {
   await close();
 }
 
-// As somebody does who has read nothing: at once, and not along the arc of the handle.
+// As a user without instructions does: at once, and not along the arc of the handle.
 export async function hasty_drag_opens_door({ browser, program, expect }) {
   const { page, close } = await open_page(browser, cheap(program.link));
   if (!(await follows(page, "panel"))) return close(); // a fake door has no lever
@@ -116,7 +116,7 @@ export async function unreadable_messages_are_noted({ browser, program, expect }
   const note = await page.textContent("#notices");
   expect(/could not be read/.test(note), `and noted: ${note}`);
   const { time_s } = await frame_of(page);
-  expect(await comes_true(page, (f) => f.time_s > time_s), "frames go on");
+  expect(await comes_true(page, (f) => f.time_s > time_s), "frames continue");
   await close();
 }
 
@@ -141,9 +141,9 @@ export async function connection_comes_back({ browser, program, expect }) {
   const lost = await page_comes_to(page, () => window.was_lost);
   expect(lost, "the page says that the connection is lost");
   await drawn(page);
-  expect(connections >= 2, `it comes back by itself (${connections} connections)`);
+  expect(connections >= 2, `it comes back automatically (${connections} connections)`);
   const { time_s } = await frame_of(page);
-  expect(await comes_true(page, (f) => f.time_s > time_s), "frames go on");
+  expect(await comes_true(page, (f) => f.time_s > time_s), "frames continue");
   await close();
 }
 
@@ -155,7 +155,7 @@ export async function headset_holds_the_handle({ browser, program, expect }) {
     const worn = await page_comes_to(page, () => window.hapticgiant.is_hand_tracked);
     expect(worn, `${kind.toUpperCase()} begins and sees a controller`);
     await page.evaluate(() => window.xr_device.controllers.right.position.set(0.2, 1.2, -0.4));
-    await pictures(page); // until three knows where it is
+    await pictures(page); // until three has its position
     await page.evaluate(() => window.xr_device.controllers.right.updateButtonValue("trigger", 1));
     expect(await comes_true(page, (f) => f.hand.active), "the trigger takes hold of the handle");
     const { hand } = await frame_of(page);
@@ -201,7 +201,7 @@ export async function changes_reach_the_program({ browser, program, expect }) {
   await second.page.reload(PATIENCE);
   await drawn(second.page);
   const known = await second.page.inputValue(box);
-  expect(known === wanted, `a page that is opened later knows it: ${known}`);
+  expect(known === wanted, `a page that is opened later has it: ${known}`);
 
   await first.page.fill(box, String(10 * max + 1));
   await first.page.press(box, "Enter");
@@ -218,13 +218,13 @@ export async function operator_stops_it_and_starts_it_again({ browser, program, 
   const press = (name) => page.getByRole("button", { name, exact: true }).click();
   const says = (text) =>
     page_comes_to(page, (part) => document.querySelector("#safety").textContent.includes(part), text);
-  expect(await comes_true(page, (f) => f.mode === "running"), "somebody holds it: it runs");
+  expect(await comes_true(page, (f) => f.mode === "running"), "the handle is held: it runs");
   await page.click("#tab-safety");
   await page.locator("#safety .emergency-stop").click();
   const stops = await comes_true(page, (f) => f.mode === "fault" && f.safety.fault === 102);
   expect(stops, "the emergency stop ends in a fault");
   expect(await says("Release: the button is pulled out"), "the page says what releases it");
-  // notes go by themselves, maybe before anybody looks
+  // notes disappear after a time, maybe before they are read
   await page.evaluate(() => {
     const notices = document.querySelector("#notices");
     window.noted = "";
@@ -283,8 +283,8 @@ export async function stop_is_always_at_hand({ browser, program, expect }) {
     expect((await frame_of(page)).safety.stop_pressed_by[0] === own, "a stop of this page");
     await page_comes_to(page, () => document.querySelector("#emergency-stop").ariaPressed === "true");
     expect(/STOPPED.*this page/.test(await bar()), `the bar says so: ${await bar()}`);
-    const told = await page.textContent("#stop-announcement");
-    expect(/Emergency stop pressed/.test(told), `it is announced: ${told}`);
+    const reported = await page.textContent("#stop-announcement");
+    expect(/Emergency stop pressed/.test(reported), `it is announced: ${reported}`);
     await page.click("#tab-safety");
     await pull_out();
     await page.click("#tab-change");
@@ -294,8 +294,8 @@ export async function stop_is_always_at_hand({ browser, program, expect }) {
   await close_phone();
   await page.click("#tab-safety");
   await page.getByRole("button", { name: "Emergency stop: pull it out", exact: true }).click();
-  const asked = await page.textContent("#safety");
-  expect(/was pressed by page \d+\. Release it\?/.test(asked), "who pressed it is asked about");
+  const question = await page.textContent("#safety");
+  expect(/was pressed by page \d+\. Release it\?/.test(question), "the question names the page that pressed");
   expect((await frame_of(page)).safety.emergency_stop, "it is still pressed");
   await page.getByRole("button", { name: "Release it", exact: true }).click();
   expect(await comes_true(page, (f) => !f.safety.emergency_stop), "and released then");
@@ -384,7 +384,7 @@ export async function time_is_controlled({ browser, program, expect }) {
   await page.click("#pause");
   expect(
     await comes_true(page, (f) => !f.run_state.is_paused && f.time_s > time_s + 0.3),
-    "goes on",
+    "continues",
   );
   await page.selectOption("#speed", "0.25");
   expect(await comes_true(page, (f) => f.run_state.speed === 0.25), "slow motion");
@@ -416,11 +416,11 @@ export async function recording_is_played({ browser, program, command, expect })
     return join(to, "latest.mcap");
   };
   const file = record("script");
-  const other = record("nobody", "--user", "none");
+  const other = record("no_user", "--user", "none");
   const replay = await start_program([command[0], "replay", file, "--view", "--compare", other]);
   const { page, problems, close } = await open_page(browser, cheap(replay.link));
   expect(await comes_true(page, (f) => f.ghost !== null), "a second recording comes along");
-  expect(!(await page.isVisible("#hand")), "nobody can take the handle");
+  expect(!(await page.isVisible("#hand")), "the handle cannot be taken");
   await page.click("#pause");
   expect(await comes_true(page, (f) => f.run_state.is_paused), "it pauses");
   for (const place of [1, Number(DOOR_OPEN) - 0.5]) {

@@ -34,7 +34,7 @@ async function open_door(page, take) {
 }
 
 // Takes the picture when `test(frame)` holds, however slowly the machine draws: the script begins
-// anew, because it has played on while the page was opened, and stands still for the picture.
+// again, because it has played on while the page was opened, and stands still for the picture.
 async function take_when(page, test, take) {
   const { run } = await frame_of(page);
   await page.keyboard.press("r");

@@ -44,7 +44,7 @@ describe("summary", () => {
 });
 
 describe("limits_matter", () => {
-  it("is false while a limit carries hardly anything of what is felt", () => {
+  it("is false while a limit carries little of the felt force", () => {
     const user = wrench([0, 20, 0]);
     const bearings = wrench([0, 20, 0]);
     const little = wrench([0, 0.1, 0]);

@@ -29,18 +29,18 @@ describe("Commands", () => {
     expect(refused).toEqual([{ command: "scenario", name: "walk", reason: "unknown" }]);
   });
 
-  it("tells a refused message from a refused command", () => {
+  it("distinguishes a refused message from a refused command", () => {
     commands.take({ type: "answer", id: -1, is_accepted: false, reason: "too long" });
     expect(refused).toEqual([{ command: "message", name: "", reason: "too long" }]);
   });
 
-  it("refuses while nobody is there", () => {
+  it("refuses while there is no connection", () => {
     is_connected = false;
     commands.send("pause");
     expect(refused).toHaveLength(1);
   });
 
-  it("sends ten values of a slider a second at most, and always the last one", () => {
+  it("sends at most ten slider values a second, and the last one", () => {
     for (let i = 0; i < 100; i++) {
       commands.set("hinge.damping", i);
       vi.advanceTimersByTime(10);

@@ -70,7 +70,7 @@ describe("Drag", () => {
     expect(drag.is_dragging).toBe(false);
   });
 
-  it("does not take the handle with the second finger of two that pinch", () => {
+  it("does not take the handle with the second finger of a pinch", () => {
     point("pointerdown", 1, 20, 20);
     point("pointerdown", 2, 100, 100);
     expect(drag.is_dragging).toBe(false);
@@ -80,7 +80,7 @@ describe("Drag", () => {
     expect(drag.is_dragging).toBe(true);
   });
 
-  it("forgets a held key when the page loses the keyboard, as for Alt and Tab", () => {
+  it("drops a held key when the page loses the keyboard", () => {
     drag.key_mode = "turn";
     point("pointerdown", 1, 100, 100);
     page.dispatchEvent(new Event("blur"));
@@ -88,12 +88,12 @@ describe("Drag", () => {
     expect(sent.at(-1)!.active).toBe(false);
   });
 
-  it("repeats itself while it holds, so that the program knows that the page lives", () => {
+  it("repeats itself while it holds, as a sign of life", () => {
     point("pointerdown", 1, 100, 100);
     const before = sent.length;
     vi.advanceTimersByTime(300);
     expect(sent.length).toBeGreaterThan(before + 5);
-    drag.let_go();
+    drag.release();
     const after = sent.length;
     vi.advanceTimersByTime(300);
     expect(sent.length).toBe(after);

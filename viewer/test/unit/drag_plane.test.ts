@@ -19,7 +19,7 @@ function unit(v: Vec3): Vec3 {
 const down: Ray = { origin: [0, -4, 1], direction: unit([0.1, 1, -0.4]) };
 
 describe("drag_normal", () => {
-  it("is level when the camera looks down, and faces the camera when it looks level", () => {
+  it("is level below a camera and faces a level one", () => {
     expect(drag_normal(unit([0, 1, -0.5]))).toEqual([0, 0, 1]);
     expect(drag_normal(unit([0, 1, 0.5]))).toEqual([0, 0, 1]);
     const level = unit([0.3, 1, -0.1]);
@@ -66,7 +66,7 @@ describe("meet_axis", () => {
 });
 
 describe("within_reach", () => {
-  it("leaves near targets alone and shortens far ones in their direction", () => {
+  it("shortens far targets in their direction only", () => {
     expect(within_reach([1, 0, 0], [0.5, 0, 0], 1)).toEqual([1, 0, 0]);
     expect(within_reach([5, 0, 0], [1, 0, 0], 1)).toEqual([2, 0, 0]);
     expect(within_reach([1, 1, 1], [1, 1, 1], 1)).toEqual([1, 1, 1]);

@@ -22,7 +22,7 @@ describe("Table", () => {
     expect(table.csv()).toBe("a,b\n0.1,\n");
   });
 
-  it("knows its columns", () => {
+  it("lists its columns", () => {
     expect(() => new Table(["a"]).column("b")).toThrow("b");
   });
 });

@@ -26,7 +26,7 @@ describe("Quality", () => {
     expect(quality.has_shadows).toBe(true);
   });
 
-  it("goes down step by step when drawing is slow, and stops at the last step", () => {
+  it("goes down in steps when drawing is slow, to the last step", () => {
     expect(after(10, 100).pixel_ratio(2)).toBe(1);
     expect(after(10, 100).has_shadows).toBe(true);
     expect(after(20, 100).has_shadows).toBe(false);

@@ -22,7 +22,7 @@ describe("time_specs", () => {
     expect(twin.limits.map(({ value }) => Math.round(value))).toEqual([0, 86]);
   });
 
-  it("shows joints that turn in degrees and those that slide in metres, in any order", () => {
+  it("shows revolute joints in degrees and prismatic ones in metres", () => {
     const slide = joint("rail", { type: "prismatic", q_max: 2 });
     const turn = joint("table", { q_max: Math.PI });
     for (const joints of [
@@ -62,7 +62,7 @@ describe("thinned_rows", () => {
     expect(thinned_rows(3, 3, 0, 10)).toEqual([]);
   });
 
-  it("takes the same rows while time goes on and old rows are forgotten", () => {
+  it("takes the same rows while time advances and old rows are dropped", () => {
     const seen = (forgotten: number): number[] =>
       thinned_rows(0, 100, forgotten, 10)
         .slice(0, -1)

@@ -52,7 +52,7 @@ describe("SafetyPanel", () => {
     });
     section = new FakeElement("section");
     panel = new SafetyPanel(section as never, { send } as unknown as Commands, () => OWN_PAGE);
-    panel.furnish({ commands: ["panel", "mode", "emergency_stop"] } as unknown as Scene);
+    panel.load({ commands: ["panel", "mode", "emergency_stop"] } as unknown as Scene);
   });
 
   const show = (safety: Partial<Safety>, mode: Frame["mode"] = "running"): void => {
@@ -67,7 +67,7 @@ describe("SafetyPanel", () => {
   const box_of = (text: string): FakeElement =>
     section.all().find((part) => part.textContent === text)!.querySelector("input")!;
 
-  it("follows the machine although somebody has just clicked the box", () => {
+  it("follows the machine although the box was just clicked", () => {
     const box = box_of("Override key");
     vi.stubGlobal("document", { activeElement: box });
     show({ override_key: true });
@@ -92,7 +92,7 @@ describe("SafetyPanel", () => {
     expect(button.attributes.get("aria-pressed")).toBe("true");
   });
 
-  it("asks before it releases what somebody else has pressed", () => {
+  it("asks before it releases the stop of another page", () => {
     const button = (text: string): FakeElement =>
       section.all().find((part) => part.tag === "button" && part.textContent === text)!;
     for (const [page, by] of [
@@ -116,12 +116,12 @@ describe("SafetyPanel", () => {
   });
 
   it("keeps the stop for a device that has no simulated panel", () => {
-    panel.furnish({ commands: ["mode", "emergency_stop"] } as unknown as Scene);
+    panel.load({ commands: ["mode", "emergency_stop"] } as unknown as Scene);
     expect(is_hidden("Emergency stop")).toBe(false);
     expect(is_hidden("Override key")).toBe(true);
   });
 
-  it("says that drives stay on after a stop, and go off after a fault", () => {
+  it("shows drives on after a stop, and off after a fault", () => {
     show({ stop: "SS2", fault: 0 }, "stopping");
     expect(texts()).toContain("braked, then held");
     show({ stop: "SS2", fault: 302 }, "stopping");
@@ -149,11 +149,11 @@ describe("SafetyPanel", () => {
   it("offers a recording no buttons", () => {
     const hidden = (): boolean[] => ["Emergency stop", "Reset"].map((text) => is_hidden(text));
     expect(hidden()).toEqual([false, false]);
-    panel.furnish({ commands: ["seek"] } as unknown as Scene);
+    panel.load({ commands: ["seek"] } as unknown as Scene);
     expect(hidden()).toEqual([true, true]);
   });
 
-  it("tells cause and release as sentences", () => {
+  it("shows cause and release as sentences", () => {
     show({ fault: 308, cause: "308 They shake.", release: "at once; hold it less stiffly" }, "fault");
     expect(texts()).toContain("308 They shake.");
     expect(texts()).toContain("Release: at once; hold it less stiffly.");

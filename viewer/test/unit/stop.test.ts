@@ -52,7 +52,7 @@ describe("Holder", () => {
 });
 
 describe("Freshness", () => {
-  it("tells a program that says nothing from one that has nothing to say", () => {
+  it("distinguishes a silent program from an idle one", () => {
     const freshness = new Freshness();
     for (let i = 0; i < 4; i++) freshness.tick();
     expect(freshness.link(true, true)).toBe("open");
@@ -75,7 +75,7 @@ describe("mode_text", () => {
     expect(mode_text({ ...alone, mode: "stopping" }, "open").text).toBe("stopping");
   });
 
-  it("tells no state that is not known any more", () => {
+  it("shows no outdated state", () => {
     expect(mode_text(alone, "lost")).toEqual({ text: "no connection", kind: "unknown" });
     expect(mode_text(alone, "silent")).toEqual({ text: "no data", kind: "unknown" });
     expect(mode_text(null, "open").text).toBe("-");
@@ -92,7 +92,7 @@ describe("stop_text", () => {
     expect(shown.announcement).toContain("Emergency stop pressed");
   });
 
-  it("says that it cannot reach the device, whatever was known before", () => {
+  it("shows a lost connection whatever was shown before", () => {
     for (const safety of [null, frame.safety, pressed]) {
       expect(stop_text("lost", safety, 4).note).toBe("cannot reach the device");
     }

@@ -59,20 +59,20 @@ describe("Store", () => {
   const rest = (): Promise<unknown> => vi.advanceTimersByTimeAsync(0);
   const newest = (): FakeSocket => FakeSocket.all.at(-1)!;
 
-  it("tells values that came before their scene, as on every page but the first", async () => {
+  it("passes values on that came before their scene", async () => {
     const store = new Store();
-    const told: string[] = [];
+    const reported: string[] = [];
     store.subscribe({
-      on_scene: () => told.push("scene"),
-      on_values: ({ values }) => told.push(`values ${values[0]}`),
+      on_scene: () => reported.push("scene"),
+      on_values: ({ values }) => reported.push(`values ${values[0]}`),
     });
     newest().open();
     newest().receive({ type: "values", values: [7] });
     await rest();
-    expect(told).toEqual(["scene", "values 7"]);
+    expect(reported).toEqual(["scene", "values 7"]);
   });
 
-  it("fetches the scene of a new run, and does not show frames of one run in another", async () => {
+  it("fetches the scene of a new run and drops frames of the old one", async () => {
     const store = new Store();
     newest().open();
     await rest();
@@ -111,7 +111,7 @@ describe("Store", () => {
     expect(store.unreadable).toBe(1);
   });
 
-  it("begins the history anew when time goes back", async () => {
+  it("resets the history when time goes back", async () => {
     const store = new Store();
     newest().open();
     await rest();

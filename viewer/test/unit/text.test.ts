@@ -24,7 +24,7 @@ describe("time_text", () => {
 });
 
 describe("joint_text", () => {
-  it("shows degrees for angles, centimetres for distances, a dash for nothing", () => {
+  it("shows degrees, centimetres, and a dash for nothing", () => {
     expect(joint_text(Math.PI / 2, { type: "revolute" })).toBe("90.0\u00b0");
     expect(joint_text(0.123, { type: "prismatic" })).toBe("12.3 cm");
     expect(joint_text(NaN, { type: "revolute" })).toBe("-");
@@ -74,7 +74,7 @@ describe("felt_text", () => {
     expect(felt_text(scene, frame, "")).toContain("Nothing");
   });
 
-  it("does not blame a limit while nobody pushes", () => {
+  it("does not blame a limit while the user does not push", () => {
     const felt = { index: 0, name: "m4", text: "m4: lower limit", force_N: zero, torque_Nm: zero };
     const free = { ...frame, force_N: zero, torque_Nm: zero, felt };
     expect(is_pushing(free)).toBe(false);
@@ -124,7 +124,7 @@ describe("note_text", () => {
     expect(note_text(frame, true)).toBe("");
   });
 
-  it("tells the cause of a fault, and why the device lags", () => {
+  it("shows the cause of a fault, and why the device lags", () => {
     expect(note_text(stopped, true)).toBe("102 A stop button is pressed.");
     expect(note_text({ ...frame, is_clamped: true }, true)).toContain("lost track");
   });

@@ -36,7 +36,7 @@ describe("token", () => {
     expect(address.reload).not.toHaveBeenCalled();
   });
 
-  it("is still there when the tab is loaded again, and not in another tab", () => {
+  it("survives a reload of its tab, and is not in another tab", () => {
     address.hash = "#token=1f";
     watch_token();
     watch_token();

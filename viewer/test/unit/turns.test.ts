@@ -6,7 +6,7 @@ import { elbow_between } from "../../src/scene/reach";
 import { grip_target, placed_rig } from "../../src/xr/grip";
 
 describe("turned", () => {
-  it("turns about the vertical to the right and about the view's right downwards", () => {
+  it("turns about the vertical and about the view's right", () => {
     const view: [number, number, number] = [0, 1, 0];
     const right = new Quaternion(...turned([0, 0, 0, 1], 100, 0, view));
     expect(new Vector3(0, 0, 1).applyQuaternion(right).z).toBeCloseTo(1, 12);
@@ -17,7 +17,7 @@ describe("turned", () => {
 });
 
 describe("grip_target", () => {
-  it("moves and turns the handle as the controller, from wherever that is", () => {
+  it("moves and turns the handle with the controller", () => {
     const half = new Quaternion().setFromAxisAngle(new Vector3(0, 0, 1), 0.5);
     const held = {
       from: new Vector3(5, 5, 5),

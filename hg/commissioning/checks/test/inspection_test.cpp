@@ -532,7 +532,7 @@ TEST(Findings, TakesMessagesApart) {
   EXPECT_EQ(findings[3].item + findings[3].what, "no such file");
 }
 
-TEST(FileKind, IsToldFromTheKeysOfTheFile) {
+TEST(FileKind, FollowsFromTheKeysOfTheFile) {
   config::SourceReader disk;
   using config::FileKind;
   EXPECT_EQ(kind_of("models/haptic_giant/device.yaml", disk), FileKind::kDevice);

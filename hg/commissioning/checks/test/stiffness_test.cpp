@@ -46,9 +46,9 @@ TEST(Stiffness, FollowsFromMassDampingDelayAndAcceleration) {
   EXPECT_GT(prompt.by_frequency(), limits.by_frequency());
 }
 
-// What was measured (docs/concepts/environment.md): 6 kg are calm on 16 and not on 32 kN/m, 3 kg on
-// 8 and not on 16.
-TEST(Stiffness, FitsTheSurfacesThatWereCalm) {
+// What was measured (docs/concepts/environment.md): 6 kg are stable on 16 and not on 32 kN/m, 3 kg
+// on 8 and not on 16.
+TEST(Stiffness, FitsTheSurfacesThatWereStable) {
   const config::Scenario scenario = walk();
   StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);
   EXPECT_GT(limits.by_frequency(), 16e3);
@@ -58,7 +58,7 @@ TEST(Stiffness, FitsTheSurfacesThatWereCalm) {
   EXPECT_LT(limits.by_frequency(), 16e3);
 }
 
-TEST(Stiffness, SaysTheLimitsAndHowTheyCome) {
+TEST(Stiffness, ReportsTheLimitsAndTheirOrigin) {
   const Findings findings = found(walk());
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].severity, Severity::kNote);
@@ -100,7 +100,7 @@ TEST(Stiffness, WarnsOfSurfacesThatAreTooStiff) {
   EXPECT_NE(findings[0].fix.find("lower it to 2"), std::string::npos) << findings[0].fix;
 }
 
-TEST(Stiffness, SaysWhatDampingOfASurfaceIsGivenAndAdvisesOnlyWhatASurfaceMayHave) {
+TEST(Stiffness, ReportsTheDampingOfSurfacesAndAdvisesAllowedValues) {
   config::Scenario wall = config::load_scenario("models/stress/wall.yaml");
   surfaces::Surface& surface = wall.surfaces[0];
   surface.stiffness = 5e4;

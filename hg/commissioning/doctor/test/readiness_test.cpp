@@ -83,7 +83,7 @@ TEST(Doctor, FindsNothingWrongWithAComputerThatIsReady) {
   EXPECT_TRUE(has(computer.line("processors").found, "--cpu 2"));
 }
 
-TEST(Doctor, TellsTheKernel) {
+TEST(Doctor, ReportsTheKernel) {
   Computer computer;
   computer.remove("sys/kernel/realtime");
   EXPECT_EQ(computer.line("kernel").level, Readiness::kOk);  // older ones say it in their version
@@ -92,7 +92,7 @@ TEST(Doctor, TellsTheKernel) {
   EXPECT_TRUE(has(computer.line("kernel").fix, "linux-image-rt"));
 }
 
-TEST(Doctor, TellsWhoMayNotBeRealTimeAndHowToChangeIt) {
+TEST(Doctor, ReportsWhoMayNotBeRealTimeAndHowToChangeIt) {
   Computer computer;
   computer.limits("0", "8388608");
   EXPECT_EQ(computer.line("priority").level, Readiness::kBad);
@@ -112,7 +112,7 @@ TEST(Doctor, TellsWhoMayNotBeRealTimeAndHowToChangeIt) {
   EXPECT_EQ(computer.line("memory").level, Readiness::kWarn);
 }
 
-TEST(Doctor, DoesNotTakeProcessorsThatAreNotToldForOne) {
+TEST(Doctor, DoesNotTakeUnreportedProcessorsForOne) {
   Computer computer;
   computer.put("sys/devices/system/cpu/online", "0");
   EXPECT_EQ(computer.line("processors").level, Readiness::kBad);
@@ -121,7 +121,7 @@ TEST(Doctor, DoesNotTakeProcessorsThatAreNotToldForOne) {
   EXPECT_EQ(computer.line("processors").found, "not reported");
 }
 
-TEST(Doctor, TellsWhatSlowsProcessorsDown) {
+TEST(Doctor, ReportsWhatSlowsProcessorsDown) {
   Computer computer;
   computer.put("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "powersave");
   EXPECT_EQ(computer.line("governor").level, Readiness::kWarn);
@@ -132,7 +132,7 @@ TEST(Doctor, TellsWhatSlowsProcessorsDown) {
   EXPECT_EQ(computer.line("idle").level, Readiness::kOk);
 }
 
-TEST(Doctor, TellsWhatElseMayRunBesideTheLoop) {
+TEST(Doctor, ReportsWhatElseMayRunBesideTheLoop) {
   Computer computer;
   computer.put("sys/devices/system/cpu/isolated", "");
   EXPECT_EQ(computer.line("processors").level, Readiness::kWarn);
@@ -148,7 +148,7 @@ TEST(Doctor, TellsWhatElseMayRunBesideTheLoop) {
   EXPECT_EQ(computer.line("swap").fix, "sudo swapoff -a");
 }
 
-TEST(Doctor, TellsClockMachineAndThrottling) {
+TEST(Doctor, ReportsClockMachineAndThrottling) {
   Computer computer;
   computer.put("sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet");
   EXPECT_EQ(computer.line("clock").level, Readiness::kWarn);
@@ -161,10 +161,10 @@ TEST(Doctor, TellsClockMachineAndThrottling) {
   EXPECT_EQ(computer.line("throttling").level, Readiness::kBad);
 }
 
-TEST(Doctor, SurvivesAComputerThatTellsNothing) {
+TEST(Doctor, SurvivesAComputerThatReportsNothing) {
   const TemporaryFolder empty;
   const std::vector<Assessment> lines = assess_computer(empty.path());
-  EXPECT_EQ(exit_code(lines), 1);  // nobody may be real time there
+  EXPECT_EQ(exit_code(lines), 1);  // real time is not permitted there
 }
 
 TEST(Doctor, ReadsThisComputer) {

@@ -28,7 +28,7 @@ ActuatorModel actuator() {
 }
 
 // What the file of the device says: half of the truth.
-ActuatorModel believed() {
+ActuatorModel nominal() {
   ActuatorModel a = actuator();
   a.coulomb_friction *= 0.5;
   a.viscous_friction *= 0.5;
@@ -101,7 +101,7 @@ void expect_friction(const FrictionEstimate& found) {
 }
 
 TEST(IdentifyFriction, FindsAllOfARigidFriction) {
-  const FrictionEstimate found = identify_friction(move(actuator(), {}, rich, 60.0), believed());
+  const FrictionEstimate found = identify_friction(move(actuator(), {}, rich, 60.0), nominal());
   expect_friction(found);
   EXPECT_FALSE(found.presliding.is_found);
   EXPECT_EQ(found.presliding_elements, 0);
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, IdentifyPresliding, testing::Values(1, 2, 3))
 TEST_P(IdentifyPresliding, FindsWayAndNumberOfElements) {
   constexpr double kWay = 2e-4;
   const FrictionTrace trace = move(actuator(), bristles(actuator(), kWay, GetParam()), rich, 60.0);
-  const FrictionEstimate found = identify_friction(trace, believed());
+  const FrictionEstimate found = identify_friction(trace, nominal());
   expect_friction(found);
   EXPECT_EQ(found.presliding_elements, GetParam());
   expect_near(found.presliding, kWay, 0.1, "presliding");
@@ -129,16 +129,16 @@ TEST_P(IdentifyPresliding, FindsWayAndNumberOfElements) {
 
 TEST(IdentifyFriction, NamesTheDirectionThatIsMissing) {
   const auto once = [](double t) { return t < 3.0 ? 0.0 : 0.1 * (t - 3.0); };
-  const FrictionEstimate found = identify_friction(move(actuator(), {}, once, 20.0), believed());
+  const FrictionEstimate found = identify_friction(move(actuator(), {}, once, 20.0), nominal());
   EXPECT_FALSE(found.coulomb.is_found);
-  EXPECT_EQ(found.coulomb.value, believed().coulomb_friction);
+  EXPECT_EQ(found.coulomb.value, nominal().coulomb_friction);
   ASSERT_EQ(found.missing.size(), 1u);
   EXPECT_NE(found.missing[0].find("in the negative direction"), std::string::npos)
       << found.missing[0];
 }
 
-TEST(IdentifyFriction, SaysThatItIsTooShort) {
-  const FrictionEstimate found = identify_friction(move(actuator(), {}, rich, 6.0), believed());
+TEST(IdentifyFriction, ReportsThatItIsTooShort) {
+  const FrictionEstimate found = identify_friction(move(actuator(), {}, rich, 6.0), nominal());
   EXPECT_FALSE(found.coulomb.is_found);
   ASSERT_EQ(found.missing.size(), 1u);
   EXPECT_NE(found.missing[0].find("record longer"), std::string::npos) << found.missing[0];
@@ -157,13 +157,13 @@ TEST(IdentifyFriction, MakesNothingUpAtOneSpeed) {
     const double phase = std::fmod(t, 24.0);
     return 0.03 * (phase < 12.0 ? phase : 24.0 - phase);
   };
-  const FrictionEstimate found = identify_friction(move(actuator(), {}, steady, 60.0), believed());
+  const FrictionEstimate found = identify_friction(move(actuator(), {}, steady, 60.0), nominal());
   EXPECT_TRUE(found.coulomb.is_found);
   EXPECT_FALSE(found.presliding.is_found);
   EXPECT_FALSE(found.stribeck_speed.is_found);
   EXPECT_TRUE(names(found, "presliding: ")) << found.reversals;
   EXPECT_TRUE(names(found, "Stribeck speed: "));
-  EXPECT_DOUBLE_EQ(found.stribeck_speed.value, believed().stribeck_speed);
+  EXPECT_DOUBLE_EQ(found.stribeck_speed.value, nominal().stribeck_speed);
 }
 
 // Correlated errors count: the same noise held for half a second says less than white noise.
@@ -180,7 +180,7 @@ TEST(IdentifyFriction, DeviationsGrowWithCorrelatedErrors) {
       }
       noisy.tau_motor[k] += error;
     }
-    return identify_friction(noisy, believed()).coulomb.deviation;
+    return identify_friction(noisy, nominal()).coulomb.deviation;
   };
   EXPECT_GT(deviation_with(500), 2.0 * deviation_with(20));
 }

@@ -73,7 +73,7 @@ TEST_P(IdentifyPayloadSeeds, FindsMassWithin1PercentAndCentreWithin2Millimetres)
   EXPECT_GT(found.com_deviation, 1e-6);
 }
 
-TEST(IdentifyPayload, SaysThatPosesAreAlike) {
+TEST(IdentifyPayload, ReportsThatPosesAreAlike) {
   std::vector<StaticPose> poses;
   for (int k = 0; k < 8; ++k) poses.push_back(pose_at(turn(k, Axis::UnitZ())));
   const PayloadEstimate found = identify_payload(poses);
@@ -82,7 +82,7 @@ TEST(IdentifyPayload, SaysThatPosesAreAlike) {
   EXPECT_EQ(found.com_deviation, kInfinity);
 }
 
-TEST(IdentifyPayload, SaysAboutWhichAxisToTurn) {
+TEST(IdentifyPayload, ReportsAboutWhichAxisToTurn) {
   // upright and upside down: what is on the vertical axis turns nothing
   const std::vector<StaticPose> poses = {
       pose_at(turn(0, Axis::UnitX())), pose_at(turn(std::numbers::pi, Axis::UnitX())),
@@ -110,14 +110,14 @@ TEST(IdentifyPayload, NeedsSixPoses) {
 
 TEST(IdentifyPayload, RefusesPosesThatContradictEachOther) {
   std::vector<StaticPose> poses = good_poses();
-  poses[3].w_S[0] += 3.0;  // somebody leant on the handle
+  poses[3].w_S[0] += 3.0;  // a person leant on the handle
   EXPECT_NE(identify_payload(poses).missing.find("contradict"), std::string::npos);
   poses = good_poses();
   poses[7].w_S[5] += 0.3;
   EXPECT_NE(identify_payload(poses).missing.find("contradict"), std::string::npos);
 }
 
-TEST(IdentifyPayload, SaysThatThereIsNoPayload) {
+TEST(IdentifyPayload, ReportsThatThereIsNoPayload) {
   std::vector<StaticPose> poses = good_poses();
   for (StaticPose& pose : poses) pose.w_S.setZero();
   EXPECT_NE(identify_payload(poses).missing.find("no weight"), std::string::npos);

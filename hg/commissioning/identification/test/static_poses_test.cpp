@@ -49,8 +49,8 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
 
 TEST(SimulatedPoses, ShowThePayloadOfTheDevice) {
   const config::SimulatedDevice& device = reference_device();
-  const Payload& told = device.estimation.wrench.payload;
-  ASSERT_GT(told.mass, 0.0);
+  const Payload& configured = device.estimation.wrench.payload;
+  ASSERT_GT(configured.mass, 0.0);
   std::vector<StaticPose> poses;
   for (const VectorM& q_m : static_postures(device, 8)) {
     poses.push_back(measure_simulated(device, q_m));
@@ -58,8 +58,8 @@ TEST(SimulatedPoses, ShowThePayloadOfTheDevice) {
   const PayloadEstimate found = identify_payload(poses);
   EXPECT_EQ(found.missing, "");
   // gain errors of the sensors (0.5 %) and cross-talk are part of what is found
-  EXPECT_NEAR(found.mass, told.mass, 0.02 * told.mass);
-  EXPECT_LT((found.com - told.com).norm(), 2e-3);
+  EXPECT_NEAR(found.mass, configured.mass, 0.02 * configured.mass);
+  EXPECT_LT((found.com - configured.com).norm(), 2e-3);
 }
 
 std::string refusal(const std::string& text) {
@@ -90,7 +90,7 @@ TEST(ReadStaticPoses, WithoutPosesEveryRowIsOne) {
   EXPECT_EQ(read_static_poses("p", header + "1,2,3,4,5,6,7,8,9\n1,2,3,4,5,6,7,8,9\n").size(), 2u);
 }
 
-TEST(ReadStaticPoses, SaysWhatIsWrongAndWhere) {
+TEST(ReadStaticPoses, ReportsWhatIsWrongAndWhere) {
   const std::string header = "a_x,a_y,a_z,f_x,f_y,f_z,n_x,n_y,n_z\n";
   EXPECT_EQ(refusal("a_x,a_y,a_z,f_x,f_y,fz,n_x,n_y,n_z\n"),
             "poses.csv:1: f_z: there is no such column, nearest is 'fz'; needs a_x, a_y, a_z, f_x, "

@@ -49,7 +49,7 @@ TEST(StartTestResult, CountsForItsDeviceItsFilesAndADay) {
   EXPECT_EQ(objection(other), "it is of a simulation");
   other = good();
   other.has_passed = false;
-  EXPECT_EQ(objection(other), "it did not come to its end");
+  EXPECT_EQ(objection(other), "it did not finish");
   other = good();
   other.items[0].outcome = Outcome::kFailed;
   EXPECT_EQ(objection(other), "failed: emergency stop");
@@ -88,7 +88,7 @@ TEST(StartTestResult, OfANameThatIsNoUtf8Counts) {
   EXPECT_TRUE(compare_posture(kept, "there:1", stands, {}).empty());
 }
 
-TEST(StartTestResult, TellsWhatWasLeftOut) {
+TEST(StartTestResult, ReportsWhatWasLeftOut) {
   const Validity validity = check_validity(
       to_json(good()), {.device = "arm", .address = "there:1", .files_sha256 = "00", .now = kThen});
   EXPECT_EQ(validity.untested, std::vector<std::string>{"brake m6"});

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPeriod = 0.01;
 
-/// A machine and a person in one: what is asked for happens at once, unless a test spoils it.
+/// A machine and a person in one: what is requested happens at once, unless a test corruptions it.
 /// Faults stay until they are reset.
 class Machine final : public Station {
  public:
@@ -20,7 +20,7 @@ class Machine final : public Station {
     seen_.q_p = seen_.load_p = VectorP::Zero(1);
   }
 
-  Observation live(Wish wish) override {
+  Observation advance(Wish wish) override {
     seen_.time_s += kPeriod;
     if (seen_.time_s > ends_s) throw Ended{"remote device is silent"};
     if (pressed_s_ > 0.0 && seen_.time_s >= pressed_s_) {
@@ -33,12 +33,12 @@ class Machine final : public Station {
     seen_.load_m[0] = leans_ ? 5.0 : 0.0;
     seen_.load_p[0] = leans_ ? 50.0 : 0.0;
     Observation now = seen_;
-    if (spoil) spoil(now);
+    if (corrupt) corrupt(now);
     return now;
   }
 
-  void ask(Act act, const std::string& words) override {
-    asked.push_back(words);
+  void prompt(Act act, const std::string& words) override {
+    prompts.push_back(words);
     SafetyInputs& safety = seen_.safety;
     leans_ = act == Act::kLean;
     if (act == ignored) return;
@@ -59,19 +59,19 @@ class Machine final : public Station {
       safety.operator_enable = act == Act::kHoldSwitch;
     }
   }
-  void report(const std::string& words) override { told += words + "\n"; }
+  void report(const std::string& words) override { reported += words + "\n"; }
 
   double time_s() const { return seen_.time_s; }
 
-  std::function<void(Observation&)> spoil;
+  std::function<void(Observation&)> corrupt;
   std::function<bool(const Observation&)> breaks;  ///< a rule: the gantry does not obey
   bool is_stopped_by_inputs = true;
   double press_delay_s = 0.0;  ///< of the emergency stop
   int armings = 0;
   Act ignored = Act::kNone;
   double ends_s = 1e9;
-  std::vector<std::string> asked;
-  std::string told;
+  std::vector<std::string> prompts;
+  std::string reported;
 
  private:
   void step(Wish wish) {
@@ -111,7 +111,7 @@ const Item& item(const std::vector<Item>& items, std::string_view name) {
 TEST(StartTest, AGoodMachinePassesEveryItem) {
   Machine machine;
   const std::vector<Item> items = run(setup(), machine);
-  EXPECT_TRUE(has_passed(items)) << machine.told;
+  EXPECT_TRUE(has_passed(items)) << machine.reported;
   EXPECT_EQ(items.size(), 8U);
   for (const Item& each : items) EXPECT_EQ(each.outcome, Outcome::kPassed) << each.name;
   EXPECT_EQ(item(items, "brake shoulder").found, "held 5.0 Nm, moved by 0.00 mrad (allowed: 10)");
@@ -132,7 +132,7 @@ TEST(StartTest, AnInputThatDoesNothingIsNamed) {
     EXPECT_FALSE(has_passed(items));
     EXPECT_EQ(item(items, name).outcome, Outcome::kFailed) << name;
     EXPECT_EQ(item(items, name).found, "nothing came within 30 s");
-    EXPECT_EQ(std::ranges::count(items, Outcome::kFailed, &Item::outcome), 1) << machine.told;
+    EXPECT_EQ(std::ranges::count(items, Outcome::kFailed, &Item::outcome), 1) << machine.reported;
   }
 }
 
@@ -143,22 +143,22 @@ TEST(StartTest, AnInputThatDoesNotComeBackFails) {
   EXPECT_EQ(item(items, "emergency stop").found, "it did not come back within 30 s");
 }
 
-TEST(StartTest, TheWrongInputIsTold) {
+TEST(StartTest, TheWrongInputIsReported) {
   Machine machine;
-  machine.spoil = [](Observation& seen) {
+  machine.corrupt = [](Observation& seen) {
     std::swap(seen.safety.override_key, seen.safety.is_field_clear);
     seen.safety.override_key = !seen.safety.override_key;
     seen.safety.is_field_clear = !seen.safety.is_field_clear;
   };
   const std::vector<Item> items = run(setup(), machine);
-  EXPECT_NE(machine.told.find("that was the scanner, not the override key"), std::string::npos);
+  EXPECT_NE(machine.reported.find("that was the scanner, not the override key"), std::string::npos);
   EXPECT_EQ(item(items, "override key").found, "not seen, the scanner answered instead");
 }
 
 TEST(StartTest, OneOfTwoChannelsIsAFailureOfTheInputThatWasOperated) {
   Machine machine;
   double since_s = -1.0;  // of the disagreement, which shows half a second later
-  machine.spoil = [&](Observation& seen) {
+  machine.corrupt = [&](Observation& seen) {
     if (!seen.safety.emergency_stop) since_s = seen.time_s;
     seen.safety.has_disagreement = seen.time_s > since_s + 0.5;
   };
@@ -169,13 +169,13 @@ TEST(StartTest, OneOfTwoChannelsIsAFailureOfTheInputThatWasOperated) {
   EXPECT_EQ(item(items, "enabling switch").outcome, Outcome::kPassed);
 }
 
-TEST(StartTest, ADisagreementFailsTheInputThatWasAskedForAlsoWhereItGoesAgain) {
-  // of an input that nobody sees, before and after the one that was asked for
+TEST(StartTest, ADisagreementFailsTheRequestedInputEvenIfItEnds) {
+  // of an input that is not shown, before and after the requested one
   for (const double at_s : {0.05, 0.5}) {
     Machine machine;
     double since_s = -1.0;
-    machine.spoil = [&](Observation& seen) {
-      if (machine.asked.empty() || machine.asked.back() != "turn the override key on (30 s)")
+    machine.corrupt = [&](Observation& seen) {
+      if (machine.prompts.empty() || machine.prompts.back() != "turn the override key on (30 s)")
         return;
       if (since_s < 0.0) since_s = seen.time_s;
       seen.safety.override_key = seen.time_s > since_s + 0.3;
@@ -183,14 +183,14 @@ TEST(StartTest, ADisagreementFailsTheInputThatWasAskedForAlsoWhereItGoesAgain) {
     };
     const std::vector<Item> items = run(setup(), machine);
     EXPECT_EQ(item(items, "override key").outcome, Outcome::kFailed);
-    EXPECT_EQ(std::ranges::count(items, Outcome::kFailed, &Item::outcome), 1) << machine.told;
+    EXPECT_EQ(std::ranges::count(items, Outcome::kFailed, &Item::outcome), 1) << machine.reported;
   }
 }
 
 TEST(StartTest, AnInputThatShowsForAMomentHasNotPassed) {
   Machine machine;
   double since_s = -1.0;
-  machine.spoil = [&](Observation& seen) {
+  machine.corrupt = [&](Observation& seen) {
     if (since_s < 0.0 && seen.safety.override_key) since_s = seen.time_s;
     seen.safety.override_key = seen.safety.override_key && seen.time_s < since_s + 0.1;
   };
@@ -200,13 +200,13 @@ TEST(StartTest, AnInputThatShowsForAMomentHasNotPassed) {
 
 TEST(StartTest, ChannelsThatDisagreeAtRestEndTheTest) {
   Machine machine;
-  machine.spoil = [](Observation& seen) { seen.safety.has_disagreement = true; };
+  machine.corrupt = [](Observation& seen) { seen.safety.has_disagreement = true; };
   const std::vector<Item> items = run(setup(), machine);
   EXPECT_EQ(items[0].outcome, Outcome::kFailed);
   EXPECT_EQ(item(items, "emergency stop").found, "not reached");
 }
 
-TEST(StartTest, ASupervisorThatDoesNotStopIsSeenBecauseNobodyElseDoes) {
+TEST(StartTest, ASupervisorThatDoesNotStopIsDetected) {
   Machine machine;
   machine.is_stopped_by_inputs = false;
   const std::vector<Item> items = run(setup(), machine);
@@ -216,7 +216,7 @@ TEST(StartTest, ASupervisorThatDoesNotStopIsSeenBecauseNobodyElseDoes) {
   }
 }
 
-TEST(StartTest, AFaultOfTheStandingArmFailsItsItemAndNothingArmsItAgainWithoutWords) {
+TEST(StartTest, AFaultWhileArmedFailsItsItemAndArmingIsAnnounced) {
   Machine machine;
   machine.ignored = Act::kPressStop;
   double armed_s = -1.0;
@@ -228,7 +228,7 @@ TEST(StartTest, AFaultOfTheStandingArmFailsItsItemAndNothingArmsItAgainWithoutWo
   EXPECT_EQ(item(items, "emergency stop").found,
             "the drives went off before it was operated: gantry does not move as commanded");
   EXPECT_EQ(item(items, "enabling switch").outcome, Outcome::kPassed);
-  EXPECT_EQ(machine.armings, 2);  // one for each item, told before
+  EXPECT_EQ(machine.armings, 2);  // one for each item, reported before
 }
 
 TEST(StartTest, AStopThatIsPressedTooLateIsReleasedBeforeTheNextItem) {
@@ -253,10 +253,10 @@ TEST(StartTest, AFaultThatComesWithTheDrivesIsNotTriedAgain) {
   EXPECT_EQ(machine.armings, 3);  // two stops, and the power without them
 }
 
-TEST(StartTest, TheWrongStopIsToldAndTheArmStaysOff) {
+TEST(StartTest, TheWrongStopIsReportedAndTheArmStaysOff) {
   Machine machine;
   bool is_pressed = false;
-  machine.spoil = [&](Observation& seen) {
+  machine.corrupt = [&](Observation& seen) {
     is_pressed = is_pressed || seen.safety.emergency_stop;
     if (!seen.safety.emergency_stop) return;
     seen.safety.emergency_stop = false;
@@ -270,11 +270,11 @@ TEST(StartTest, TheWrongStopIsToldAndTheArmStaysOff) {
   EXPECT_EQ(machine.armings, 1);
 }
 
-// Of everything above a bound: nobody leans, the arm sags under its drives until somebody stops it.
+// Everything above a bound: nothing leans on the arm, it sags under its drives until it is stopped.
 TEST(StartTest, WhatTheDrivesHoldIsNoLoadAndNoMotionOfABrake) {
   Machine machine;
   double q = 0.0;
-  machine.spoil = [&](Observation& seen) {
+  machine.corrupt = [&](Observation& seen) {
     seen.load_p[0] = seen.is_powered ? 90.0 : 0.0;
     if (seen.is_powered) q += 1e-4;
     seen.q_p[0] = q;
@@ -282,13 +282,13 @@ TEST(StartTest, WhatTheDrivesHoldIsNoLoadAndNoMotionOfABrake) {
   const std::vector<Item> items = run(setup(), machine);
   EXPECT_GT(q, 0.01);
   EXPECT_EQ(item(items, "brake slide").found,
-            "not loaded: it carried 0.0 N at most, and 20.0 N for 1 s says something");
+            "not loaded: it carried 0.0 N at most, 20.0 N for 1 s are needed");
 }
 
 TEST(StartTest, ABrakeThatGivesWayIsNamedAndNothingIsArmedAfterIt) {
   Machine machine;
   bool was_armed = false;
-  machine.spoil = [&](Observation& seen) {
+  machine.corrupt = [&](Observation& seen) {
     if (seen.load_m[0] > 0.0) seen.q_m[0] = 0.011;
     was_armed = was_armed || seen.is_powered;
   };
@@ -299,30 +299,30 @@ TEST(StartTest, ABrakeThatGivesWayIsNamedAndNothingIsArmedAfterIt) {
   EXPECT_FALSE(was_armed);
   EXPECT_EQ(item(items, "emergency stop").outcome, Outcome::kUntested);
   EXPECT_EQ(item(items, "scanner").outcome, Outcome::kUntested);
-  EXPECT_EQ(machine.asked.size(), 1U);  // to lean
+  EXPECT_EQ(machine.prompts.size(), 1U);  // to lean
 }
 
-TEST(StartTest, NothingMoreIsAskedForOnceABrakeHasSlipped) {
+TEST(StartTest, ASlippedBrakeEndsAllRequests) {
   Machine machine;
-  std::size_t asked = 0;
-  machine.spoil = [&](Observation& seen) {
-    if (asked == 0 && seen.safety.emergency_stop) asked = machine.asked.size();
-    if (asked > 0) seen.q_p[0] = 0.01;
+  std::size_t prompts = 0;
+  machine.corrupt = [&](Observation& seen) {
+    if (prompts == 0 && seen.safety.emergency_stop) prompts = machine.prompts.size();
+    if (prompts > 0) seen.q_p[0] = 0.01;
   };
   const std::vector<Item> items = run(setup(), machine);
   EXPECT_EQ(item(items, "brake slide").outcome, Outcome::kFailed);
-  EXPECT_EQ(machine.asked.size(), asked);
+  EXPECT_EQ(machine.prompts.size(), prompts);
   for (const char* name : {"emergency stop", "enabling switch"}) {
     EXPECT_EQ(item(items, name).outcome, Outcome::kUntested);
-    EXPECT_EQ(item(items, name).found, "a brake slips, so that nothing more is asked for");
+    EXPECT_EQ(item(items, name).found, "a brake slips");
   }
 }
 
-TEST(StartTest, ASampleThatIsNoGoodSaysNothingAboutBrakes) {
+TEST(StartTest, AnUnusableSampleIsNotUsedForBrakes) {
   for (const bool is_empty : {true, false}) {
     Machine machine;
     int count = 0;
-    machine.spoil = [&](Observation& seen) {
+    machine.corrupt = [&](Observation& seen) {
       if (++count % 7 != 0) return;
       if (is_empty) {
         seen.q_m.resize(0);
@@ -330,13 +330,13 @@ TEST(StartTest, ASampleThatIsNoGoodSaysNothingAboutBrakes) {
         seen.q_p[0] = std::numeric_limits<double>::quiet_NaN();
       }
     };
-    EXPECT_TRUE(has_passed(run(setup(), machine))) << machine.told;
+    EXPECT_TRUE(has_passed(run(setup(), machine))) << machine.reported;
   }
 }
 
 TEST(StartTest, ABrakeThatClosesTooLateAfterAStopFails) {
   Machine machine;
-  machine.spoil = [](Observation& seen) {
+  machine.corrupt = [](Observation& seen) {
     if (seen.safety.emergency_stop) seen.q_p[0] = 0.003;
   };
   const std::vector<Item> items = run(setup(), machine);
@@ -353,7 +353,7 @@ TEST(StartTest, ABrakeWithoutLoadFailsAMachineAndIsNotTestedInASimulation) {
   heavy.is_simulated = true;
   Machine simulation;
   EXPECT_EQ(item(run(heavy, simulation), "brake shoulder").outcome, Outcome::kUntested);
-  EXPECT_NE(machine.told.find("still without load: shoulder"), std::string::npos);
+  EXPECT_NE(machine.reported.find("still without load: shoulder"), std::string::npos);
 }
 
 TEST(StartTest, InputsThatADeviceDoesNotHaveAreLeftOut) {
@@ -363,7 +363,7 @@ TEST(StartTest, InputsThatADeviceDoesNotHaveAreLeftOut) {
   const std::vector<Item> items = run(bare, machine);
   EXPECT_EQ(item(items, "emergency stop").outcome, Outcome::kUntested);
   EXPECT_EQ(item(items, "power").outcome, Outcome::kPassed);  // brakes catch the arm at any rate
-  for (const std::string& words : machine.asked) {
+  for (const std::string& words : machine.prompts) {
     EXPECT_NE(words.find("handle"), std::string::npos) << words;
   }
 }

@@ -104,7 +104,7 @@ TEST(BadDevice, RatesGainsAndChoicesHaveRanges) {
             "device.yaml:13:28: rendering.solver_budget: must be a whole number, got 1.5");
 }
 
-TEST(GoodDevice, SaysWhetherLimitsBrakeTogether) {
+TEST(GoodDevice, ReportsWhetherLimitsBrakeTogether) {
   const auto braking = [](const std::string& text) {
     SourceReader reader({{"arm.urdf", text_of("models/haptic_giant/haptic_giant.urdf")},
                          {"device.yaml", device_text(13, text)}});

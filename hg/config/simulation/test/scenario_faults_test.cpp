@@ -1,4 +1,4 @@
-// Faults on purpose, as a scenario lists them.
+// Injected faults of a scenario.
 
 #include <gtest/gtest.h>
 

@@ -380,7 +380,7 @@ TEST(Scenario, NamesEveryLimitInTheOrderOfTheTasks) {
   EXPECT_FALSE(door().limits[18].range.bounded());
 }
 
-TEST(Scenario, WhoseLawDoesNotKnowTheMotorsHasNoLimitsOfThemAndTheSameEvents) {
+TEST(Scenario, WithoutMotorModelItHasNoMotorLimitsAndTheSameEvents) {
   Scenario scenario = door();
   const Scenario before = scenario;
   scenario.device.rendering.law = rendering::Law::kPaper;
@@ -401,7 +401,7 @@ TEST(Scenario, WhoseLawDoesNotKnowTheMotorsHasNoLimitsOfThemAndTheSameEvents) {
   waiting.events[0].all_of[0].index = 7;
   waiting.device.rendering.bounds = rendering::Bounds::kPaper;
   EXPECT_EQ(message_of([&] { settle_law(waiting); }),
-            "event 'locked': waits for 'motor m1', which is a limit only where the law knows the "
+            "event 'locked': waits for 'motor m1', which is a limit only where the law models the "
             "torques of the motors: law gauss, bounds recoverable, plant elastic");
 }
 

@@ -68,7 +68,7 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
                                               .handle = "handle",
                                               .chain = {}});
   EXPECT_EQ(shipped.step_s, 0.25e-3);
-  EXPECT_NEAR(1.0 / shipped.factors.stiffness, 1.1, 1e-3);  // [C] 0: what the controller believes
+  EXPECT_NEAR(1.0 / shipped.factors.stiffness, 1.1, 1e-3);  // [C] 0: the controller's model
   EXPECT_NEAR(1.0 / shipped.factors.friction, 0.75, 1e-3);
   EXPECT_NEAR(1.0 / shipped.factors.mass, 0.95, 1e-3);
   EXPECT_EQ(shipped.gear_ratio[0], 121.0);
@@ -222,15 +222,15 @@ TEST(SimulationFile, TheRestReachesItsFields) {
   EXPECT_EQ(simulation.end_stop.damping_ratio, 4.0);
   EXPECT_EQ(simulation.factors.mass, 6.0);
 
-  const ActuatorModel told = {.rotor_inertia = 1.0,
-                              .stiffness = 1.0,
-                              .damping = 1.0,
-                              .coulomb_friction = 1.0,
-                              .viscous_friction = 1.0,
-                              .load_friction = 1.0,
-                              .stiction = 1.0,
-                              .torque_max = 1.0};
-  const ActuatorModel real = actual(told, simulation.factors);
+  const ActuatorModel nominal = {.rotor_inertia = 1.0,
+                                 .stiffness = 1.0,
+                                 .damping = 1.0,
+                                 .coulomb_friction = 1.0,
+                                 .viscous_friction = 1.0,
+                                 .load_friction = 1.0,
+                                 .stiction = 1.0,
+                                 .torque_max = 1.0};
+  const ActuatorModel real = actual(nominal, simulation.factors);
   EXPECT_EQ(real.stiffness, 2.0);
   EXPECT_EQ(real.damping, 3.0);
   EXPECT_EQ(real.coulomb_friction, 4.0);
@@ -268,7 +268,7 @@ TEST(SimulationFile, AUrdfMayHaveFurtherJointsThatBend) {
   EXPECT_EQ(message("urdf: plain.urdf\n"), "no error");
 }
 
-TEST(SimulationFile, WhatItDoesNotSayIsAsInItsBase) {
+TEST(SimulationFile, MissingKeysHaveTheValuesOfItsBase) {
   const Simulation simulation = load(
       "base: base.yaml\nfactors: {friction: 3}\nmotors: {ripple: 0}\n"
       "sensors: {torque_sensor: {offset: 0.2}}\n");

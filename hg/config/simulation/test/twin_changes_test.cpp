@@ -99,7 +99,7 @@ TEST(ConditionalLimits, AreReadWithTheirConditions) {
   EXPECT_EQ(limit.conditions[0].range.lb, 0.05);
 }
 
-TEST(ConditionalLimits, ThatSayNothingOrContradictAreRefused) {
+TEST(ConditionalLimits, AreRefusedWhenEmptyOrContradictory) {
   const auto message = [](const std::string& keys) {
     return door_message("conditional_limits:\n  - {name: a, joint: hinge" + keys + "}\n");
   };

@@ -76,7 +76,7 @@ TEST(Estimation, GivesTheWrenchAtTheHandleInBaseCoordinates) {
   EXPECT_LT((robot.w_H.tail<3>() - n_B).norm(), 1e-12);
 }
 
-// a drive that follows its model, or has another lag than the observer believes
+// a drive that follows its model, or has another lag than the observer's model
 double worst_acceleration_error(double true_lag) {
   const double dt = device().dt();
   Estimation estimation = make();

@@ -48,13 +48,13 @@ TEST(GantryObserver, IsTheStationaryKalmanFilterOfTheDriveModel) {
   }
 }
 
-TEST(GantryObserver, FindsAnAccelerationThatTheDriveModelDoesNotKnow) {
+TEST(GantryObserver, FindsAnAccelerationOutsideTheDriveModel) {
   const DriveModel drive;
   const GantryGains gains = gantry_gains(8.0, 1e-3);
   GantryObserver axis;
   double dq = 0.0, q = 0.0;
   for (int k = 0; k < 2000; ++k) {
-    const double ddq = drive_acceleration(drive, dq, 0.0) + 0.4;  // somebody pushes the trolley
+    const double ddq = drive_acceleration(drive, dq, 0.0) + 0.4;  // a person pushes the trolley
     q += 1e-3 * dq + 0.5e-6 * ddq;
     dq += 1e-3 * ddq;
     observe(drive, gains, 1e-3, q, 0.0, axis);

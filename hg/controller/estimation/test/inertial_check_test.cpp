@@ -53,7 +53,7 @@ struct Bench {
   }
 };
 
-TEST(InertialCheck, LearnsTheZeroOfTheGyroscopeAtRestAndThenAgreesWithTheEncoders) {
+TEST(InertialCheck, LearnsTheGyroscopeBiasAtRestAndThenMatchesTheEncoders) {
   Bench bench;
   bench.run(0.2, 0.0, 0.0, false);
   EXPECT_LT((bench.check.bias - kGyroscopeZero).norm(), 1e-4);
@@ -122,7 +122,7 @@ TEST(InertialCheck, ADriftAtRestIsNoZeroOfTheGyroscope) {
   EXPECT_GT(bench.check.turn.norm(), 0.05);
 }
 
-TEST(InertialCheck, GravityTellsAnEncoderThatWasHomedWrongly) {
+TEST(InertialCheck, GravityRevealsAWronglyHomedEncoder) {
   Bench right;
   right.run(2.0, 0.0, 0.0, false);
   EXPECT_LT(tilt(right.check), 1e-6);

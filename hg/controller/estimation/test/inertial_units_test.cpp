@@ -1,5 +1,5 @@
 /// Units on the links of the reference device, whose joints move along smooth curves and shake by
-/// something that the reference does not know.
+/// something that is not in the reference.
 #include "hg/controller/estimation/inertial_units.h"
 
 #include <gtest/gtest.h>
@@ -100,11 +100,11 @@ class Machine {
     return all;
   }
 
-  // one period; `spoil` may change what the units show
-  template <typename Spoil>
-  void step(Spoil&& spoil) {
+  // one period; `corrupt` may change what the units show
+  template <typename Corrupt>
+  void step(Corrupt&& corrupt) {
     InertialReadings shown = readings(time_s - kDt);
-    spoil(shown);
+    corrupt(shown);
     const Joints now(time_s);
     units_.step(shown, {.measured = now.q, .q = now.q, .dq = now.dq, .ddq_expected = now.expected},
                 state);
@@ -150,7 +150,7 @@ const std::vector<int>& all_links() {
   return frames;
 }
 
-TEST(InertialUnits, SeeAccelerationsThatTheReferenceDoesNotKnow) {
+TEST(InertialUnits, SeeAccelerationsThatTheReferenceLacks) {
   Machine machine(all_links());
   machine.run(kLearning_s);
   EXPECT_EQ(machine.state.trust.minCoeff(), 1.0);
@@ -191,16 +191,16 @@ TEST(InertialUnits, ABentGantryIsNotTakenForMotionOfTheArm) {
   machine.bend << 0.8, 0.6, 0.0, 0.0, 0.0, 0.0;
   machine.run(2.0);  // how large that usually is is learnt, too
   EXPECT_LT(machine.share_of_error(1.0), 0.25);
-  // what its drives do otherwise than told and what bends cannot be told apart, but their sum can
-  Eigen::Vector2d told = Eigen::Vector2d::Zero();
+  // errors of its drives and bending cannot be distinguished, but their sum is found
+  Eigen::Vector2d found = Eigen::Vector2d::Zero();
   for (int k = 0; k < 200; ++k) {
     machine.run(kDt);
     const InertialReport report = machine.report();
     const Eigen::Vector2d of_drives = (report.ddq - machine.truth().expected).head(2);
-    told = told.cwiseMax(report.bend_acceleration.head(2) + machine.axes() * of_drives);
+    found = found.cwiseMax(report.bend_acceleration.head(2) + machine.axes() * of_drives);
   }
-  EXPECT_NEAR(told.x(), 0.8, 0.08);
-  EXPECT_NEAR(told.y(), 0.6, 0.06);
+  EXPECT_NEAR(found.x(), 0.8, 0.08);
+  EXPECT_NEAR(found.y(), 0.6, 0.06);
 }
 
 TEST(InertialUnits, ABentBaseIsSeenWhereThereIsNoGantry) {
@@ -208,12 +208,12 @@ TEST(InertialUnits, ABentBaseIsSeenWhereThereIsNoGantry) {
   machine.run(kLearning_s);
   machine.bend << 0.0, 0.0, 0.5, 0.0, 0.0, 0.0;
   machine.run(2.0);
-  double told = 0.0;
+  double found = 0.0;
   for (int k = 0; k < 200; ++k) {
     machine.run(kDt);
-    told = std::max(told, machine.report().bend_acceleration.z());
+    found = std::max(found, machine.report().bend_acceleration.z());
   }
-  EXPECT_NEAR(told, 0.5, 0.1);
+  EXPECT_NEAR(found, 0.5, 0.1);
 }
 
 TEST(InertialUnits, OneThatDiesLeavesNoBumpAndMayComeBack) {
@@ -223,11 +223,11 @@ TEST(InertialUnits, OneThatDiesLeavesNoBumpAndMayComeBack) {
     shown.segment<6>(6 * 4).setConstant(std::numeric_limits<double>::quiet_NaN());
   };
   // how much a period changes, before and after
-  const auto largest_change = [&](int periods, auto&& spoil) {
+  const auto largest_change = [&](int periods, auto&& corrupt) {
     double most = 0.0;
     for (int k = 0; k < periods; ++k) {
       const InertialReport last = machine.report();
-      machine.step(spoil);
+      machine.step(corrupt);
       most = std::max(most, (machine.report().ddq - last.ddq).tail(6).cwiseAbs().maxCoeff());
     }
     return most;
@@ -267,7 +267,7 @@ TEST(InertialUnits, NothingIsBelievedBeforeItHasMoved) {
   EXPECT_LT((machine.report().q - machine.truth().q).cwiseAbs().maxCoeff(), 2e-4);
 }
 
-TEST(InertialUnits, ReplaceTheEncodersOnlyWhereAskedTo) {
+TEST(InertialUnits, ReplaceTheEncodersOnlyWhereConfigured) {
   for (const bool feeds_back : {false, true}) {
     Machine machine(all_links(), feeds_back);
     machine.run(kLearning_s);

@@ -39,7 +39,7 @@ TEST(LowPass, HasTheFrequencyResponseOfItsPole) {
         (1.0 - pole) / (1.0 - pole * std::polar(1.0, -kTwoPi * f * kDt));
     EXPECT_LT(std::abs(sum - expected), 1e-9) << f << " Hz";
   }
-  // the corner is where it is said to be: -3.0 dB
+  // the corner is at its nominal frequency: -3.0 dB
   const double at_corner = std::abs((1.0 - pole) / (1.0 - pole * std::polar(1.0, -kTwoPi * 0.05)));
   EXPECT_NEAR(20.0 * std::log10(at_corner), -3.0, 0.1);
 }

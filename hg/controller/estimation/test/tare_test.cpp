@@ -104,7 +104,7 @@ TEST(Tare, ANewOneReplacesTheOld) {
   EXPECT_LT((again.offset - kOffset).norm(), 0.05);
 }
 
-TEST(Tare, DoesNothingUnlessAskedFor) {
+TEST(Tare, DoesNothingUnlessRequested) {
   TareState tare;
   for (int k = 0; k < 2000; ++k) {
     advance({}, kDt, kOffset, false, VectorM::Zero(6), VectorP::Zero(2), tare);

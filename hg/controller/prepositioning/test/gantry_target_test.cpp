@@ -18,7 +18,7 @@ using std::numbers::pi;
 
 constexpr double kNoGoal = std::numeric_limits<double>::quiet_NaN();
 constexpr auto kSolved = model::haptic_giant::InverseStatus::kSolved;
-constexpr double kSame = 1e-6;  // m and rad, what is asked of the numeric target
+constexpr double kSame = 1e-6;  // m and rad, tolerance of the numeric target
 
 const model::ChainModel& haptic_giant() {
   static const model::ChainModel chain =

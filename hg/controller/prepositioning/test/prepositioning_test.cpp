@@ -102,7 +102,7 @@ TEST(Prepositioning, StandsStillWhileTheDeviceIsBlocked) {
   EXPECT_EQ(rule().step(robot, target, true).dq.norm(), 0.0);
 }
 
-TEST(Prepositioning, StopsByItselfBeforeItCarriesAFrameOverItsLimit) {
+TEST(Prepositioning, StopsBeforeItCarriesAFrameOverItsLimit) {
   const Prepositioning gantry = rule();
   RobotState robot;
   robot.q_p = Eigen::Vector2d(0.0, 0.0);
@@ -173,7 +173,7 @@ struct LedGantry {
   }
 };
 
-TEST(Prepositioning, TheDrivesDoWhatTheLawAsksFor) {
+TEST(Prepositioning, TheDrivesFollowTheLaw) {
   const VectorP wanted = Eigen::Vector2d(1.0, -1.5);
   LedGantry gantry;
   for (int k = 0; k < 300; ++k) {

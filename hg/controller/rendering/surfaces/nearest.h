@@ -64,7 +64,7 @@ void for_each_facing(const Surface& surface, const Eigen::Vector3d& point, doubl
                      const Visit& visit) noexcept {
   const Eigen::Matrix3d& R = surface.pose.R;
   const Eigen::Vector3d p = R.transpose() * (point - surface.pose.p);
-  const auto tell = [&](const Facing& found) {
+  const auto visit_near = [&](const Facing& found) {
     if (found.distance > reach) return;
     visit(Facing{R * found.normal, found.distance, -1, found.is_edge, found.solid});
   };
@@ -72,9 +72,9 @@ void for_each_facing(const Surface& surface, const Eigen::Vector3d& point, doubl
       [&](const auto& shape) {
         if constexpr (std::is_same_v<decltype(shape), const Mesh&>) {
           shape.for_each_near(p, p, reach,
-                              [&](const Triangle& triangle) { tell(facing(triangle, p)); });
+                              [&](const Triangle& triangle) { visit_near(facing(triangle, p)); });
         } else {
-          tell(facing(shape, p));
+          visit_near(facing(shape, p));
         }
       },
       surface.shape);

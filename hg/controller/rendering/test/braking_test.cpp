@@ -57,7 +57,7 @@ TEST_F(Braking, TakesOneMotorToItsBound) {
   }
 }
 
-TEST_F(Braking, KnowsTheHandThatPushes) {
+TEST_F(Braking, IncludesTheForceOfTheHand) {
   const Eigen::Vector3d along = -Eigen::Vector3d::UnitY();
   const double free = largest_acceleration(device, motion, along);
   motion.w_H[1] = 40.0;
@@ -68,7 +68,7 @@ TEST_F(Braking, KnowsTheHandThatPushes) {
   EXPECT_EQ(largest_acceleration(device, motion, along), 0.0);
 }
 
-TEST_F(Braking, IsTheRatingWhereMotorsAreNotKnown) {
+TEST_F(Braking, IsTheRatingWithoutMotorModel) {
   device.has_torque_limits = false;
   EXPECT_TRUE(std::isinf(largest_acceleration(device, motion, Eigen::Vector3d::UnitX())));
   CartesianLimit limit = {.name = "handle", .frame = device.handle};

@@ -123,20 +123,20 @@ TEST_P(LimitsOfEveryVariant, LetALockWinThatIsOutsideAChangedRange) {
   twin.locks = {{.name = "bolt", .dof = 0, .position = 0.5, .engaged_while = while_pressed()}};
   Playing playing(twin, options());
   ASSERT_EQ(playing.change(Parameter::kUpperLimit, 0, 0.3), ChangeStatus::kTaken);
-  bool is_told = false;
+  bool is_reported = false;
   for (int k = 0; k < 4000; ++k) {
     playing.step(playing.wrench_for(0, 2.0));
     ASSERT_GE(playing.limit(0).to_lower + playing.limit(0).to_upper, 0.0) << k;
-    is_told = is_told || playing.limit(0).cause == LimitCause::kContradiction;
+    is_reported = is_reported || playing.limit(0).cause == LimitCause::kContradiction;
   }
   const double held_at = stops_in_place ? 0.8 : 0.5;
   EXPECT_NEAR(playing.q(0), held_at, 2.0 * kLockReached);
-  EXPECT_EQ(is_told, !stops_in_place);
+  EXPECT_EQ(is_reported, !stops_in_place);
   EXPECT_EQ(playing.limit(0).cause, LimitCause::kLock);
-  EXPECT_NEAR(playing.limit(0).excess, held_at - 0.3, 1e-3);  // of the range that was asked for
+  EXPECT_NEAR(playing.limit(0).excess, held_at - 0.3, 1e-3);  // of the requested range
 }
 
-TEST_P(LimitsOfEveryVariant, HoldAJointInTheMiddleOfLimitsThatCrossAndSaySo) {
+TEST_P(LimitsOfEveryVariant, HoldAJointBetweenCrossedLimitsAndReportIt) {
   TwinModel twin = pressed_door(0.8);
   twin.conditional_limits = {
       {.name = "low", .dof = 0, .limits = {.q_max = 0.4}, .conditions = while_pressed()},
@@ -158,7 +158,7 @@ TEST(Closer, MeasuresFromTheLowerLimitThatHoldsNow) {
   EXPECT_NEAR(playing.result.budget.spring[0], 3.0, 1e-3);
 }
 
-TEST(Stopping, KnowsNoFriction) {
+TEST(Stopping, IgnoresFriction) {
   TwinModel twin = pressed_door(0.8);
   twin.dofs[0].friction = 4.0;
   Playing playing(twin);
@@ -205,7 +205,7 @@ TEST(LargeTwin, OfThirtyJointsWithLimitsStaysSolvedInsideAndAttached) {
     Vector6 w;
     w << 40, -30, 30, 3, -3, 2;
     for (int i = 0; i < 6; ++i) w[i] *= std::sin((30.0 + 7.0 * i) * t) > 0.0 ? 4.0 : -4.0;
-    if (k % 20 == 0) state.active_set = {};  // the solver knows nothing of the cycle before
+    if (k % 20 == 0) state.active_set = {};  // the solver starts without the cycle before
     const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
     LawResult result;
     ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved) << k;

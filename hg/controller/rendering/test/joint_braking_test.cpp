@@ -43,7 +43,7 @@ TEST(Approach, HasRoomOnlyWhereItsEndIsFar) {
   }
 }
 
-TEST(BrakingBounds, AskForTheNeedWhenTheReserveIsUsed) {
+TEST(BrakingBounds, DemandTheNeedWhenTheReserveIsUsed) {
   const Approach near = approach(kJoint, kOptions, 0.35, 0.9, kDt);
   const Interval wide = {-50.0, 50.0};
   EXPECT_DOUBLE_EQ(braking_bounds(near, 1.2, wide, kJoint, kOptions, 0.9).ub, -near.need);
@@ -53,7 +53,7 @@ TEST(BrakingBounds, AskForTheNeedWhenTheReserveIsUsed) {
   EXPECT_EQ(braking_bounds(away, 0.0, wide, kJoint, kOptions, 0.0).ub, wide.ub);
 }
 
-TEST(BrakingBounds, AreNeverEmptyNorBeyondWhatALimitMayAskFor) {
+TEST(BrakingBounds, AreNeverEmptyNorBeyondTheCapOfALimit) {
   for (double q = -1.2; q < 0.7; q += 0.02) {
     for (double dq = -2.5; dq < 2.5; dq += 0.1) {
       const Interval before = limits::recoverable_bounds(kJoint, kOptions, q, dq, kDt);
@@ -260,7 +260,7 @@ class Pushed {
   }
 };
 
-TEST(JointBraking, WithRatingsTwiceTooHighLeavesWallsByLessThanHalfOfWhatBrakingAloneDoes) {
+TEST(JointBraking, WithDoubledRatingsOvershootsLessThanHalfOfPlainBraking) {
   Pushed together, alone;
   alone.brakes_together = false;
   for (unsigned seed = 0; seed < 10; ++seed) {
@@ -372,7 +372,7 @@ TEST(BrakingTogether, BeginsEarlierWhereMotorsAreWeakerThanRatings) {
   }
 }
 
-TEST(BrakingTogether, IsNoOtherThanAloneWhereTheLawDoesNotKnowTheMotors) {
+TEST(BrakingTogether, EqualsBrakingAloneWithoutMotorModel) {
   Thrown thrown;
   thrown.device.has_torque_limits = false;
   const Options together = {.braking = Braking::kTogether};

@@ -360,7 +360,7 @@ int limits_with_reaction(const LawResult& result) {
 
 // [HG] VI-C8: the flags are those of the last result. In the cycle that meets a limit no alpha is
 // in its range, and all of them share what level 9 needs.
-TEST(PaperLaw, KnowsALimitOneCycleLater) {
+TEST(PaperLaw, SeesALimitOneCycleLater) {
   Door door(with(Law::kPaper, Bounds::kPaper), 0.0, false);
   door.state().twin.q_a[0] = 1.0;
   door.run(0.001, 20.0);

@@ -57,7 +57,7 @@ TEST(ReachedTorque, FromBeyondABoundComesBackToIt) {
   EXPECT_NEAR(torque.ub, 100.0, 0.01);
 }
 
-// A free body in the hand of a device with motors, of which somebody pulls.
+// A free body in the hand of a device with motors; a person pulls.
 struct Pulled {
   Rendering rendering;
   State state;
@@ -126,7 +126,7 @@ TEST(MotorRows, AMotorGivesNoMoreThanItsShareAndIsNamed) {
   EXPECT_GT(largest, 0.7);
 }
 
-TEST(MotorRows, RatingsCapAccelerationsOnlyWhereTheMotorsAreNotKnown) {
+TEST(MotorRows, RatingsCapAccelerationsOnlyWithoutMotorModel) {
   const auto largest_acceleration = [](bool knows_motors) {
     Pulled twin(knows_motors);
     double largest = 0.0;

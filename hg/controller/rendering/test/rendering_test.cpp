@@ -45,7 +45,7 @@ TEST(Rendering, GoldenCaseOfTheHandbookJoint6AtItsUpperLimit) {
   EXPECT_EQ(result.felt_limit, 5);
 }
 
-TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonSays) {
+TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonsLaw) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
   State state = rendering.start(kPosture);
   Vector6 w;
@@ -128,7 +128,7 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   EXPECT_GT((ddq_p - aim).norm(), 0.1);
   EXPECT_LE(ddq_p.cwiseAbs().maxCoeff(), 0.5 + 1e-12);
 
-  task = {aim, aim, aim, Eigen::Vector2d(0.3, 0.3)};  // it does more than it was told
+  task = {aim, aim, aim, Eigen::Vector2d(0.3, 0.3)};  // it does more than commanded
   Rendering rendering(device, golden_twin(), options);
   State state = rendering.start(kPosture);
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -167,7 +167,7 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
   EXPECT_FALSE(tasks.keeps_joints(solution));
 }
 
-TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessAskedFor) {
+TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessRequested) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
   State state = rendering.start(kPosture);
   const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());

@@ -51,7 +51,7 @@ TwinModel free_body() {
 }
 
 // two degrees of freedom: more limits can act than the twin has torques, and only idle motion of
-// the manipulator tells their shares apart
+// the manipulator shows their shares separately
 TwinModel door() {
   return unlimited_twin(
       model::ChainModel::from_urdf_file("models/twins/door/door.urdf", {.gravity = false}),
@@ -202,7 +202,7 @@ TEST(SevenJoints, WithoutAGoalIdleMotionComesToRest) {
   }
 }
 
-TEST(SevenJoints, LawPaperWantsSix) {
+TEST(SevenJoints, LawPaperRequiresSix) {
   Options options;
   options.law = Law::kPaper;
   try {

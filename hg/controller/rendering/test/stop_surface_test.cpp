@@ -125,7 +125,7 @@ TEST(StopSurface, IsNotEnteredByWhatIsThrownAtIt) {
   }
 }
 
-TEST(StopSurface, CarriesTheHandCalmlyAndIsNamed) {
+TEST(StopSurface, CarriesTheHandSteadilyAndIsNamed) {
   Thrown body(stop(surfaces::Plane{}, kStart - 0.02 * Vector3d::UnitZ()));
   const Vector3d push(0, 0, -50.0);
   for (int k = 0; k < 2000; ++k) {
@@ -180,7 +180,7 @@ TEST(StopSurface, LetsSlideAlongAMeshOverItsEdges) {
   EXPECT_LT(body.inside, 1e-5);
 }
 
-TEST(StopSurface, NeedsALawThatKnowsIt) {
+TEST(StopSurface, NeedsALawThatSupportsIt) {
   const Surface surface = stop(surfaces::Plane{}, kStart - Vector3d::UnitZ());
   Options paper = without_synchronisation();
   paper.bounds = Bounds::kPaper;

@@ -310,7 +310,7 @@ TEST(Changes, OfFrictionHoldAndReleaseTheJoint) {
   EXPECT_GT(door.q(0), held + 0.01);
 }
 
-TEST(Changes, ArePartOfTheStateSoThatASnapshotGoesOnAlike) {
+TEST(Changes, ArePartOfTheStateSoThatASnapshotContinuesAlike) {
   HeldDoor door;
   ASSERT_EQ(door.change(Parameter::kStiffness, 0, 40.0), ChangeStatus::kTaken);
   ASSERT_EQ(door.change(Parameter::kUpperLimit, 0, 0.7), ChangeStatus::kTaken);

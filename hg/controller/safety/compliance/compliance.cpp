@@ -90,13 +90,13 @@ TouchReport step(const VectorM& torque_max, double dt, const Input& input, State
     if (share >= 1.0) report.joint = i;
   }
   state.quiet_s = report.share < kEnds ? state.quiet_s + dt : 0.0;
-  if (!state.is_told && report.share < kEnds) learn(torque_max, dt, state);
-  state.is_told = report.share >= 1.0 || (state.is_told && state.quiet_s < kQuiet_s);
+  if (!state.is_reported && report.share < kEnds) learn(torque_max, dt, state);
+  state.is_reported = report.share >= 1.0 || (state.is_reported && state.quiet_s < kQuiet_s);
 
   report.torque = state.torque;
-  report.is_told = state.is_told;
+  report.is_reported = state.is_reported;
   state.away.resize(0);
-  if (!state.is_told) return report;
+  if (!state.is_reported) return report;
   report.wrench = wrench_of(input, beyond(torque_max, state));
   state.away.noalias() = kGantryGain * input.J.leftCols(input.n_p).transpose() * report.wrench;
   state.away = state.away.cwiseMin(kGantrySpeed).cwiseMax(-kGantrySpeed);

@@ -38,15 +38,15 @@ struct State {
   VectorM torque;    ///< Joint torques of the contact, low-passed, Nm
   VectorM variance;  ///< Variance of `torque` without contact, Nm^2
   VectorM load;      ///< Torques that have just moved the joints, Nm
-  bool is_told = false;
+  bool is_reported = false;
   double quiet_s = 0.0;  ///< Time for which less than half of the thresholds is felt, s
   VectorP away;          ///< Velocity of the gantry, m/s or rad/s; empty: its own aim
 };
 
 /// Words of the state hash, in its order.
 void hashed(auto& hash, const State& state) {
-  const auto& [is_started, dq, torque, variance, load, is_told, quiet_s, away] = state;
-  hash.mix(std::uint64_t{is_started} | std::uint64_t{is_told} << 1U, dq, torque, variance, load,
+  const auto& [is_started, dq, torque, variance, load, is_reported, quiet_s, away] = state;
+  hash.mix(std::uint64_t{is_started} | std::uint64_t{is_reported} << 1U, dq, torque, variance, load,
            quiet_s, away);
 }
 

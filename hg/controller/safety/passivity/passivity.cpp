@@ -71,24 +71,23 @@ double look_for_oscillation(const Config& config, double dt, const Input& input,
   return std::max(s.oscillates_s / config.trip_time, counts ? high / kViolent : 0.0);
 }
 
-void calm(const Config& config, double dt, const Input& input, bool is_detected,
-          State& s) noexcept {
+void add_impedance(const Config& config, double dt, const Input& input, bool is_detected,
+                   State& s) noexcept {
   s.hold_s = is_detected ? kHold : std::max(0.0, s.hold_s - dt);
-  const bool is_full = s.calming.damping >= 0.99 * config.damping;
+  const bool is_full = s.added.damping >= 0.99 * config.damping;
   s.restless_s = is_detected && is_full ? s.restless_s + dt : 0.0;
 
   const double wanted = std::clamp(config.least_mass / input.mass, 1.0, kMostInertia);
   if (s.hold_s <= 0.0) {
-    s.calming.damping = std::max(0.0, s.calming.damping - dt / kReturn * config.damping);
-    s.calming.inertia =
-        std::max(1.0, s.calming.inertia - dt / kReturn * std::max(1.0, wanted - 1.0));
+    s.added.damping = std::max(0.0, s.added.damping - dt / kReturn * config.damping);
+    s.added.inertia = std::max(1.0, s.added.inertia - dt / kReturn * std::max(1.0, wanted - 1.0));
     return;
   }
-  s.calming.damping += share_of(dt, kDampingRise) * (config.damping - s.calming.damping);
+  s.added.damping += share_of(dt, kDampingRise) * (config.damping - s.added.damping);
   if (s.tank < config.tank_least) return;
-  const double allowed = 2.0 * s.calming.damping / input.mass * dt;
-  const double rise = share_of(dt, kInertiaRise) * (wanted - s.calming.inertia);
-  s.calming.inertia += std::clamp(rise, 0.0, allowed);
+  const double allowed = 2.0 * s.added.damping / input.mass * dt;
+  const double rise = share_of(dt, kInertiaRise) * (wanted - s.added.inertia);
+  s.added.inertia += std::clamp(rise, 0.0, allowed);
 }
 
 }  // namespace
@@ -100,19 +99,19 @@ PassivityReport step(const Config& config, double dt, const Input& input, State&
   report.oscillation = look_for_oscillation(config, dt, input, state);
   state.is_started = true;
 
-  const double inertia_before = state.calming.inertia;
+  const double inertia_before = state.added.inertia;
   if (config.reaction == Reaction::kAct) {
-    calm(config, dt, input, report.oscillation >= 1.0, state);
+    add_impedance(config, dt, input, report.oscillation >= 1.0, state);
   }
-  const double growth = std::max(0.0, state.calming.inertia - inertia_before);
+  const double growth = std::max(0.0, state.added.inertia - inertia_before);
   state.tank += dt * (input.dissipation + input.power_measured - input.power_rendered) -
                 0.5 * growth * input.mass * input.speed * input.speed;
   state.tank = std::min(state.tank, config.tank_max);
   state.energy = std::max(0.0, state.energy - dt * input.power_measured);
   report.tank = state.tank;
   report.energy = state.energy;
-  report.damping = state.calming.damping;
-  report.inertia = state.calming.inertia;
+  report.damping = state.added.damping;
+  report.inertia = state.added.inertia;
   return report;
 }
 

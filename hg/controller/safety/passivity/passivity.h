@@ -59,14 +59,14 @@ struct Input {
 };
 
 /// Damping and inertia added to the twin.
-struct Calming {
+struct AddedImpedance {
   double damping = 0.0;  ///< Damping at the end effector, in all directions, Ns/m
   double inertia = 1.0;  ///< Factor of the twin's inertia, >= 1
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const Calming& calming) {
-  const auto& [damping, inertia] = calming;
+void hashed(auto& hash, const AddedImpedance& added) {
+  const auto& [damping, inertia] = added;
   hash.mix(damping, inertia);
 }
 
@@ -85,18 +85,18 @@ struct State {
   double hold_s = 0.0;              ///< Time until the added damping ends, s
   double restless_s = 0.0;          ///< Duration of oscillation at full damping, s
   double tank = 0.0, energy = 0.0;  ///< Energy of the tank, and energy given to the user, J
-  Calming calming;
+  AddedImpedance added;
 };
 
 /// Words of the state hash, in its order.
 void hashed(auto& hash, const State& state) {
   const auto& [is_started, x1, x2, x3, high, low, in1, in2, tremor1, tremor2, tremor, turns,
-               oscillates_s, since_pushed_s, hold_s, restless_s, tank, energy, calming] = state;
+               oscillates_s, since_pushed_s, hold_s, restless_s, tank, energy, added] = state;
   hash.mix(is_started, x1, x2, x3, high, low, oscillates_s, since_pushed_s, hold_s, restless_s,
-           tank, energy, calming);
+           tank, energy, added);
 }
 
-/// Advances by one cycle of `dt` (s) and returns its report; `state.calming` applies to the twin in
+/// Advances by one cycle of `dt` (s) and returns its report; `state.added` applies to the twin in
 /// the next one.
 PassivityReport step(const Config& config, double dt, const Input& input, State& state) noexcept;
 

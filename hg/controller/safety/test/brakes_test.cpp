@@ -35,7 +35,7 @@ struct Dark {
   Fault step(bool is_powered = false) {
     return watch_brakes(monitor, device(), sensors, is_powered, state);
   }
-  // samples until it is told; -1: not within 2000
+  // samples until it is reported; -1: not within 2000
   template <typename Change>
   int until_told(Change change) {
     for (int k = 1; k <= 2000; ++k) {
@@ -53,7 +53,7 @@ void turn_both(SensorFrame& s) {
   s.theta_m[4] += 1e-3;
 }
 
-TEST(Brakes, AnAxisThatMovesWithItsBrakeClosedIsToldByEitherOfItsEncoders) {
+TEST(Brakes, AnAxisThatMovesWithItsBrakeClosedIsSeenByEitherEncoder) {
   for (const auto turn : {turn_link, turn_motor, turn_both}) {
     Dark dark;
     EXPECT_NEAR(dark.until_told(turn), 103, 1);  // 0.1 rad and three samples
@@ -126,7 +126,7 @@ TEST(Brakes, BeforeTheFirstPowerAndWithPowerTheDeviceMayMove) {
   }
 }
 
-TEST(Brakes, ASampleThatWasNotHeardSaysNothing) {
+TEST(Brakes, AMissingSampleIsNotJudged) {
   Dark dark;
   dark.sensors.q_m.setZero();
   dark.sensors.driver_fault = FaultCode::kDeviceSilent;

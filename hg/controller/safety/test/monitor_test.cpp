@@ -70,9 +70,9 @@ TEST(CheckSensors, LooksAtMotorsJointTorquesAndTheInertialUnitToo) {
   SensorFrame complete = good_sensors();
   complete.theta_m = complete.tau_m = VectorM::Zero(6);
   EXPECT_TRUE(is_finite(complete, true));
-  const auto expect_named = [&](auto&& spoil, int index) {
+  const auto expect_named = [&](auto&& corrupt, int index) {
     SensorFrame sensors = complete;
-    spoil(sensors);
+    corrupt(sensors);
     EXPECT_FALSE(is_finite(sensors, true)) << index;
     EXPECT_EQ(check_sensors(sensors, 7, true).code, FaultCode::kSensorNotFinite) << index;
     EXPECT_EQ(check_sensors(sensors, 7, true).index, index);
@@ -166,7 +166,7 @@ struct Results {
   }
 };
 
-// A device that runs and does as it is told, with noise on what has noise.
+// A device that runs and does as it is command, with noise on what has noise.
 struct Bench {
   Monitor monitor;
   MonitorState state;
@@ -307,7 +307,7 @@ TEST(Monitor, EveryRuleActsBeyondItsThresholdAfterItsDebounceAndNotBelow) {
   }
 }
 
-TEST(Monitor, ABreakInBetweenBeginsTheDebounceAnew) {
+TEST(Monitor, AGapRestartsTheDebounce) {
   for (const Case& c : kCases) {
     if (c.samples == 1) continue;
     Bench bench;
@@ -334,7 +334,7 @@ TEST(Monitor, NoDebounceIsLongerAtAHigherRateInTime) {
       bench.until_fault(FaultCode::kTrackingLost, [&] { bench.results.robot.q_m[5] = 0.081; }), 40);
 }
 
-TEST(Monitor, AJumpIsMoreThanThreeTimesTheSpeedAndATurnOfAnEndlessJointIsNone) {
+TEST(Monitor, AJumpIsThreeTimesTheSpeedAndAWholeTurnIsNone) {
   Bench bench;
   bench.sensors.q_m[1] += 8.9e-3;
   bench.sensors.theta_m[1] += 8.9e-3;
@@ -442,7 +442,7 @@ TEST(Monitor, AReferenceThatHasToComeBackAgainAndAgainIsLostToo) {
             -1);
 }
 
-TEST(Monitor, WithoutPowerADeviceMayBeAnywhereAndFromThereItMayOnlyMoveBack) {
+TEST(Monitor, PositionsReachedWithoutPowerAllowOnlyMovesBack) {
   Bench bench;
   bench.watched.state = State::kFault;
   bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = 2.5;
@@ -525,7 +525,7 @@ TEST(Monitor, BelowALimitItMayOnlyMoveBackToo) {
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kLimitExceeded);
 }
 
-TEST(Monitor, TheSafeSpeedHoldsOnlyWithNobodyAtTheHandle) {
+TEST(Monitor, TheSafeSpeedAppliesOnlyWhileTheHandleIsNotHeld) {
   Bench bench;
   bench.results.v_H = {0.2, 0.16, 0.0};
   bench.run(10);
@@ -543,11 +543,11 @@ TEST(Monitor, TheSafeSpeedHoldsOnlyWithNobodyAtTheHandle) {
 // A motor of the bench that accelerates as `share` of its torque makes it, against its friction.
 struct Motor {
   double dtheta = 0.0;
-  void step(Bench& bench, double told, double share, double spring) {
+  void step(Bench& bench, double command, double share, double spring) {
     bench.watched.tau_m = VectorM::Zero(6);
-    bench.watched.tau_m[2] = told;
+    bench.watched.tau_m[2] = command;
     const double friction = 4.0 * std::tanh(dtheta / 0.01);
-    dtheta += 1e-3 * (share * told - spring - friction) / 0.6;
+    dtheta += 1e-3 * (share * command - spring - friction) / 0.6;
     bench.results.robot.dtheta_m = bench.results.robot.tau_m = VectorM::Zero(6);
     bench.results.robot.dtheta_m[2] = dtheta;
     bench.results.robot.tau_m[2] = spring;
@@ -555,7 +555,7 @@ struct Motor {
   }
 };
 
-TEST(Monitor, AMotorThatDoesAsToldIsLeftAloneWhateverItsLoadAndSpeed) {
+TEST(Monitor, AMotorThatFollowsItsCommandRaisesNoFault) {
   Bench bench;
   Motor motor;
   for (int k = 0; k < 3000; ++k) {
@@ -653,7 +653,7 @@ TEST(Monitor, AStopThatFollowsItsRampIsLeftAlone) {
   }
 }
 
-TEST(Monitor, WhatDoesNotBrakeAsItIsAskedToGetsItsBrakes) {
+TEST(Monitor, AnAxisThatDoesNotBrakeAsCommandedGetsItsBrakes) {
   const auto first = [](double joint, double gantry, int samples) {
     BrakingBench bench;
     for (int k = 1; k <= samples; ++k) {
@@ -676,21 +676,21 @@ TEST(Monitor, WhatDoesNotBrakeAsItIsAskedToGetsItsBrakes) {
   for (const Fault& fault : {fast, slow, axis}) EXPECT_EQ(rule_of(fault.code).reaction, Stop::kSto);
 }
 
-TEST(Monitor, AStopThatGoesTooFarEndsWhateverItsRampSays) {
+TEST(Monitor, AStopThatGoesTooFarEndsEvenOnItsRamp) {
   Bench bench;
   bench.watched.state = State::kToArmed;
   // the reference runs on, and the joint follows it
   bench.results.reference.dq_m[0] = bench.results.robot.dq_m[0] = 0.5;
-  const auto go_on = [&] {
+  const auto keep_moving = [&] {
     bench.results.robot.q_m[0] += 5e-4;
     bench.results.reference.q_m[0] = bench.sensors.q_m[0] = bench.sensors.theta_m[0] =
         bench.results.robot.q_m[0];
   };
-  EXPECT_NEAR(bench.until_fault(FaultCode::kStopTooFar, go_on), 1441, 2);  // 90 % of 0.8 rad
+  EXPECT_NEAR(bench.until_fault(FaultCode::kStopTooFar, keep_moving), 1441, 2);  // 90 % of 0.8 rad
   EXPECT_EQ(bench.verdict.fault.index, 0);
 }
 
-TEST(Monitor, AJumpIsKnownBeforeAnythingElseIsMadeOfTheSample) {
+TEST(Monitor, AJumpIsDetectedBeforeTheSampleIsUsed) {
   Bench bench;
   EXPECT_FALSE(bench.monitor.has_jumped(bench.sensors, bench.state));
   bench.sensors.q_m[3] += 0.05;

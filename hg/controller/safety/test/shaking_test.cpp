@@ -102,7 +102,7 @@ TEST(Shaking, FindsABodyThatBouncesAndDrivesTheHand) {
   EXPECT_EQ(bounces(0.4, 1.0, 4.0, 12).what, Shaking::kNone);    // a person taps
   EXPECT_EQ(bounces(0.4, 1.0, -0.1, 5).what, Shaking::kNone);    // no more than what it had
   EXPECT_EQ(bounces(0.4, 1.0, -4.0, 2).what, Shaking::kNone);    // there and back
-  EXPECT_EQ(bounces(0.4, 0.6, -4.0, 12).what, Shaking::kNone);   // calms down
+  EXPECT_EQ(bounces(0.4, 0.6, -4.0, 12).what, Shaking::kNone);   // decays
   EXPECT_EQ(bounces(0.04, 1.0, -4.0, 12).what, Shaking::kNone);  // creeps
 }
 

@@ -33,7 +33,7 @@ SupervisorState in(State state) {
   return supervisor;
 }
 
-// what lets `state` go on as it is
+// input that keeps `state`
 SupervisorInput quiet(State state) {
   SupervisorInput input;
   input.is_held = state == State::kByHand;
@@ -77,7 +77,7 @@ Refusal let_happen(Event event, SupervisorState& state) {
       input.safety.operator_enable = false;
       break;
     case Event::kStandstill:
-      go_on_stopping(true, 100, 0.1, state);
+      continue_stop(true, 100, 0.1, state);
       return Refusal::kNone;
     case Event::kRule:
       break_rule(kRuleFault, state);
@@ -89,7 +89,7 @@ Refusal let_happen(Event event, SupervisorState& state) {
   return advance(input, state);
 }
 
-TEST(Supervisor, DoesWhatTheTableSaysInEveryStateAtEveryEvent) {
+TEST(Supervisor, FollowsTheTableInEveryStateAtEveryEvent) {
   for (const State state : all_states()) {
     for (const Event event : all_events()) {
       SupervisorState supervisor = in(state);
@@ -137,7 +137,7 @@ TEST(Transitions, PowerComesOnlyByRequestsAndMotionOnlyFromArmed) {
   }
 }
 
-TEST(Transitions, EveryRefusedRequestSaysWhyAndEveryOtherOneIsFollowed) {
+TEST(Transitions, EveryRefusalHasAReasonAndEveryOtherRequestIsFollowed) {
   const auto refusal = [](State state, Event event) { return transition(state, event).refusal; };
   for (const State state : all_states()) {
     const bool is_failed = state == State::kToFault || state == State::kFault;
@@ -157,7 +157,7 @@ TEST(Transitions, EveryRefusedRequestSaysWhyAndEveryOtherOneIsFollowed) {
 }
 
 TEST(Supervisor, ARefusedRequestChangesNothingAndEveryRefusalHasWords) {
-  const auto ask = [](State state, ModeRequest request, auto&& change) {
+  const auto refused = [](State state, ModeRequest request, auto&& change) {
     SupervisorState supervisor = in(state);
     SupervisorInput input = quiet(state);
     input.request = request;
@@ -168,31 +168,32 @@ TEST(Supervisor, ARefusedRequestChangesNothingAndEveryRefusalHasWords) {
     return refusal;
   };
   const auto nothing = [](SupervisorInput&) {};
-  EXPECT_EQ(ask(State::kReady, ModeRequest::kArm,
-                [](SupervisorInput& i) { i.safety.operator_enable = false; }),
+  EXPECT_EQ(refused(State::kReady, ModeRequest::kArm,
+                    [](SupervisorInput& i) { i.safety.operator_enable = false; }),
             Refusal::kOperatorReleased);
-  EXPECT_EQ(ask(State::kReady, ModeRequest::kArm,
-                [](SupervisorInput& i) { i.to_arm = Refusal::kNotTared; }),
+  EXPECT_EQ(refused(State::kReady, ModeRequest::kArm,
+                    [](SupervisorInput& i) { i.to_arm = Refusal::kNotTared; }),
             Refusal::kNotTared);
-  EXPECT_EQ(ask(State::kArmed, ModeRequest::kRun, nothing), Refusal::kNobodyHolds);
-  EXPECT_EQ(ask(State::kArmed, ModeRequest::kAutonomous, nothing), Refusal::kNoOverride);
-  EXPECT_EQ(ask(State::kArmed, ModeRequest::kAutonomous,
-                [](SupervisorInput& i) {
-                  i.safety.override_key = true;
-                  i.safety.is_field_clear = false;
-                }),
+  EXPECT_EQ(refused(State::kArmed, ModeRequest::kRun, nothing), Refusal::kNobodyHolds);
+  EXPECT_EQ(refused(State::kArmed, ModeRequest::kAutonomous, nothing), Refusal::kNoOverride);
+  EXPECT_EQ(refused(State::kArmed, ModeRequest::kAutonomous,
+                    [](SupervisorInput& i) {
+                      i.safety.override_key = true;
+                      i.safety.is_field_clear = false;
+                    }),
             Refusal::kFieldOccupied);
-  EXPECT_EQ(ask(State::kArmed, ModeRequest::kAutonomous,
-                [](SupervisorInput& i) { i.safety.override_key = i.is_held = true; }),
+  EXPECT_EQ(refused(State::kArmed, ModeRequest::kAutonomous,
+                    [](SupervisorInput& i) { i.safety.override_key = i.is_held = true; }),
             Refusal::kSomebodyHolds);
-  EXPECT_EQ(ask(State::kReady, ModeRequest::kRun, nothing), Refusal::kNotArmed);
-  EXPECT_EQ(ask(State::kArmed, ModeRequest::kReset, nothing), Refusal::kNoFault);
-  EXPECT_EQ(ask(State::kFault, ModeRequest::kArm, nothing), Refusal::kFaultPresent);
+  EXPECT_EQ(refused(State::kReady, ModeRequest::kRun, nothing), Refusal::kNotArmed);
+  EXPECT_EQ(refused(State::kArmed, ModeRequest::kReset, nothing), Refusal::kNoFault);
+  EXPECT_EQ(refused(State::kFault, ModeRequest::kArm, nothing), Refusal::kFaultPresent);
   EXPECT_EQ(
-      ask(State::kFault, ModeRequest::kReset, [](SupervisorInput& i) { i.fault = kRuleFault; }),
+      refused(State::kFault, ModeRequest::kReset, [](SupervisorInput& i) { i.fault = kRuleFault; }),
       Refusal::kCauseRemains);
-  EXPECT_EQ(ask(State::kFault, ModeRequest::kReset, [](SupervisorInput& i) { i.is_broken = true; }),
-            Refusal::kCauseRemains);
+  EXPECT_EQ(
+      refused(State::kFault, ModeRequest::kReset, [](SupervisorInput& i) { i.is_broken = true; }),
+      Refusal::kCauseRemains);
 }
 
 TEST(Supervisor, StartsActOnEdgesAndStopsOnLevels) {
@@ -224,8 +225,8 @@ TEST(Supervisor, AnOperatorWhoLetsGoStopsItWithoutAFaultToReset) {
   EXPECT_EQ(state.fault.code, FaultCode::kOperatorReleased);
   input.safety.operator_enable = true;
   advance(input, state);
-  EXPECT_EQ(state.state, State::kToReady) << "holding it again does not go on";
-  go_on_stopping(true, 100, 0.1, state);
+  EXPECT_EQ(state.state, State::kToReady) << "holding it again does not continue";
+  continue_stop(true, 100, 0.1, state);
   EXPECT_EQ(state.state, State::kReady);
   EXPECT_EQ(state.fault.code, FaultCode::kNone);
   EXPECT_EQ(state.stop, Stop::kNone);
@@ -241,7 +242,7 @@ TEST(Supervisor, EveryRuleHasTheReactionOfItsRow) {
   }
   SupervisorState state = in(State::kByHand);
   break_rule({static_cast<FaultCode>(999), 0, 0.0, 0.0}, state);
-  EXPECT_EQ(state.stop, Stop::kSto) << "what nobody knows switches off";
+  EXPECT_EQ(state.stop, Stop::kSto) << "an unknown code switches off";
 }
 
 TEST(Supervisor, TheFirstCauseIsKeptAndWhatEndsAStopIsRememberedBesides) {
@@ -257,7 +258,7 @@ TEST(Supervisor, TheFirstCauseIsKeptAndWhatEndsAStopIsRememberedBesides) {
   EXPECT_EQ(state.also.code, kHardFault.code);
 }
 
-TEST(Supervisor, ABrakeThatSlipsIsToldWhateverMadeItClose) {
+TEST(Supervisor, ASlippingBrakeIsReportedWhateverMadeItClose) {
   constexpr Fault kSlip{FaultCode::kBrakesSlip, 4, 0.11, 0.1};
   SupervisorState state = in(State::kFault);
   const FaultCode first = state.fault.code;
@@ -276,13 +277,13 @@ TEST(Supervisor, ABrakeThatSlipsIsToldWhateverMadeItClose) {
 TEST(Supervisor, AStopThatTakesTooLongIsBrokenOff) {
   for (const State stopping : {State::kToArmed, State::kToReady, State::kToFault}) {
     SupervisorState state = in(stopping);
-    for (int k = 0; k < 100; ++k) go_on_stopping(false, 100, 0.1, state);
+    for (int k = 0; k < 100; ++k) continue_stop(false, 100, 0.1, state);
     EXPECT_EQ(state.state, stopping);
-    go_on_stopping(false, 100, 0.1, state);
+    continue_stop(false, 100, 0.1, state);
     EXPECT_EQ(state.state, State::kFault);
     EXPECT_EQ(state.stop, Stop::kSto);
-    const Fault& told = stopping == State::kToFault ? state.also : state.fault;
-    EXPECT_EQ(told.code, FaultCode::kStopTooSlow);
+    const Fault& reported = stopping == State::kToFault ? state.also : state.fault;
+    EXPECT_EQ(reported.code, FaultCode::kStopTooSlow);
   }
 }
 
@@ -291,9 +292,9 @@ TEST(Supervisor, AStopDoesNotGetNewTimeWhenItsReasonChanges) {
   SupervisorInput input = quiet(State::kByHand);
   input.request = ModeRequest::kStop;
   advance(input, state);
-  for (int k = 0; k < 90; ++k) go_on_stopping(false, 100, 0.1, state);
+  for (int k = 0; k < 90; ++k) continue_stop(false, 100, 0.1, state);
   break_rule(kRuleFault, state);
-  for (int k = 0; k < 11; ++k) go_on_stopping(false, 100, 0.1, state);
+  for (int k = 0; k < 11; ++k) continue_stop(false, 100, 0.1, state);
   EXPECT_EQ(state.state, State::kFault);
   EXPECT_EQ(state.also.code, FaultCode::kStopTooSlow);
 }
@@ -309,7 +310,7 @@ TEST(Supervisor, AnUntrustedSensorMakesAnEmergencyStopHarderAndKeepsItsCause) {
   EXPECT_EQ(state.fault.code, FaultCode::kEmergencyStop);
 }
 
-TEST(CheckSafetyInputs, TheScannerCountsOnlyWhileNobodyHoldsTheHandle) {
+TEST(CheckSafetyInputs, TheScannerCountsOnlyWhileTheHandleIsNotHeld) {
   SafetyInputs safety;
   safety.is_field_clear = false;
   EXPECT_EQ(check_safety_inputs(safety, in(State::kByHand)).code, FaultCode::kNone);

@@ -21,8 +21,9 @@ inline DeviceModel device_with(const std::string& slides, const limits::JointLim
             "'/><axis xyz='0 0 1'/><limit lower='-9' upper='9'/></joint><link name='l" + link +
             "'>" + inertial + "</link>";
   }
-  DeviceModel device{
-      .chain = model::ChainModel::from_urdf_text(urdf + "</robot>", "device.urdf"), .n_p = 2, .n_m = 6};
+  DeviceModel device{.chain = model::ChainModel::from_urdf_text(urdf + "</robot>", "device.urdf"),
+                     .n_p = 2,
+                     .n_m = 6};
   device.gantry_range.assign(2, {-1.4, 1.4});
   device.joint_limits.assign(6, limits);
   return device;

@@ -81,7 +81,7 @@ TEST_P(BothMethods, InMotionTheFeedforwardIsTheInverseDynamicsOfTheHandbook) {
   }
 }
 
-TEST_P(BothMethods, WhatMotionAndUserDoNotExplainOfATorqueIsToldAsAMovingMean) {
+TEST_P(BothMethods, UnexplainedTorqueIsReportedAsAMovingMean) {
   const VectorM weight = joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0);
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, weight);
@@ -209,7 +209,7 @@ TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
     EXPECT_DOUBLE_EQ(standing.command.tau_m[0], side * 176.0);
     EXPECT_DOUBLE_EQ(running.command.tau_m[0], side * 88.0);
     EXPECT_DOUBLE_EQ(braking.command.tau_m[0], side * 176.0);
-    EXPECT_GT(standing.report.torque_share[0], 1.0);  // what was asked for
+    EXPECT_GT(standing.report.torque_share[0], 1.0);  // as demanded
     for (int i = 0; i < 6; ++i) {
       const double peak = config.actuators[static_cast<std::size_t>(i)].torque_max;
       EXPECT_LE(std::abs(standing.command.tau_m[i]), peak);
@@ -235,7 +235,7 @@ TEST(ModalControl, TheIntegralWaitsWhileAMotorIsSaturated) {
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   robot.q_m.array() -= 0.5;
-  answer(control, state, reference, robot);  // tells of the saturation
+  answer(control, state, reference, robot);  // reports the saturation
   ASSERT_TRUE(state.is_saturated);
   const VectorM integral = state.integral;
   for (int k = 0; k < 1000; ++k) answer(control, state, reference, robot);
@@ -326,7 +326,7 @@ State after_sliding(double speed, double motor_speed, double behind, int periods
   return state;
 }
 
-TEST(ModalControl, FrictionThatTheFeedbackHasToOvercomeIsLearntWhileTheJointSlides) {
+TEST(ModalControl, FrictionIsLearntWhileTheJointSlides) {
   constexpr double kStart = 0.8;
   for (const double way : {-1.0, 1.0}) {
     const State more = after_sliding(0.2 * way, 0.2 * way, 1e-4 * way, 200);
@@ -395,7 +395,7 @@ TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
 }
 
 // a matrix of two states whose largest eigenvalue passes 1 at 2 pi f dt = sqrt(5) - 1
-TEST(JointControl, TheFilterOfTheFeedforwardIsStableUpToItsBoundAndRefusedBeyond) {
+TEST(JointControl, AFeedforwardFilterBeyondItsBoundIsRefused) {
   ControlledArm config = frictionless_config();
   config.rate_Hz = 204.0;
   EXPECT_NO_THROW(check(config, config.rate_Hz));
@@ -468,7 +468,7 @@ TEST(Latency, ChangesNothingWhileTheDrivesAreOn) {
   EXPECT_EQ(state.poles.w0, w0);
 }
 
-TEST(JointControl, AfterARestItBeginsAnew) {
+TEST(JointControl, ARestResetsIt) {
   JointControl control = control_of(reference_config());
   State state = control.start();
   const ReferenceState reference = at_rest(home());

@@ -39,29 +39,29 @@ double worst_radius(const Loop& loop, double latency) {
   return worst;
 }
 
-// not faster than asked for, and not much slower: they die out within 50 ms
+// not faster than requested, and not much slower: they die out within 50 ms
 TEST(LoopStability, AtOneMillisecondErrorsDieOutAboutAsFastAsThePolesSay) {
   const double radius = worst_radius(reference_loop(), 1e-3);
   EXPECT_LT(radius, std::exp(-20.0 * 1e-3));
   EXPECT_GT(radius, std::exp(-65.0 * 1e-3));
 }
 
-TEST(LoopStability, GainsThatKnowTheLatencyAreStableWithIt) {
+TEST(LoopStability, GainsChosenForTheLatencyAreStableWithIt) {
   for (const double latency : {0.5e-3, 1e-3, 1.5e-3, 2e-3, 3e-3}) {
     EXPECT_LT(worst_radius(reference_loop(), latency), 1.0) << latency;
   }
 }
 
-// Gains for `believed` meet an arm whose latency is `latency` and whose rotors have `rotor` times
-// the inertia that the controller knows.
-double worst_radius_of_plant(double believed, double latency, double rotor) {
+// Gains for `nominal` meet an arm whose latency is `latency` and whose rotors have `rotor` times
+// the inertia in the controller's model.
+double worst_radius_of_plant(double nominal, double latency, double rotor) {
   const Loop loop = reference_loop();
   TruePlant plant = {loop.device.actuators, loop.config.loop};
   plant.loop.latency = latency;
   for (ActuatorModel& actuator : plant.actuators) actuator.rotor_inertia *= rotor;
   double worst = 0.0;
   for (const Eigen::VectorXd& q : usual_postures()) {
-    worst = std::max(worst, spectral_radius(loop, q, believed, plant));
+    worst = std::max(worst, spectral_radius(loop, q, nominal, plant));
   }
   return worst;
 }
@@ -100,13 +100,13 @@ std::vector<Eigen::VectorXd> dense_postures(std::size_t count) {
   return all;
 }
 
-// Gains must hold for an arm that nobody knows exactly, wherever it stands, without the help of
+// Gains must hold for an arm that is not known exactly, wherever it stands, without the help of
 // friction.
-TEST(LoopStability, EveryPostureToleratesAQuarterOfErrorInMassesAndSpringsAndHalfMoreLatency) {
+TEST(LoopStability, EveryPostureIsStableWithWrongMassesSpringsAndLatency) {
   const Loop loop = reference_loop();
-  const TruePlant believed = {loop.device.actuators, loop.config.loop};
+  const TruePlant nominal = {loop.device.actuators, loop.config.loop};
   const auto with = [&](auto change) {
-    TruePlant plant = believed;
+    TruePlant plant = nominal;
     change(plant);
     return plant;
   };
@@ -122,7 +122,7 @@ TEST(LoopStability, EveryPostureToleratesAQuarterOfErrorInMassesAndSpringsAndHal
   };
   const auto links = [](double factor) { return [factor](TruePlant& r) { r.link_mass = factor; }; };
   const std::vector<std::pair<std::string, TruePlant>> plants = {
-      {"as believed", believed},
+      {"as nominal", nominal},
       {"rotors x 0.75", with(rotors(0.75))},
       {"rotors x 1.25", with(rotors(1.25))},
       {"springs x 0.75", with(springs(0.75))},

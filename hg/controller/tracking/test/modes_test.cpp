@@ -43,7 +43,7 @@ double distance_to_nearest(const Eigen::Vector4cd& values, Complex wanted) {
   return (values.array() - wanted).abs().minCoeff();
 }
 
-TEST(Poles, ASoftModeGetsExactlyThePolesAskedFor) {
+TEST(Poles, ASoftModeGetsExactlyTheRequestedPoles) {
   for (const double latency : {1.5e-3, 2.5e-3, 4e-3}) {
     const Poles poles = poles_for({}, latency);
     for (const double frequency_Hz : {2.0, 4.1, 9.0, 11.4, 12.4, 20.0}) {

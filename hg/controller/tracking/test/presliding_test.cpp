@@ -135,7 +135,7 @@ TEST(Presliding, NothingIsLearntBeforeAllElementsSlip) {
   EXPECT_GT(learnt_after(2.0 * kWay), 1.0);
 }
 
-TEST(Presliding, BeginsAnewAfterARest) {
+TEST(Presliding, IsResetByARest) {
   const ControlledArm config = config_with(soft(2));
   State state;
   fed_forward(config, {0.0, 5.0 * kWay}, &state);

@@ -54,7 +54,7 @@ TEST(Fits, SensorsAreFinite) {
   std::mt19937 random(1);
   const SensorFrame good = example_sensors(random, 1);
   SensorFrame sensors = good;
-  const auto spoil = [&](double& value) {
+  const auto corrupt = [&](double& value) {
     for (const double wrong :
          {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       value = wrong;
@@ -63,12 +63,13 @@ TEST(Fits, SensorsAreFinite) {
     sensors = good;
     EXPECT_TRUE(fits(kTorqueDevice, sensors));
   };
-  spoil(sensors.time_s);
-  for (VectorM* v : {&sensors.q_m, &sensors.dq_m, &sensors.theta_m, &sensors.tau_m}) spoil((*v)[5]);
-  spoil(sensors.q_p[1]);
-  spoil(sensors.w_S[5]);
-  spoil(sensors.a_S[2]);
-  spoil(sensors.omega_S[2]);
+  corrupt(sensors.time_s);
+  for (VectorM* v : {&sensors.q_m, &sensors.dq_m, &sensors.theta_m, &sensors.tau_m})
+    corrupt((*v)[5]);
+  corrupt(sensors.q_p[1]);
+  corrupt(sensors.w_S[5]);
+  corrupt(sensors.a_S[2]);
+  corrupt(sensors.omega_S[2]);
 }
 
 TEST(Fits, OnlyDrivesThatTakePositionsMayLackMotorSensors) {

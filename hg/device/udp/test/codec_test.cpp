@@ -139,7 +139,7 @@ TEST(ReadHeader, EveryShorterOrLongerDatagramIsTruncated) {
   EXPECT_EQ(verdict_of(longer.view()), Verdict::kTruncated);
 }
 
-TEST(ReadHeader, SaysWhatIsWrong) {
+TEST(ReadHeader, ReportsWhatIsWrong) {
   const Datagram whole = sensors_datagram();
   Header header;
   EXPECT_EQ(read_header(whole.view(), header), Verdict::kGood);

@@ -72,7 +72,7 @@ TEST(Connection, ABadNetworkChangesNothingInLockStep) {
   }
 }
 
-TEST(Connection, ASilentClientSwitchesTheDrivesOffAndIsToldSo) {
+TEST(Connection, ASilentClientSwitchesTheDrivesOffAndIsInformed) {
   Serving serving(false, 0.05);
   RemoteDevice there(serving.address(), client(false));
   SensorFrame sensors;
@@ -202,7 +202,7 @@ TEST(Connection, WhatDoesNotBelongIsCountedAndIgnored) {
   EXPECT_EQ(counts.corrupted, 1U);
 }
 
-TEST(Connection, ASecondClientIsToldWhoHasTheDevice) {
+TEST(Connection, ASecondClientLearnsWhoHasTheDevice) {
   Serving serving(true);
   RemoteDevice first(serving.address(), client(true));
   SensorFrame sensors;
@@ -271,7 +271,7 @@ TEST(Connection, AnotherVersionIsNamedOnBothSides) {
   EXPECT_EQ(welcome.reason.view(), "protocol: version 2, expected 9");
 }
 
-TEST(Connection, NobodyThereIsOneClearSentence) {
+TEST(Connection, AMissingDeviceIsOneClearSentence) {
   std::string address;
   {
     const UdpSocket free = UdpSocket::listening_at({"127.0.0.1", "0"});
@@ -294,7 +294,7 @@ TEST(Connection, APortInUseIsNamed) {
             address + ": cannot listen there: Address already in use");
 }
 
-TEST(ParseAddress, SaysWhatItExpects) {
+TEST(ParseAddress, ReportsWhatItExpects) {
   EXPECT_EQ(parse_address("--listen", "[::1]:80").host, "::1");
   EXPECT_EQ(parse_address("--listen", "localhost:0").port, "0");
   for (const char* text :

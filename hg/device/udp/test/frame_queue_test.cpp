@@ -61,7 +61,7 @@ TEST(FrameQueue, ALostFrameIsFilledInWithWhatWouldHaveCome) {
   EXPECT_EQ(frame.q_m, frame_at(7).q_m);
 }
 
-TEST(FrameQueue, MotionGoesOnThroughAJumpByAWholeTurn) {
+TEST(FrameQueue, MotionContinuesThroughAJumpByAWholeTurn) {
   FrameQueue queue;
   for (const std::uint64_t k : {6, 7, 9}) queue.push(frame_at(k));  // 6 -> 7 wraps
   SensorFrame frame;

@@ -112,7 +112,8 @@ TEST(Key, AFileThatIsNoGoodKeyIsRefused) {
             folder.path().string() + ": cannot be read: expected a file, got a folder");
   file = folder.write("zeros", std::string(32, '\0')).string();
   chmod(file.c_str(), 0600);
-  EXPECT_EQ(refusal(file), file + ": a key of zeros is none: head -c 32 /dev/urandom makes one");
+  EXPECT_EQ(refusal(file),
+            file + ": a key of zeros is not accepted: head -c 32 /dev/urandom makes one");
   file = write("stranger's", 32, 0600);
   if (chown(file.c_str(), 12345, 12345) == 0) {
     EXPECT_EQ(refusal(file),

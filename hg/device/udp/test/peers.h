@@ -15,7 +15,7 @@
 
 namespace hg::udp {
 
-inline constexpr double kLong = 60.0;  // s; nobody waits for so long unless something is broken
+inline constexpr double kLong = 60.0;  // s; only a broken test waits for so long
 
 inline Description description(bool is_lock_step) {
   return {.device = "test device",
@@ -26,7 +26,7 @@ inline Description description(bool is_lock_step) {
           .is_lock_step = is_lock_step};
 }
 
-/// What it measures depends on everything it was ever told.
+/// Its measurements depend on every command that it has received.
 class TestDevice final : public device::Device {
  public:
   explicit TestDevice(std::uint64_t first_sequence = 0) {

@@ -57,7 +57,7 @@ TEST(Replay, ACapturedSessionIsUnderstood) {
   }
   EXPECT_EQ(agreed.device.view(), "HapticGiant");
   EXPECT_EQ(agreed.interface, Interface::kTorque);
-  EXPECT_EQ(counts[MessageType::kHello], 2);  // the first asks what the device is
+  EXPECT_EQ(counts[MessageType::kHello], 2);  // the first requests the description
   EXPECT_EQ(counts[MessageType::kReady], 1);
   EXPECT_EQ(counts[MessageType::kCommand], 20);
   EXPECT_EQ(counts[MessageType::kSensors], 21);

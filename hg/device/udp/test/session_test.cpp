@@ -15,7 +15,7 @@
 namespace hg::udp {
 namespace {
 
-TEST(Session, InRealTimeLostFramesAreFilledInAndTheNumbersGoOn) {
+TEST(Session, InRealTimeLostFramesAreFilledInAndNumbersContinue) {
   Script server;
   std::thread thread([&] { server.welcome(description(false)); });
   RemoteDevice there(server.address(), client(false));
@@ -40,7 +40,7 @@ TEST(Session, InRealTimeLostFramesAreFilledInAndTheNumbersGoOn) {
   EXPECT_EQ(there.counts().late, 1U);  // the second 12
 }
 
-TEST(Session, InRealTimeTheDeviceGoesOnWithTheLastCommandAndIgnoresOvertakenOnes) {
+TEST(Session, InRealTimeTheDeviceKeepsTheLastCommandAndIgnoresOldOnes) {
   Serving serving(false, kLong, 100);
   Voice voice(serving.address(), 1);
   voice.hello(false);
@@ -126,7 +126,7 @@ TEST(Session, ACommandThatAnswersAFrameOfTheFutureIsMalformed) {
   EXPECT_FALSE(serving.was_enabled);
 }
 
-TEST(Session, HalfAHandshakeKeepsNobodyOut) {
+TEST(Session, HalfAHandshakeBlocksNoOtherClient) {
   Serving serving(true);
   std::vector<std::unique_ptr<Voice>> silent;
   for (std::uint64_t i = 0; i < 40; ++i) {
@@ -140,8 +140,8 @@ TEST(Session, HalfAHandshakeKeepsNobodyOut) {
   EXPECT_EQ(silent.back()->await<Goodbye>().reason.view(), "test client has the device");
 }
 
-// somebody who has no key repeats what he has heard; somebody who needs none makes hellos up
-TEST(Session, AFloodOfHellosBetweenWelcomeAndReadyKeepsNobodyOut) {
+// an attacker without key replays recorded hellos; one who needs no key forges them
+TEST(Session, AFloodOfHellosAfterTheWelcomeBlocksNoOtherClient) {
   const std::vector<std::byte> secret(32, std::byte{'k'});
   for (const Key& key : {Key(), Key(secret)}) {
     for (const bool is_replay : {false, true}) {

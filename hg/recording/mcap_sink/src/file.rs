@@ -61,7 +61,7 @@ impl Write for FailFastFile {
 
 impl Write for CountedFile {
     fn write(&mut self, data: &[u8]) -> io::Result<usize> {
-        // behind what somebody has cut off a hole would follow
+        // behind a part that was cut off a hole would follow
         self.handle.check()?;
         let size = self.handle.file.write(data)?;
         self.handle.written.set(self.handle.written.get() + size as u64);

@@ -1,5 +1,5 @@
 //! Reading a whole file, from its beginning to its end or to where a crash has cut it off. What is
-//! damaged is left out and named: the CRCs tell whether chunks and attachments are what was
+//! damaged is left out and named: the CRCs show whether chunks and attachments are what was
 //! written, and behind a record whose head is wrong the next one is searched for.
 
 use std::collections::BTreeMap;
@@ -173,7 +173,7 @@ fn length_of(head: &[u8]) -> Option<u64> {
     is_one.then_some(length)
 }
 
-/// The record in `body`, if it fills it and holds what was written as far as that can be told.
+/// The record in `body`, if it fills it and holds what was written as far as that can be checked.
 fn sound(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     if opcode == op::ATTACHMENT {
         attachment_name(body)?;

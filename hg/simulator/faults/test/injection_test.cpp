@@ -55,7 +55,7 @@ Injection injection_of(const Kind& kind, int index) {
 }
 
 // What differs from a good sample, as words.
-std::set<std::string> spoilt_parts(const SensorFrame& a, const SensorFrame& b, int index) {
+std::set<std::string> changed_parts(const SensorFrame& a, const SensorFrame& b, int index) {
   std::set<std::string> parts;
   const auto compare = [&](const char* name, const auto& x, const auto& y) {
     for (int i = 0; i < x.size(); ++i) {
@@ -125,27 +125,27 @@ std::string part_name(Part part) {
   }
 }
 
-TEST(Injector, EverySensorFaultSpoilsItsPartAloneAndOnlyWhileItLasts) {
+TEST(Injector, EverySensorFaultChangesItsPartAloneAndOnlyWhileItLasts) {
   for (const Kind& kind : kinds()) {
     const std::string part = part_name(kind.part);
     if (part.empty()) continue;
     SCOPED_TRACE(kind.name);
     const int index = std::max(0, parts_of(kind.part, 6, 2) - 1);
     Injector injector({injection_of(kind, index)});
-    bool was_spoilt = false;
+    bool was_changed = false;
     for (int cycle = 0; cycle < 30; ++cycle) {
       const SensorFrame good = sensors_at(cycle);
       SensorFrame sensors = good;
       injector.inject(sensors);
       const bool is_during = cycle >= 10 && cycle < 15;
-      const std::set<std::string> spoilt = spoilt_parts(good, sensors, index);
+      const std::set<std::string> changed = changed_parts(good, sensors, index);
       if (!is_during) {
-        EXPECT_TRUE(spoilt.empty()) << "cycle " << cycle;
+        EXPECT_TRUE(changed.empty()) << "cycle " << cycle;
       }
-      for (const std::string& name : spoilt) EXPECT_EQ(name, part) << "cycle " << cycle;
-      was_spoilt = was_spoilt || !spoilt.empty();
+      for (const std::string& name : changed) EXPECT_EQ(name, part) << "cycle " << cycle;
+      was_changed = was_changed || !changed.empty();
     }
-    EXPECT_TRUE(was_spoilt);
+    EXPECT_TRUE(was_changed);
   }
 }
 
@@ -187,7 +187,7 @@ std::vector<CommandFrame> arrivals(const char* name, double magnitude) {
   return arrived;
 }
 
-TEST(Injector, CommandsAreSpoiltOnTheirWay) {
+TEST(Injector, FaultsChangeCommandsOnTheirWay) {
   EXPECT_EQ(arrivals("motor_dead", 0.0)[1].tau_m[0], 0.0);
   EXPECT_EQ(arrivals("motor_dead", 0.0)[1].tau_m[1], 12.0);
   EXPECT_EQ(arrivals("motor_weak", 0.5)[1].tau_m[0], 6.0);
@@ -213,7 +213,7 @@ TEST(Injector, SamplesAreLostAndRepeated) {
   }
 }
 
-TEST(Loads, CyclesAreLateInARowAndTheSolverHasFewActiveSetsWhileTheFaultLasts) {
+TEST(Loads, CyclesAreLateAndTheSolverIsCappedWhileTheFaultLasts) {
   const std::vector<Injection> injections = {
       {.kind = find_kind("link_encoder_nan"), .from_s = kFrom_s},
       {.kind = find_kind("cycles_late"), .magnitude = 2.0, .from_s = kFrom_s},

@@ -272,9 +272,9 @@ TEST(Arm, LeftAloneForLongItStartsFromThere) {
 }
 
 TEST(Hand, RefusesWhatNoHandHas) {
-  const auto refuses = [](auto spoil) {
+  const auto refuses = [](auto corrupt) {
     HandImpedance hand;
-    spoil(hand);
+    corrupt(hand);
     EXPECT_THROW(check(hand), SetupError);
   };
   refuses([](HandImpedance& h) { h.stiffness.x() = -1.0; });

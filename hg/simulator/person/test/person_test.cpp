@@ -43,7 +43,7 @@ Vector6 hold(Person& person, const HandleMotion& handle, double from, double to,
 
 double in_series(double arm, double grip) { return arm * grip / (arm + grip); }
 
-TEST(Person, UntilTheGraspNobodyHoldsTheHandle) {
+TEST(Person, UntilTheGraspTheHandleIsNotHeld) {
   Person person = make(scripted());
   HandleMotion handle{start_pose()};
   handle.T_B_H.p.x() = 0.3;
@@ -181,7 +181,7 @@ TEST(Person, AMouseThatLetsGoLetsGoAtOnceAndTakesHoldGently) {
   EXPECT_EQ(person.duration_s(), 0.0);
 }
 
-TEST(Person, NobodyPushesNothingUntilATargetComes) {
+TEST(Person, WithoutAPersonNothingPushesUntilATargetComes) {
   Config config = scripted();
   config.kind = PersonKind::kNone;
   Person person = make(config);
@@ -237,7 +237,7 @@ TEST(Person, WalksFromCheckpointToCheckpointAndKeepsTheScore) {
     handle.live(w, heading);
   }
   const Score& score = person.score();
-  ASSERT_EQ(score.reached, 2);  // nobody walks 40 m in 20 s
+  ASSERT_EQ(score.reached, 2);  // 40 m in 20 s are out of reach
   EXPECT_NEAR(score.time_s[0] + score.time_s[1], time_at_second, 2e-3);
   EXPECT_GT(score.time_s[0], 1.0 / 0.5 - 0.5);
   EXPECT_NEAR(score.straight_length, 1.6, 1e-9);

@@ -192,7 +192,7 @@ TEST(Walker, TheGaitMovesTheHandUpAndSideways) {
   EXPECT_NEAR(widest, 0.02, 1e-5);
 }
 
-TEST(Walker, RefusesAWalkThatNobodyWalks) {
+TEST(Walker, RefusesAWalkWithoutAPerson) {
   Walk walk = circle();
   walk.circle_radius = 0.3;
   EXPECT_FALSE(has_room(walk));

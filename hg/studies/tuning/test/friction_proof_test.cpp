@@ -33,7 +33,7 @@ VectorM bristles(const Device& device, double share) {
 }
 
 // Largest radius with a body of 6 kg in all hands, bristles `real` times and friction fed forward
-// `fed` times as stiff as believed.
+// `fed` times as stiff as nominal.
 double worst(Device device, double real, double fed, int postures) {
   device.loop.config.friction_share = fed;
   const tracking::TruePlant plant = {device.loop.device.actuators, device.loop.config.loop, 1.0,
@@ -72,7 +72,7 @@ TEST(FrictionProof, DoesNotHoldFarFromThat) {
 }
 
 // friction that changes its sign with the speed is a negative damper in small motions
-TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableByThemselves) {
+TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableAlone) {
   Device device = device_of(reference());
   const tracking::Config& config = device.loop.config;
   const tracking::TruePlant plant = {device.loop.device.actuators, config.loop};
@@ -84,7 +84,7 @@ TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableByThemselves) {
   EXPECT_GT(spectral_radius(linearise(device, plant, {}, grasps({}).back().hand, {}, q).A), 1.01);
 }
 
-TEST(FrictionProof, AsksNothingOfADeviceWithoutPresliding) {
+TEST(FrictionProof, RequiresNothingOfADeviceWithoutPresliding) {
   EXPECT_TRUE(deviations_in_friction(device_of(reference()).loop).empty());
 }
 

@@ -57,7 +57,7 @@ TEST(Resolvent, SolvesLikeADenseDecomposition) {
 
 // The judge is the simulation, which shares no line with the linear loop but the controller: with
 // friction, noise, quantisation and a gantry that moves.
-TEST(HandleLoop, SaysWhatTheSimulationShows) {
+TEST(HandleLoop, AgreesWithTheSimulation) {
   const config::Scenario scenario = walk();
   const HandleLoop loop = loop_of(scenario, {}, person::HandImpedance{});
   const Feel said = feel(loop, {}, unexpected_friction(scenario.device));
@@ -96,10 +96,10 @@ TEST(HandleLoop, IsStableWhereTheSimulationIs) {
   config.kick.force = 0.3;
   person::HandImpedance hand = person::hand(person::HandPreset::kStiff);
   hand.tremor_rms = 0.0;
-  for (const auto& [mass, is_calm] : {std::pair{0.2, false}, {0.6, true}}) {
+  for (const auto& [mass, is_stable] : {std::pair{0.2, false}, {0.6, true}}) {
     const studies::KickOutcome shown = studies::kick(scenario, config, hand, mass, 4.0);
-    EXPECT_EQ(studies::is_stable(shown.verdict), is_calm) << mass;
-    EXPECT_EQ(spectral_radius(loop_of(scenario, {.mass = mass}, hand).A) < 1.0, is_calm) << mass;
+    EXPECT_EQ(studies::is_stable(shown.verdict), is_stable) << mass;
+    EXPECT_EQ(spectral_radius(loop_of(scenario, {.mass = mass}, hand).A) < 1.0, is_stable) << mass;
   }
 }
 

@@ -104,7 +104,7 @@ TEST(Demands, EveryHandHoldsTheShippedBodyInEveryPosture) {
   }
 }
 
-TEST(Demands, KnowALighterBodyIsHarderToHold) {
+TEST(Demands, AreHarderForALighterBody) {
   const TuningProblem problem = problem_of(1);
   const auto worst = [&](double mass) {
     const Demands demands(problem.device.loop, {.mass = mass}, problem.postures);

@@ -65,7 +65,7 @@ TEST(Damping, BrakesOnlyTheWayInGrowsWithTheSpringAndNeverPulls) {
 }
 
 // A body that is pushed into a surface that says no damping, by a device that gives everything.
-TEST(Damping, OfASurfaceThatSaysNoneCatchesEveryBody) {
+TEST(Damping, OfASurfaceWithoutAValueCatchesEveryBody) {
   for (const double mass : {0.5, 3.0, 6.0, 20.0}) {
     for (const double stiffness : {2e3, 5e4}) {
       for (const double speed : {0.2, 1.3}) {
@@ -95,7 +95,7 @@ TEST(Damping, OfASurfaceThatSaysNoneCatchesEveryBody) {
 }
 
 // Nobody sees whether a body of 6 kg was set up as that or has become three times as heavy.
-TEST(Damping, OfASurfaceThatSaysNoneFollowsTheMassOfTheBody) {
+TEST(Damping, OfASurfaceWithoutAValueFollowsTheMassOfTheBody) {
   const Surface floor = {.name = "floor", .shape = Plane{}, .stiffness = 2e4};
   const Environment set_up({floor}, kDt, {6.0, 6.0}), grown({floor}, kDt, {2.0, 2.0});
   State of_set_up, of_grown;

@@ -53,14 +53,14 @@ TEST(ReadStl, TakesTextAndBinaryFiles) {
   }
 }
 
-TEST(ReadStl, SaysWhatIsWrong) {
+TEST(ReadStl, ReportsWhatIsWrong) {
   const auto message = [](const std::string& content) {
     return message_of([&] { read_stl(content, "plate.stl", 1.0); });
   };
   EXPECT_EQ(message(""),
-            "plate.stl: no STL file: neither 'solid' nor as long as its count of triangles says");
+            "plate.stl: no STL file: neither 'solid' nor of the length of its count of triangles");
   EXPECT_EQ(message(binary({{}}).substr(1)),
-            "plate.stl: no STL file: neither 'solid' nor as long as its count of triangles says");
+            "plate.stl: no STL file: neither 'solid' nor of the length of its count of triangles");
   std::string text = kText;
   EXPECT_EQ(message(text.replace(text.find("1e3"), 3, "l00")),
             "plate.stl:5: a number is expected after 'vertex', got 'l00'");
@@ -87,7 +87,7 @@ TEST(ReadStl, SurvivesDamagedFiles) {
   }
 }
 
-TEST(Mesh, KnowsWhetherItIsClosedAndWhatIsInside) {
+TEST(Mesh, DetectsWhetherItIsClosedAndWhatIsInside) {
   const Mesh box = box_mesh({0.2, 0.1, 0.3});
   EXPECT_TRUE(box.is_closed());
   EXPECT_TRUE(box.encloses({0.09, -0.04, 0.14}));

@@ -116,7 +116,7 @@ class Wanderer {
   VectorPM goal_;
 };
 
-TEST(Guard, SaysFreeOnlyWhereBrakingStaysFree) {
+TEST(Guard, ReportsFreeOnlyWhereBrakingStaysFree) {
   const TestDevice device = device_of(folding_urdf());
   Guard guard(device.config, device.braking, device.chain);
   Judge judge(device);

@@ -43,15 +43,15 @@ TEST(Compliance, NoiseIsNoContactWhateverItsSize) {
       largest = std::max(largest, felt(joints(normal(random), normal(random)), state).share);
     }
     EXPECT_LT(largest, 1.0) << sigma;
-    EXPECT_FALSE(state.is_told);
+    EXPECT_FALSE(state.is_reported);
   }
 }
 
-TEST(Compliance, APushIsToldWithinMillisecondsAndAtItsJoint) {
+TEST(Compliance, APushIsReportedWithinMillisecondsAndAtItsJoint) {
   State state;
   for (int k = 0; k < 1000; ++k) felt(joints(0.0, 0.0), state);
   int cycles = 0;
-  while (!felt(joints(12.0, 0.0), state).is_told) ASSERT_LT(++cycles, 3);
+  while (!felt(joints(12.0, 0.0), state).is_reported) ASSERT_LT(++cycles, 3);
   TouchReport report;
   for (int k = 0; k < 50; ++k) report = felt(joints(12.0, 4.0), state);
   EXPECT_EQ(report.joint, 1);
@@ -59,19 +59,19 @@ TEST(Compliance, APushIsToldWithinMillisecondsAndAtItsJoint) {
 }
 
 TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
-  State calm, noisy;
+  State quiet, noisy;
   std::mt19937 random(2);
   std::normal_distribution<double> normal(0.0, 3.0);
   for (int k = 0; k < 5000; ++k) {
-    felt(joints(0.0, 0.0), calm);
+    felt(joints(0.0, 0.0), quiet);
     felt(joints(normal(random), 0.0), noisy);
   }
-  EXPECT_GT(threshold(peaks(), noisy, 0), 1.5 * threshold(peaks(), calm, 0));
-  // somebody who leans against the arm more and more is felt at twice the least at the latest
-  const double least = threshold(peaks(), calm, 0);
+  EXPECT_GT(threshold(peaks(), noisy, 0), 1.5 * threshold(peaks(), quiet, 0));
+  // a person who leans harder and harder is detected at twice the least threshold at the latest
+  const double least = threshold(peaks(), quiet, 0);
   State leaned_on;
   double push = 0.0;
-  while (!felt(joints(push, 0.0), leaned_on).is_told) {
+  while (!felt(joints(push, 0.0), leaned_on).is_reported) {
     ASSERT_LT(push, 2.1 * least);
     push += 1e-4;
   }
@@ -80,7 +80,7 @@ TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
 TEST(Compliance, WhatMovesTheJointsRaisesTheThreshold) {
   State state;
   for (int k = 0; k < 100; ++k) felt(joints(10.0, 0.0), state, joints(90.0, 0.0));
-  EXPECT_FALSE(state.is_told);
+  EXPECT_FALSE(state.is_reported);
 }
 
 TEST(Compliance, TheWrenchDoesTheSameToTheJointsAndTheGantryLeaves) {
@@ -88,7 +88,7 @@ TEST(Compliance, TheWrenchDoesTheSameToTheJointsAndTheGantryLeaves) {
   const VectorM torque = joints(-20.0, -25.0);
   TouchReport report;
   for (int k = 0; k < 100; ++k) report = felt(torque, state);
-  ASSERT_TRUE(report.is_told);
+  ASSERT_TRUE(report.is_reported);
   const VectorM made = jacobian().rightCols(2).transpose() * report.wrench;
   const VectorM beyond =
       torque + joints(threshold(peaks(), state, 0), threshold(peaks(), state, 1));
@@ -109,9 +109,9 @@ TEST(Compliance, TheWrenchIsBounded) {
 TEST(Compliance, AContactEnds) {
   State state;
   for (int k = 0; k < 10; ++k) felt(joints(50.0, 0.0), state);
-  EXPECT_TRUE(state.is_told);
+  EXPECT_TRUE(state.is_reported);
   for (int k = 0; k < 100; ++k) felt(joints(0.0, 0.0), state);
-  EXPECT_FALSE(state.is_told);
+  EXPECT_FALSE(state.is_reported);
   EXPECT_EQ(state.away.size(), 0);
 }
 

@@ -96,24 +96,24 @@ TEST(Passivity, CountsShakingAgainstASurfaceLater) {
   EXPECT_LT(at_s, 0.9);
 }
 
-TEST(Passivity, CalmsAtOnceAndLetsGoSlowly) {
+TEST(Passivity, AddsDampingAtOnceAndRemovesItSlowly) {
   const Config config = {.reaction = Reaction::kAct};
   State state;
   for (int n = 0; n < 1000; ++n) step(config, kDt, with_force(20.0, 6.0, kDt * n), state);
-  EXPECT_NEAR(state.calming.damping, 25.0, 0.1);
-  EXPECT_NEAR(2.0 * state.calming.inertia, 3.0, 0.01);
-  double calmed_s = 0.0;
-  Calming before = state.calming;
+  EXPECT_NEAR(state.added.damping, 25.0, 0.1);
+  EXPECT_NEAR(2.0 * state.added.inertia, 3.0, 0.01);
+  double damped_s = 0.0;
+  AddedImpedance before = state.added;
   for (int n = 0; n < 6000; ++n) {
     step(config, kDt, with_force(0.0, 6.0, 0.0), state);
-    if (state.calming.damping >= 24.0) calmed_s += kDt;
-    EXPECT_LE(before.damping - state.calming.damping, 0.026);
-    before = state.calming;
+    if (state.added.damping >= 24.0) damped_s += kDt;
+    EXPECT_LE(before.damping - state.added.damping, 0.026);
+    before = state.added;
   }
-  EXPECT_GT(calmed_s, 2.0);
-  EXPECT_LT(calmed_s, 3.5);
-  EXPECT_EQ(state.calming.damping, 0.0);
-  EXPECT_EQ(state.calming.inertia, 1.0);
+  EXPECT_GT(damped_s, 2.0);
+  EXPECT_LT(damped_s, 3.5);
+  EXPECT_EQ(state.added.damping, 0.0);
+  EXPECT_EQ(state.added.inertia, 1.0);
 }
 
 TEST(Passivity, ObservesWithoutActing) {
@@ -125,11 +125,11 @@ TEST(Passivity, ObservesWithoutActing) {
     index = std::max(index, step(config, kDt, with_force(20.0, 6.0, kDt * n), state).oscillation);
   }
   EXPECT_GE(index, 1.0);
-  EXPECT_EQ(state.calming.damping, 0.0);
+  EXPECT_EQ(state.added.damping, 0.0);
   EXPECT_EQ(check(config, {.tank = -1.0}, state).code, FaultCode::kNone);
 }
 
-TEST(Passivity, StopsWhatCalmingDoesNotEnd) {
+TEST(Passivity, StopsShakingThatAddedDampingDoesNotEnd) {
   const Config config = {.reaction = Reaction::kAct};
   State state;
   double stopped_s = kInfinity;
@@ -156,7 +156,7 @@ TEST(Passivity, StopsWhatGivesMoreEnergyThanItsTankHolds) {
   EXPECT_NEAR(given, config.tank_start, 0.1);
 }
 
-// A body whose inertia and damping follow the calming, pushed at random, moved a little late: what
+// A body with added inertia and damping, pushed at random, moved a little late: what
 // its port takes is never less than what it stores, less what the tank held.
 TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -169,7 +169,7 @@ TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
     double v = 0.0, v_late = 0.0, taken = 0.0, push = 0.0;
     for (int n = 0; n < 20000; ++n) {
       if (n % 40 == 0) push = 20.0 * normal(random) * (n % 8000 < 4000 ? 1.0 : 0.05);
-      const Calming before = state.calming;
+      const AddedImpedance before = state.added;
       const double v_before = v;
       // Euler with the mean velocity, so that the balance of energy is exact; M' v / 2 belongs to
       // the port of the changing inertia
@@ -186,10 +186,10 @@ TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
                      .speed = std::abs(v)};
       taken += kDt * push * v_late;
       step(config, kDt, input, state);
-      EXPECT_LE(0.5 * mass * (state.calming.inertia - before.inertia),
-                before.damping * kDt + state.calming.damping * kDt + 1e-12);
+      EXPECT_LE(0.5 * mass * (state.added.inertia - before.inertia),
+                before.damping * kDt + state.added.damping * kDt + 1e-12);
       if (state.tank < 0.0) break;  // the device is stopped
-      const double stored = 0.5 * mass * state.calming.inertia * v * v;
+      const double stored = 0.5 * mass * state.added.inertia * v * v;
       ASSERT_GE(taken, stored - config.tank_start - 1e-6) << "cycle " << n;
     }
   }
