@@ -35,17 +35,17 @@ std::vector<double> slack_norms(const hqp::Problem& problem, std::span<const dou
   return norms;
 }
 
-Verdict compare(std::span<const double> norms, std::span<const double> reference) {
+ComparisonVerdict compare(std::span<const double> norms, std::span<const double> reference) {
   bool gave_up = false;
   for (std::size_t level = 0; level < reference.size(); ++level) {
     const double difference = norms[level] - reference[level];
     const double unit = 1.0 + reference[level];
     if (!(std::abs(difference) <= kSlackError * unit)) {
-      return difference < 0.0 && !gave_up ? Verdict::kBetter : Verdict::kWorse;
+      return difference < 0.0 && !gave_up ? ComparisonVerdict::kBetter : ComparisonVerdict::kWorse;
     }
     gave_up = gave_up || difference > kNothing * unit;
   }
-  return Verdict::kSame;
+  return ComparisonVerdict::kSame;
 }
 
 }  // namespace hg::bench

@@ -12,7 +12,7 @@ namespace hg::bench {
 /// tests/reference.
 inline constexpr double kSlackError = 1e-6;
 
-enum class Verdict {
+enum class ComparisonVerdict {
   kSame,
   kWorse,   ///< worse at the first level that differs, or better there at the expense of one above
   kBetter,  ///< better at the first level that differs, with no loss above
@@ -22,6 +22,6 @@ enum class Verdict {
 std::vector<double> slack_norms(const hqp::Problem& problem, std::span<const double> x);
 
 /// Compares slack norms with those of a reference, level by level. NaN is worse.
-Verdict compare(std::span<const double> norms, std::span<const double> reference);
+ComparisonVerdict compare(std::span<const double> norms, std::span<const double> reference);
 
 }  // namespace hg::bench

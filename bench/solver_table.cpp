@@ -102,7 +102,7 @@ class SetTimer {
     for (std::size_t i = 0; i < block.size(); ++i) {
       const std::span<const double> reference = source_.reference(first_ + i);
       const auto differs = [&](const std::vector<double>& x) {
-        return compare(slack_norms(block[i], x), reference) != Verdict::kSame;
+        return compare(slack_norms(block[i], x), reference) != ComparisonVerdict::kSame;
       };
       if (source_.has_reference()) {
         const bool is_comparable = !reference.empty();
@@ -111,10 +111,10 @@ class SetTimer {
         if (!theirs.empty()) count(cascade_, is_comparable && differs(theirs[i]));
       } else if (!theirs.empty()) {
         const std::vector<double> norms = slack_norms(block[i], theirs[i]);
-        const Verdict verdict = compare(norms, slack_norms(block[i], warm[i]));
-        count(cascade_, verdict == Verdict::kWorse);
-        count(warm_, verdict == Verdict::kBetter);
-        count(cold_, compare(norms, slack_norms(block[i], cold[i])) == Verdict::kBetter);
+        const ComparisonVerdict verdict = compare(norms, slack_norms(block[i], warm[i]));
+        count(cascade_, verdict == ComparisonVerdict::kWorse);
+        count(warm_, verdict == ComparisonVerdict::kBetter);
+        count(cold_, compare(norms, slack_norms(block[i], cold[i])) == ComparisonVerdict::kBetter);
       }
     }
   }

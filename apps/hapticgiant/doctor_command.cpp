@@ -62,7 +62,7 @@ nlohmann::ordered_json to_json(const std::vector<Assessment>& lines,
 
 int doctor(const DoctorArguments& arguments) {
   check_writable(arguments.json, kJson);
-  runtime::check({.priority = arguments.priority, .cpu = arguments.cpu});
+  runtime::check_thread_options({.priority = arguments.priority, .cpu = arguments.cpu});
   print_out(
       fmt::format("HapticGiant {}: is this computer ready for a control loop?\n\n", kVersion));
   std::vector<Assessment> lines = doctor::assess_computer();

@@ -74,7 +74,7 @@ struct SeedsArguments {
 };
 
 // of the first repetition of `hapticgiant haptify`, whose numbers are repeated
-constexpr std::uint64_t kSeed = haptify::Options{}.seed;
+constexpr std::uint64_t kSeed = haptify::HaptifyOptions{}.seed;
 
 // With another device or simulation where they are given.
 config::Scenario walk_scenario(const std::string& device = "", const std::string& simulation = "") {

@@ -35,9 +35,9 @@ void tell(const std::string& what, std::size_t done, std::size_t total) {
 }
 
 std::string command_of(const HaptifyArguments& arguments) {
-  const haptify::Options& options = arguments.options;
+  const haptify::HaptifyOptions& options = arguments.options;
   std::string command = fmt::format("hapticgiant haptify --seed {}", options.seed);
-  if (options.repetitions != haptify::Options{}.repetitions) {
+  if (options.repetitions != haptify::HaptifyOptions{}.repetitions) {
     command += fmt::format(" --repetitions {}", options.repetitions);
   }
   if (!arguments.simulation.empty()) command += " --simulation " + arguments.simulation;
@@ -64,7 +64,7 @@ haptify::Benchmark measure_all(const HaptifyArguments& arguments) {
 
 nlohmann::ordered_json results_json(const HaptifyArguments& arguments,
                                     const haptify::Benchmark& measured) {
-  const haptify::Options& options = arguments.options;
+  const haptify::HaptifyOptions& options = arguments.options;
   return {{"kind", arguments.only_goals ? "goals" : "haptify"},
           {"version", kVersion},
           {"command", command_of(arguments)},

@@ -18,7 +18,7 @@ struct HaptifyArguments {
   std::string simulation;       ///< simulation, see find_simulation(); empty = that of the device
   std::string twin;             ///< twin.yaml of a free body instead of the shipped one
   bool only_goals = false;      ///< measures only the design goals, over seeds, heights and hands
-  haptify::Options options;
+  haptify::HaptifyOptions options;
 };
 
 /// Exit code: 0 all measured, 1 a measurement failed: fault, limit exceeded. A missed goal is no

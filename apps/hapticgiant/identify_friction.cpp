@@ -104,7 +104,7 @@ nlohmann::ordered_json to_json(const std::vector<JointFriction>& joints) {
 
 int identify_friction(const IdentifyFrictionArguments& arguments) {
   check_writable(arguments.json, kJson);
-  std::optional<config::Device> device;
+  std::optional<config::DeviceConfig> device;
   if (!arguments.device.empty()) {
     device = config::load_device(config::find_device(arguments.device));
   }

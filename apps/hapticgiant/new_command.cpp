@@ -47,7 +47,7 @@ int new_device(const NewArguments& arguments) {
 int new_twin(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "twin");
   const bool is_own = !arguments.device.empty();
-  const config::Device device =
+  const config::DeviceConfig device =
       config::load_device(is_own ? fs::path(arguments.device)
                                  : config::models_root() / "models/haptic_giant/device.yaml");
   check_writable(output.string());

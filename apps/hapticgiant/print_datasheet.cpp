@@ -47,7 +47,7 @@ void print_joints(const Datasheet& sheet) {
 }
 
 void print_workspace(const Datasheet& sheet) {
-  const checks::Workspace& space = sheet.workspace;
+  const checks::HandleWorkspace& space = sheet.workspace;
   if (sheet.reach > 0.0) {
     print_out("  reach               {:.2f} m, handle from the axis of the arm's first joint\n",
               sheet.reach);
@@ -210,7 +210,7 @@ nlohmann::json datasheet_json(const Datasheet& sheet) {
   if (sheet.postures == 0) return json;
   for (const JointLine& joint : sheet.joints) json["joints"].push_back(joint_json(joint));
   json["stopping"] = stopping_json(sheet);
-  const checks::Workspace& space = sheet.workspace;
+  const checks::HandleWorkspace& space = sheet.workspace;
   json["reach_m"] = sheet.reach;
   json["workspace"] = {{"volume_m3", space.volume},
                        {"lower_m", vector_json(space.bounds.min())},

@@ -69,7 +69,7 @@ int replay(const ReplayArguments& arguments) {
   const std::atomic<bool>& interrupted = watch_interruption();
   const BackgroundOutput output(interrupted);
   print_content(show);
-  viewer_server::Options options;
+  viewer_server::ServerOptions options;
   options.page = find_page();
   if (options.page.empty()) return 0;
   options.address = arguments.address;

@@ -150,10 +150,10 @@ void close_device(udp::RemoteDevice& device, const Fault& fault) {
 }
 
 // `goes_on`: after the script, until Ctrl-C
-runtime::Options runtime_options(const PreparedRun& run, bool goes_on,
-                                 const std::atomic<bool>& interrupted, page::RunPage* page) {
+runtime::RuntimeOptions runtime_options(const PreparedRun& run, bool goes_on,
+                                        const std::atomic<bool>& interrupted, page::RunPage* page) {
   const RunArguments& arguments = run.arguments;
-  runtime::Options options = scenario::run_options(run.scenario);
+  runtime::RuntimeOptions options = scenario::run_options(run.scenario);
   options.stop = &interrupted;
   options.is_fast = arguments.is_fast;
   if (!arguments.is_fast)
@@ -167,7 +167,7 @@ runtime::Options runtime_options(const PreparedRun& run, bool goes_on,
   if (arguments.is_fast && options.duration_s == 0.0) {
     throw SetupError("run: --fast without a script needs --duration S");
   }
-  runtime::check(options);
+  runtime::check_runtime_options(options);
   return options;
 }
 
@@ -239,7 +239,7 @@ void wait_for_next(Observers& observers, bool goes_on) {
 std::unique_ptr<page::RunPage> open_page(const PreparedRun& run, page::RunPage::Prepare prepare) {
   const RunArguments& arguments = run.arguments;
   if (!arguments.has_viewer || arguments.is_fast) return nullptr;
-  viewer_server::Options options;
+  viewer_server::ServerOptions options;
   options.page = find_page();
   if (options.page.empty()) return nullptr;
   options.address = arguments.address;
@@ -254,7 +254,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const config::Scenario& scenario = run.scenario;
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && page != nullptr;
-  const runtime::Options options = runtime_options(run, goes_on, interrupted, page);
+  const runtime::RuntimeOptions options = runtime_options(run, goes_on, interrupted, page);
   // after all that may refuse the run, which then leaves no file
   scenario::RunRecording recording(recording_plan(run));
   const std::string stem = recording.stem();
@@ -290,7 +290,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const auto begin = Clock::now();
   runtime.start();
   watch(runtime, observers);
-  const runtime::Report report = runtime.join();
+  const runtime::RuntimeReport report = runtime.join();
   std::vector<std::string> about_machine;
   if (run.is_machine) {
     about_machine = start_test::leave_machine(machine_memory(arguments), scenario.device,
@@ -336,7 +336,7 @@ int run(const RunArguments& arguments) {
   const std::atomic<bool>& interrupted = watch_interruption();
   const BackgroundOutput output(interrupted);
   std::unique_ptr<PreparedRun> last, next;  // `last` until the page shows the next one
-  const auto page = open_page(*present, [&](const scenario::Options& world) {
+  const auto page = open_page(*present, [&](const scenario::ScenarioOptions& world) {
     RunArguments changed = arguments;
     changed.world = world;
     next = std::make_unique<PreparedRun>(changed);

@@ -16,7 +16,7 @@ namespace hg::apps {
 
 struct RunArguments {
   std::string program = "hapticgiant";  ///< program name as called, for printed commands
-  scenario::Options world;
+  scenario::ScenarioOptions world;
   std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
   std::string key_file;        ///< file of the key shared with the device; empty = none
   /// Duration of the run, s; unset = until the script has played; on a terminal with a page until

@@ -12,7 +12,7 @@ namespace hg::apps {
 namespace {
 
 // a remote device has its own seed, step, hand and sensors
-void refuse_what_is_simulated(const scenario::Options& world) {
+void refuse_what_is_simulated(const scenario::ScenarioOptions& world) {
   std::vector<std::string> given;
   if (world.seed) given.push_back("--seed");
   if (world.step_s) given.push_back("--step");

@@ -36,7 +36,7 @@ void add_choice(CLI::App& command, const char* option, std::string& value, const
 
 }  // namespace
 
-void add_scenario_options(CLI::App& command, scenario::Options& world) {
+void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
   command
       .add_option("scenario", world.scenario,
                   "scenario file, or door, excavator, free_space, path, walk, surfaces")
@@ -65,7 +65,7 @@ void add_scenario_options(CLI::App& command, scenario::Options& world) {
                           [](double value) { return value >= 100.0 && value <= 20000.0; }));
 }
 
-void add_law_options(CLI::App& command, scenario::Options& world) {
+void add_law_options(CLI::App& command, scenario::ScenarioOptions& world) {
   add_choice(command, "--law", world.law, config::kLaws);
   add_choice(command, "--bounds", world.bounds, config::kBounds);
   add_choice(command, "--gantry", world.gantry, config::kGantries);

@@ -16,9 +16,9 @@ inline constexpr char kSimulationHelp[] =
 
 /// Adds scenario, device, twin, person and what is simulated; not the law. `world` must outlive
 /// parsing.
-void add_scenario_options(CLI::App& command, scenario::Options& world);
+void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world);
 
 /// Adds law, bounds, gantry, braking and passivity. `world` must outlive parsing.
-void add_law_options(CLI::App& command, scenario::Options& world);
+void add_law_options(CLI::App& command, scenario::ScenarioOptions& world);
 
 }  // namespace hg::apps

@@ -13,7 +13,7 @@ class App;
 namespace hg::apps {
 
 struct SimulateArguments {
-  scenario::Options world;
+  scenario::ScenarioOptions world;
   std::string listen;    ///< address to listen on, HOST:PORT
   std::string key_file;  ///< file of the key that clients must have; empty = none
   bool is_fast = false;  ///< lock-step instead of real time

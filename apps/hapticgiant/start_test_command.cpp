@@ -32,7 +32,7 @@ int start_test(const StartTestArguments& arguments) {
   run.device_address = arguments.device_address;
   run.recordings = arguments.recordings;
   const config::Scenario scenario = make_scenario(run);
-  runtime::check({.priority = arguments.priority});
+  runtime::check_thread_options({.priority = arguments.priority});
   make_folder(arguments.recordings);
 
   std::unique_ptr<device::Device> device;
@@ -52,14 +52,15 @@ int start_test(const StartTestArguments& arguments) {
   check_writable(file);
 
   const auto keep = [&](const std::vector<start_test::Item>& items) {
-    const start_test::Result result = {.device = scenario.device.name,
-                                       .address = arguments.device_address,
-                                       .version = kVersion,
-                                       .files_sha256 = start_test::sha256_of(scenario.device),
-                                       .ended = std::time(nullptr),
-                                       .is_simulated = is_simulated,
-                                       .has_passed = start_test::has_passed(items),
-                                       .items = items};
+    const start_test::StartTestResult result = {
+        .device = scenario.device.name,
+        .address = arguments.device_address,
+        .version = kVersion,
+        .files_sha256 = start_test::sha256_of(scenario.device),
+        .ended = std::time(nullptr),
+        .is_simulated = is_simulated,
+        .has_passed = start_test::has_passed(items),
+        .items = items};
     write_output(file, to_json(result));
   };
   keep({});  // whatever ends this program: an older result counts no more

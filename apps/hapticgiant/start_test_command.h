@@ -12,7 +12,7 @@ class App;
 namespace hg::apps {
 
 struct StartTestArguments {
-  scenario::Options world{.scenario = "free_space"};
+  scenario::ScenarioOptions world{.scenario = "free_space"};
   std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
   std::string key_file;        ///< file of the key shared with the device; empty = none
   bool is_fast = false;        ///< lock-step with a remote device

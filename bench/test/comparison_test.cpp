@@ -35,20 +35,20 @@ TEST(SlackNorms, AreWeightedAndZeroInsideTheBounds) {
 }
 
 TEST(Compare, TheFirstLevelThatDiffersDecides) {
-  EXPECT_EQ(compare(std::array{1.0, 5.0}, std::array{1.0, 5.0}), Verdict::kSame);
-  EXPECT_EQ(compare(std::array{1.0 + 1e-7, 5.0}, std::array{1.0, 5.0}), Verdict::kSame);
-  EXPECT_EQ(compare(std::array{1.1, 0.0}, std::array{1.0, 5.0}), Verdict::kWorse);
-  EXPECT_EQ(compare(std::array{1.0, 4.0}, std::array{1.0, 5.0}), Verdict::kBetter);
+  EXPECT_EQ(compare(std::array{1.0, 5.0}, std::array{1.0, 5.0}), ComparisonVerdict::kSame);
+  EXPECT_EQ(compare(std::array{1.0 + 1e-7, 5.0}, std::array{1.0, 5.0}), ComparisonVerdict::kSame);
+  EXPECT_EQ(compare(std::array{1.1, 0.0}, std::array{1.0, 5.0}), ComparisonVerdict::kWorse);
+  EXPECT_EQ(compare(std::array{1.0, 4.0}, std::array{1.0, 5.0}), ComparisonVerdict::kBetter);
 }
 
 TEST(Compare, WhatIsBoughtFromALevelAboveIsWorse) {
-  EXPECT_EQ(compare(std::array{1.0 + 1e-7, 4.0}, std::array{1.0, 5.0}), Verdict::kWorse);
-  EXPECT_EQ(compare(std::array{1e-9, 4.0}, std::array{0.0, 5.0}), Verdict::kWorse);
+  EXPECT_EQ(compare(std::array{1.0 + 1e-7, 4.0}, std::array{1.0, 5.0}), ComparisonVerdict::kWorse);
+  EXPECT_EQ(compare(std::array{1e-9, 4.0}, std::array{0.0, 5.0}), ComparisonVerdict::kWorse);
 }
 
 TEST(Compare, WhatIsNotANumberIsWorse) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(compare(std::array{nan, 5.0}, std::array{1.0, 5.0}), Verdict::kWorse);
+  EXPECT_EQ(compare(std::array{nan, 5.0}, std::array{1.0, 5.0}), ComparisonVerdict::kWorse);
 }
 
 TEST(Baseline, TheCascadeSolvesACornerWithAnActiveBoundAndAConflict) {

@@ -6,7 +6,7 @@
 int main() {
   constexpr double kPeriod = 1e-3;  // s
   const hg::limits::JointLimits limits{.q_min = -1, .q_max = 1, .dq_max = 2, .ddq_max = 10};
-  hg::limits::check(limits, "joint m1");
+  hg::limits::check_joint_limits(limits, "joint m1");
   const auto options = hg::limits::recoverable_options(limits, kPeriod, kPeriod);
 
   double q = 0.0, dq = 0.0;  // rad, rad/s

@@ -43,7 +43,7 @@ class MyRobot final : public hg::device::Device {
 
 int main(int count, char** arguments) {
   if (count != 3) return 2;
-  const hg::config::Device device = hg::config::load_device(arguments[1]);
+  const hg::config::DeviceConfig device = hg::config::load_device(arguments[1]);
   const hg::config::Twin twin = hg::config::load_twin(arguments[2]);
   hg::controller::Cycle cycle = hg::config::make_cycle(device, twin);
   const hg::VectorM start{{0.0, 0.6, 1.2, 0.0, 0.8, 0.0}};  // rad
@@ -51,7 +51,7 @@ int main(int count, char** arguments) {
 
   hg::runtime::Runtime runtime({.duration_s = 2.0}, cycle, robot);
   runtime.start();
-  const hg::runtime::Report report = runtime.join();
+  const hg::runtime::RuntimeReport report = runtime.join();
   const hg::VectorM moved = cycle.state().q_m - start;
   std::printf("the joints have moved by up to %.2f rad in %d cycles\n", moved.cwiseAbs().maxCoeff(),
               static_cast<int>(report.cycles));

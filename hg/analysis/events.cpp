@@ -113,7 +113,7 @@ bool EventDetector::holds(const Condition& condition, const CycleRecord& record)
   return false;
 }
 
-std::optional<Event> EventDetector::observe(const CycleRecord& record) {
+std::optional<RunEvent> EventDetector::observe(const CycleRecord& record) {
   if (record.mode != Mode::kRunning) return std::nullopt;
   if (q_m_start_.size() == 0) {
     q_m_start_ = record.reference.q_m;
@@ -127,14 +127,14 @@ std::optional<Event> EventDetector::observe(const CycleRecord& record) {
                                      [&](const Condition& c) { return holds(c, record); });
     if (!happens) return std::nullopt;
     ++next_;
-    return Event{rule.name, record.time_s, rule.what};
+    return RunEvent{rule.name, record.time_s, rule.what};
   }
 
   return observe_limits(record);
 }
 
 // One event per record; what happens at the same time follows with the next records.
-std::optional<Event> EventDetector::observe_limits(const CycleRecord& record) {
+std::optional<RunEvent> EventDetector::observe_limits(const CycleRecord& record) {
   const bool is_first = situations_.empty();
   situations_.resize(catalogue_.size(), Situation::kFree);
   for (std::size_t i = 0; i < catalogue_.size(); ++i) {
@@ -142,7 +142,7 @@ std::optional<Event> EventDetector::observe_limits(const CycleRecord& record) {
     const Situation before = std::exchange(situations_[i], now);
     if (is_first || now == before) continue;
     const char* what = event_text(before, now);
-    if (what[0] != '\0') return Event{catalogue_[i].name, record.time_s, what};
+    if (what[0] != '\0') return RunEvent{catalogue_[i].name, record.time_s, what};
   }
   return std::nullopt;
 }

@@ -11,7 +11,7 @@
 
 namespace hg::analysis {
 
-struct Event {
+struct RunEvent {
   std::string name;
   double time_s = 0.0;
   std::string what;
@@ -28,13 +28,13 @@ class EventDetector {
   EventDetector(std::vector<EventRule> rules, LimitCatalogue catalogue);
 
   /// The event that this record completes, if any.
-  std::optional<Event> observe(const CycleRecord& record);
+  std::optional<RunEvent> observe(const CycleRecord& record);
 
   /// Names of the rules that have not happened yet.
   std::vector<std::string> missing() const;
 
  private:
-  std::optional<Event> observe_limits(const CycleRecord& record);
+  std::optional<RunEvent> observe_limits(const CycleRecord& record);
   bool holds(const Condition& condition, const CycleRecord& record) const;
 
   std::vector<EventRule> rules_;

@@ -129,7 +129,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["cycles"] = cycles_;
 
   json["events"] = nlohmann::ordered_json::array();
-  for (const Event& event : events_) {
+  for (const RunEvent& event : events_) {
     json["events"].push_back(
         {{"name", event.name}, {"time_s", event.time_s}, {"what", event.what}});
   }

@@ -50,7 +50,7 @@ class Summary {
           const VectorM& torque_rated = {});
 
   void add(const Sample& sample);
-  void add(const Event& event) { events_.push_back(event); }
+  void add(const RunEvent& event) { events_.push_back(event); }
 
   /// No limit may be exceeded by the reference by more than 2 mm / 5 mrad ([HANDBOOK] 10.1), or in
   /// truth by more than 1 mm / 2 mrad.
@@ -58,7 +58,7 @@ class Summary {
   /// Whether hand and device oscillated against each other during the run: FaultCode::kOscillation
   /// was warned of.
   bool has_shaken() const noexcept { return shaking_cycles_ > 0; }
-  const std::vector<Event>& events() const noexcept { return events_; }
+  const std::vector<RunEvent>& events() const noexcept { return events_; }
   const Fault& fault() const noexcept { return fault_; }
   const TruthSummary& truth() const noexcept { return truth_; }
   double max_sync_error() const noexcept { return max_sync_error_; }
@@ -76,7 +76,7 @@ class Summary {
 
   LimitCatalogue catalogue_;
   TruthSummary truth_;
-  std::vector<Event> events_;
+  std::vector<RunEvent> events_;
   std::vector<double> worst_excess_;
   std::uint64_t cycles_ = 0, running_cycles_ = 0;
   double duration_s_ = 0.0;

@@ -18,8 +18,8 @@ constexpr int kMostDraws = 1'000'000;  // of a posture; takes less than a second
 constexpr int kFurtherLatency = 4;     // periods beyond what is expected
 
 // Elastic joints: until which latency the gains that follow from it are stable.
-tracking::Config checked_control(const Device& device) {
-  tracking::Config control = device.control;
+tracking::ControlConfig checked_control(const DeviceConfig& device) {
+  tracking::ControlConfig control = device.control;
   if (control.method == tracking::Method::kDrives) return control;
   const tracking::Loop loop = torque_loop(device);
   const double dt = device.model.dt();
@@ -67,14 +67,14 @@ std::vector<Eigen::VectorXd> random_postures(const DeviceModel& device, int coun
       postures.size(), kMostDraws, count));
 }
 
-tracking::Loop torque_loop(const Device& device) {
+tracking::Loop torque_loop(const DeviceConfig& device) {
   return {.config = device.control,
           .filters = {.link_pole_Hz = device.estimation.link_pole_Hz,
                       .motor_low_pass_Hz = device.estimation.motor_low_pass_Hz},
           .device = device.model};
 }
 
-controller::Cycle make_cycle(const Device& device, const Twin& twin,
+controller::Cycle make_cycle(const DeviceConfig& device, const Twin& twin,
                              std::vector<surfaces::Surface> surfaces,
                              std::vector<SolverCap> solver_caps) {
   return controller::Cycle({.estimation = device.estimation,

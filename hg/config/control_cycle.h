@@ -14,12 +14,12 @@ namespace hg::config {
 /// The control cycle of `device` with `twin` in its hand, in contact with `surfaces`. Throws
 /// SetupError where they do not fit together, or where the torque loop is not stable with the
 /// expected latency. `solver_caps`: injected faults of the computer; a machine has none.
-controller::Cycle make_cycle(const Device& device, const Twin& twin,
+controller::Cycle make_cycle(const DeviceConfig& device, const Twin& twin,
                              std::vector<surfaces::Surface> surfaces = {},
                              std::vector<SolverCap> solver_caps = {});
 
 /// The torque loop of a device with elastic joints, as modelled by its controller.
-tracking::Loop torque_loop(const Device& device);
+tracking::Loop torque_loop(const DeviceConfig& device);
 
 /// `count` postures (gantry at 0 first) all over the limits of the joints; a joint without limits
 /// is sampled over one turn. Throws SetupError if hardly any is within the virtual limits.

@@ -168,7 +168,7 @@ std::vector<std::string> manipulator_names(const DeviceDraft& draft) {
 
 // Fills the model of the device from its chain and the parts of the draft.
 void take_model(model::ChainModel chain, DeviceDraft& draft) {
-  Device& device = draft.device;
+  DeviceConfig& device = draft.device;
   DeviceModel& model = device.model;
   model.chain = std::move(chain);
   model.n_p = static_cast<int>(draft.gantry.size());
@@ -185,7 +185,7 @@ void take_model(model::ChainModel chain, DeviceDraft& draft) {
 }
 
 // Stopping distances that device.yaml does not give, from the ratings.
-void state_stopping(Device& device) {
+void state_stopping(DeviceConfig& device) {
   constexpr double kSpare = 1.25;
   safety::MonitorConfig& monitor = device.monitor;
   std::array<double, 2> need{};  // of revolute and prismatic joints
@@ -205,7 +205,7 @@ void state_stopping(Device& device) {
 }
 
 // Fills the collision model from the collision elements of the URDF.
-void watch_collisions(const UrdfText& urdf, Device& device) {
+void watch_collisions(const UrdfText& urdf, DeviceConfig& device) {
   const model::ChainOptions& options = device.chain_options;
   const model::ChainModel& chain = device.model.chain;
   collision::Geometry geometry = collision::read_geometry(
@@ -216,7 +216,7 @@ void watch_collisions(const UrdfText& urdf, Device& device) {
   if (options.tool) device.unknown_links.push_back(options.tool->handle);
   if (geometry.shapes.empty()) return;
 
-  collision::Config& collision = device.collision;
+  collision::CollisionConfig& collision = device.collision;
   collision.shapes = std::move(geometry.shapes);
   if (device.has_floor) collision.shapes.push_back(collision::floor_at(device.floor_z));
   std::vector<Interval> range = device.model.gantry_range;
@@ -229,29 +229,29 @@ void watch_collisions(const UrdfText& urdf, Device& device) {
 
 }  // namespace
 
-void settle_law(Device& device) {
+void settle_law(DeviceConfig& device) {
   device.model.has_torque_limits = device.control.method != tracking::Method::kDrives &&
                                    device.rendering.law == rendering::Law::kGauss &&
                                    device.rendering.bounds == rendering::Bounds::kRecoverable;
 }
 
-void check_rate(const Device& device, double rate_Hz) {
+void check_rate(const DeviceConfig& device, double rate_Hz) {
   DeviceModel model = device.model;
   model.rate_Hz = rate_Hz;
   check(model);
-  tracking::check(device.control, rate_Hz);
+  tracking::check_control_config(device.control, rate_Hz);
 }
 
-Device load_device(const std::filesystem::path& file) {
+DeviceConfig load_device(const std::filesystem::path& file) {
   SourceReader reader;
   return load_device(file, reader);
 }
 
-Device load_device(const std::filesystem::path& path, SourceReader& reader) {
+DeviceConfig load_device(const std::filesystem::path& path, SourceReader& reader) {
   const std::size_t first_source = reader.texts().size();
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   DeviceDraft draft;
-  Device& device = draft.device;
+  DeviceConfig& device = draft.device;
   std::optional<model::ChainModel> chain;
   std::optional<Tool> tool;
   std::optional<UrdfText> urdf;

@@ -20,23 +20,24 @@
 
 namespace hg::config {
 
-struct Device {
+struct DeviceConfig {
   std::string name;
   std::filesystem::path urdf;
   std::filesystem::path simulation_file;  ///< file of the device's simulation; empty = none
   double floor_z = 0.0;                   ///< height of the floor in B, m
-  bool has_floor = false;    ///< collisions with the floor are watched; false = it is only drawn
-  tracking::Config control;  ///< control, with method kDrives for a device without actuators
+  bool has_floor = false;  ///< collisions with the floor are watched; false = it is only drawn
+  tracking::ControlConfig control;  ///< control, with method kDrives for a device without actuators
   DeviceModel model;
-  rendering::Options rendering;
-  prepositioning::Config prepositioning;
-  estimation::Config estimation;
+  rendering::RenderingOptions rendering;
+  prepositioning::PrepositioningConfig prepositioning;
+  estimation::EstimationConfig estimation;
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
-  passivity::Config passivity;
-  compliance::Config compliance;
+  passivity::PassivityConfig passivity;
+  compliance::ComplianceConfig compliance;
   StartTestConfig start_test;
-  collision::Config collision;  ///< collision model; without shapes collisions are not watched
+  /// Collision model; without shapes collisions are not watched
+  collision::CollisionConfig collision;
   std::vector<std::string> unknown_links;  ///< moving links of unknown shape
   model::ChainOptions chain_options;       ///< options with which the chain was read
   std::vector<SourceText> sources;         ///< source texts, the YAML file first
@@ -45,13 +46,13 @@ struct Device {
 
 /// Sets what follows from law, bounds and control method: whether the law models the motor
 /// torques. For a scenario, see settle_law() in simulation/scenario.h.
-void settle_law(Device& device);
+void settle_law(DeviceConfig& device);
 
 /// Throws SetupError where the device cannot be controlled at `rate_Hz`.
-void check_rate(const Device& device, double rate_Hz);
+void check_rate(const DeviceConfig& device, double rate_Hz);
 
 /// Loads a device. Throws SetupError with all faults of the file, one per line.
-Device load_device(const std::filesystem::path& file);
-Device load_device(const std::filesystem::path& file, SourceReader& reader);
+DeviceConfig load_device(const std::filesystem::path& file);
+DeviceConfig load_device(const std::filesystem::path& file, SourceReader& reader);
 
 }  // namespace hg::config

@@ -23,7 +23,8 @@ struct DeviceJoint {
 
 /// A device in the making: what is known of it so far, and the names and parts it is made from.
 struct DeviceDraft {
-  Device device = {.model = {.chain = model::ChainModel::free_body({})}};  ///< its chain comes last
+  /// Its chain comes last
+  DeviceConfig device = {.model = {.chain = model::ChainModel::free_body({})}};
   std::filesystem::path tool;
   ChainPart part;
   std::vector<std::string> link_names;  ///< link names of the URDF
@@ -369,7 +370,7 @@ void describe(V& v, StartTestConfig& test, const std::vector<std::string>& input
 }
 
 template <class V>
-void describe(V& v, rendering::Options& options, std::size_t manipulator_joints) {
+void describe(V& v, rendering::RenderingOptions& options, std::size_t manipulator_joints) {
   v.choice("law", options.law, kLaws, "how limits become forces; paper needs six joints");
   v.choice("bounds", options.bounds, kBounds, "how limits become bounds on accelerations");
   v.choice("gantry", options.gantry, kGantries,
@@ -545,7 +546,7 @@ void describe(V& v, ActuatorModel& actuator) {
 }
 
 template <class V>
-void describe(V& v, tracking::Config& config) {
+void describe(V& v, tracking::ControlConfig& config) {
   v.choice("method", config.method, kMethods,
            "modal: all states of the arm in its modes; motor_pd: each motor for itself");
   v.number("latency_s", config.loop.latency, {.lb = 0.0, .ub = 0.64},

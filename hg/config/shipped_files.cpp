@@ -96,7 +96,7 @@ fs::path find_device(const std::string& file) {
   return fs::exists(file, error) ? fs::path(file) : models_root() / file;
 }
 
-fs::path find_simulation(const std::string& name, const Device& device,
+fs::path find_simulation(const std::string& name, const DeviceConfig& device,
                          const SourceReader& reader) {
   constexpr std::string_view kPrefix = "simulation_";
   if (reader.exists(name)) return name;

@@ -37,7 +37,7 @@ std::filesystem::path find_device(const std::string& file);
 
 /// A simulation file, or for NAME the file simulation_NAME.yaml beside that of the device. Throws
 /// SetupError naming the nearest one.
-std::filesystem::path find_simulation(const std::string& name, const Device& device,
+std::filesystem::path find_simulation(const std::string& name, const DeviceConfig& device,
                                       const SourceReader& reader);
 
 }  // namespace hg::config

@@ -18,7 +18,7 @@ Tool load_tool(const std::filesystem::path& path, SourceReader& reader) {
       return;
     }
     try {
-      model::check({tool.body.mass, tool.body.p_com, tool.body.inertia}, "tool");
+      model::check_inertial({tool.body.mass, tool.body.p_com, tool.body.inertia}, "tool");
     } catch (const SetupError& error) {
       loader.rule(false, "inertia_kg_m2", error.what());
     }

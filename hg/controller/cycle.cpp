@@ -51,7 +51,7 @@ VectorM braking_of(const DeviceModel& device) {
 // Properties of the other parts on which the monitor's rules depend. The paper's bounds ask for
 // more than any rating where they contradict each other, and where the law knows torques they are
 // what limits accelerations.
-safety::MonitoredParts parts_of(const Config& config, const DeviceModel& device,
+safety::MonitoredParts parts_of(const CycleConfig& config, const DeviceModel& device,
                                 const rendering::TwinModel& twin) {
   const passivity::Reaction reaction = config.passivity.reaction;
   const bool is_paper = config.rendering.bounds == rendering::Bounds::kPaper;
@@ -121,7 +121,7 @@ void copy(const rendering::LawResult& law, CycleRecord& record) noexcept {
 
 }  // namespace
 
-Cycle::Cycle(const Config& config, const DeviceModel& device, const rendering::TwinModel& twin)
+Cycle::Cycle(const CycleConfig& config, const DeviceModel& device, const rendering::TwinModel& twin)
     : config_(config),
       dt_(device.dt()),
       estimation_(config.estimation, device),
@@ -201,7 +201,7 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
   SafetyInputs safety = sensors.safety;
   safety.emergency_stop = safety.emergency_stop || operator_input.panel.emergency_stop;
   const bool is_new = request != supervisor.last_request;
-  const bool was_fault = supervisor.state == safety::State::kFault;
+  const bool was_fault = supervisor.state == safety::SafetyState::kFault;
   const bool is_arming = is_new && request == ModeRequest::kArm;
   const Fault fault = check(sensors);
   safety::SupervisorInput input = {
@@ -215,7 +215,7 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
       .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;
   result.refusal = safety::advance(input, supervisor);
-  if (was_fault && supervisor.state != safety::State::kFault) reset_controllers();
+  if (was_fault && supervisor.state != safety::SafetyState::kFault) reset_controllers();
 
   estimation_.tare(is_new && request == ModeRequest::kTare, !is_moving(supervisor.mode()),
                    state_.estimation);
@@ -279,7 +279,7 @@ RobotState Cycle::estimate(const SensorFrame& sensors) noexcept {
 collision::Prediction Cycle::look_ahead(const SensorFrame& sensors,
                                         const RobotState& robot) noexcept {
   if (robot.q_m.size() == 0 || monitor_.has_jumped(sensors, state_.monitor)) return {};
-  const safety::State state = state_.supervisor.state;
+  const safety::SafetyState state = state_.supervisor.state;
   const collision::Prediction ahead =
       guard_.step(stacked(robot.q_p, robot.q_m), stacked(robot.dq_p, robot.dq_m),
                   safety::is_powered(state), state_.collision);
@@ -310,10 +310,10 @@ Motion Cycle::decide(bool is_usable, bool must_brake) const noexcept {
 // handle. In motion: both are moved back to a device that lags behind. Returns by how much the
 // reference was moved back; empty = not at all.
 VectorM Cycle::place_reference(Motion motion, const RobotState& robot) noexcept {
-  rendering::State& rendering = state_.rendering;
+  rendering::RenderingState& rendering = state_.rendering;
   if (motion == Motion::kHold) {
-    const bool is_armed =
-        state_.supervisor.state == safety::State::kArmed || is_moving(state_.supervisor.mode());
+    const bool is_armed = state_.supervisor.state == safety::SafetyState::kArmed ||
+                          is_moving(state_.supervisor.mode());
     if (!is_armed) {
       rendering.reference.q_m = robot.q_m;
       rendering.contact = {};
@@ -330,7 +330,7 @@ VectorM Cycle::place_reference(Motion motion, const RobotState& robot) noexcept 
 
 // Largest speed of handle and gantry, m/s.
 double Cycle::speed_max() const noexcept {
-  const bool is_alone = state_.supervisor.state == safety::State::kAutonomous;
+  const bool is_alone = state_.supervisor.state == safety::SafetyState::kAutonomous;
   return is_alone ? kSafeShare * monitor_.config().safe_speed : kInfinity;
 }
 
@@ -353,9 +353,9 @@ Cycle::GantryAim Cycle::preposition(Motion motion, const RobotState& robot) noex
 // forces down if the handle is held; all other stops drop them at once.
 double Cycle::ramp_forces(Motion motion, bool is_held) noexcept {
   if (!is_moving(motion)) return state_.force_share = 0.0;
-  const safety::State state = state_.supervisor.state;
-  if (!is_stopping(motion)) state_.was_alone = state == safety::State::kAutonomous;
-  const bool is_gentle = is_held && !state_.was_alone && state == safety::State::kToArmed;
+  const safety::SafetyState state = state_.supervisor.state;
+  if (!is_stopping(motion)) state_.was_alone = state == safety::SafetyState::kAutonomous;
+  const bool is_gentle = is_held && !state_.was_alone && state == safety::SafetyState::kToArmed;
   const double share = is_stopping(motion) && !is_gentle ? 0.0 : state_.force_share;
   const double step = is_stopping(motion) ? -dt_ / kRampOut : dt_ / kRampIn;
   state_.force_share = std::clamp(share + step, 0.0, 1.0);
@@ -390,7 +390,7 @@ const rendering::LawResult& Cycle::render(Motion motion, bool is_held, const Rob
 // Monitors energy and oscillation at the handle; added damping and inertia act from the next cycle.
 PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
                                     const rendering::LawResult& law) noexcept {
-  rendering::State& rendering = state_.rendering;
+  rendering::RenderingState& rendering = state_.rendering;
   if (motion == Motion::kHold) {
     state_.passivity = {};
     rendering.added = {};
@@ -400,7 +400,7 @@ PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
   }
   const Vector6 twist_E = rendering_.end_effector_twist(rendering);
   const Vector6& w = robot.w_H;
-  const PassivityReport report = passivity::step(
+  const PassivityReport report = passivity::observe_energy(
       config_.passivity, dt_,
       {.f = w.head<3>(),
        .power_measured = w.dot(rendering_.handle_twist(robot)),
@@ -412,7 +412,7 @@ PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
       state_.passivity);
   const passivity::AddedImpedance& added = state_.passivity.added;
   rendering.added = {added.damping, added.inertia};
-  const Fault fault = passivity::check(config_.passivity, report, state_.passivity);
+  const Fault fault = passivity::passivity_fault(config_.passivity, report, state_.passivity);
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
   return report;
 }
@@ -431,7 +431,7 @@ Cycle::Moved Cycle::advance(Motion motion, const RobotState& robot, const Gantry
                             const rendering::LawResult& law) noexcept {
   Moved moved = {.dq_p = VectorP::Zero(state_.dq_p.size())};
   if (motion == Motion::kNone) return moved;
-  rendering::State& rendering = state_.rendering;
+  rendering::RenderingState& rendering = state_.rendering;
   motion = accept(motion, law);
   state_.motion = motion;
   if (motion == Motion::kHold) {
@@ -455,7 +455,7 @@ Cycle::Moved Cycle::advance(Motion motion, const RobotState& robot, const Gantry
 // do not follow. [HANDBOOK] 6.2 has a ramp of 50 ms, which exceeds the motor torques of a stretched
 // arm.
 void Cycle::brake_joints() noexcept {
-  rendering::State& rendering = state_.rendering;
+  rendering::RenderingState& rendering = state_.rendering;
   const double rate = 1.0 / dt_;
   rendering.reference.ddq_m =
       (-rate * rendering.reference.dq_m).cwiseMin(ddq_max_).cwiseMax(-ddq_max_);
@@ -477,7 +477,7 @@ void Cycle::time_stop(Motion motion, const RobotState& robot, const Moved& moved
 // Returns the warning of this cycle.
 Fault Cycle::monitor(const SensorFrame& sensors, std::uint32_t late_cycles,
                      const Results& results) noexcept {
-  safety::Verdict verdict;
+  safety::MonitorResult verdict;
   if (results.motion == Motion::kNone) {
     safety::Monitor::forget(state_.monitor);
   } else {
@@ -548,7 +548,7 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   }
   const bool gives_way =
       share > 0.0 && is_moving(supervisor.mode()) && state_.motion != Motion::kBrakeJoints;
-  compliance::State& touch = state_.touch;
+  compliance::ComplianceState& touch = state_.touch;
   const VectorM& dq = robot.dq_m;
   const bool is_known = torque_max_.size() == dq.size() && dq.size() > 0;
   if (!config_.compliance.is_on || !is_on || !gives_way || !is_known) {
@@ -560,12 +560,12 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   if (touch.dq.size() == dq.size()) {
     const tracking::JointControl::JointTorques torques =
         control_.joint_torques(robot, (dq - touch.dq) / dt_);
-    report = compliance::step(torque_max_, dt_,
-                              {.torque = torques.external,
-                               .load = torques.motion,
-                               .J = rendering_.handle_jacobian(),
-                               .n_p = static_cast<int>(robot.q_p.size())},
-                              touch);
+    report = compliance::react_to_contact(torque_max_, dt_,
+                                          {.torque = torques.external,
+                                           .load = torques.motion,
+                                           .J = rendering_.handle_jacobian(),
+                                           .n_p = static_cast<int>(robot.q_p.size())},
+                                          touch);
   }
   touch.dq = dq;
   state_.rendering.touch = share * report.wrench;
@@ -604,7 +604,7 @@ void Cycle::fill(const Results& results, const Fault& warning, const TrackingRep
   // supervisor, after all rules of this cycle
   const safety::SupervisorState& supervisor = state_.supervisor;
   record.mode = supervisor.mode();
-  record.is_autonomous = supervisor.state == safety::State::kAutonomous;
+  record.is_autonomous = supervisor.state == safety::SafetyState::kAutonomous;
   record.stop = supervisor.stop;
   record.fault = supervisor.fault;
   record.warning = supervisor.also.code != FaultCode::kNone ? supervisor.also : warning;

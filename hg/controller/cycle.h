@@ -28,16 +28,16 @@
 namespace hg::controller {
 
 /// Set-up data.
-struct Config {
-  estimation::Config estimation;
-  prepositioning::Config prepositioning;
-  rendering::Options rendering;
-  tracking::Config control;
+struct CycleConfig {
+  estimation::EstimationConfig estimation;
+  prepositioning::PrepositioningConfig prepositioning;
+  rendering::RenderingOptions rendering;
+  tracking::ControlConfig control;
   safety::MonitorConfig monitor;
   safety::SanitiserConfig sanitiser;
-  collision::Config collision;
-  passivity::Config passivity;
-  compliance::Config compliance;
+  collision::CollisionConfig collision;
+  passivity::PassivityConfig passivity;
+  compliance::ComplianceConfig compliance;
   std::vector<surfaces::Surface> surfaces;  ///< Virtual surfaces in contact with the twin
   std::vector<SolverCap> solver_caps;       ///< Injected faults of the computer; empty = none
 };
@@ -52,19 +52,19 @@ enum class Motion : std::uint8_t {
 };
 
 /// Complete state of a cycle. Copy it for a snapshot, assign it to restore.
-struct State {
+struct CycleState {
   std::uint64_t cycle = 0;
   std::uint64_t next_sequence = 0;
   safety::SupervisorState supervisor;
   safety::MonitorState monitor;
   safety::BrakeState brakes;
-  estimation::State estimation;
-  rendering::State rendering;
-  tracking::State control;
+  estimation::EstimationState estimation;
+  rendering::RenderingState rendering;
+  tracking::ControlState control;
   prepositioning::TargetState gantry_target;
-  collision::State collision;
-  passivity::State passivity;
-  compliance::State touch;
+  collision::CollisionState collision;
+  passivity::PassivityState passivity;
+  compliance::ComplianceState touch;
   /// Motion in the last cycle that was not kNone. Of it, only kBrakeJoints matters later: joints
   /// that brake one by one do so until they are held.
   Motion motion = Motion::kHold;
@@ -81,7 +81,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order; `rows` is the number of rows of the rendering problem.
-void hashed(auto& hash, const State& state, int rows) {
+void hashed(auto& hash, const CycleState& state, int rows) {
   const auto& [cycle, next_sequence, supervisor, monitor, brakes, estimation, rendering, control,
                gantry_target, collision, passivity, touch, motion, w_H, dq_p, q_m, tau_m, was_on,
                room, is_blocked, is_coasting, is_apart, was_alone, force_share] = state;
@@ -99,7 +99,7 @@ void hashed(auto& hash, const State& state, int rows) {
 class Cycle {
  public:
   /// Builds all parts. Throws SetupError if they do not fit together.
-  Cycle(const Config& config, const DeviceModel& device, const rendering::TwinModel& twin);
+  Cycle(const CycleConfig& config, const DeviceModel& device, const rendering::TwinModel& twin);
 
   /// Runs one cycle: computes `command` and `record` from sensors and operator input.
   void step(const SensorFrame& sensors, const OperatorFrame& operator_input, CommandFrame& command,
@@ -118,8 +118,8 @@ class Cycle {
   /// Installs a callback per stage; the default probe does nothing.
   void watch(const StageProbe& probe) noexcept;
 
-  const State& state() const noexcept { return state_; }
-  void restore(const State& state) noexcept { state_ = state; }
+  const CycleState& state() const noexcept { return state_; }
+  void restore(const CycleState& state) noexcept { state_ = state; }
   /// Problem that the solver received in the last step.
   const hqp::Problem& problem() const noexcept { return rendering_.problem(); }
   /// Problems of failed or slow solves, see Rendering::kept_problems(). May be read by one other
@@ -140,7 +140,7 @@ class Cycle {
   };
   /// Aim of the gantry. Empty where the device does not move.
   struct GantryAim {
-    prepositioning::Command command;
+    prepositioning::GantryCommand command;
     GantryTask task;  ///< Empty where the law does not lead the gantry
   };
   /// Motion from this sample to the next. Empty without a usable sample.
@@ -196,7 +196,7 @@ class Cycle {
   Motion accept(Motion motion, const rendering::LawResult& law) noexcept;
   void brake_joints() noexcept;
 
-  Config config_;
+  CycleConfig config_;
   double dt_;           ///< Period, s
   VectorM torque_max_;  ///< Peak torque of each joint, Nm; empty without torque control
   VectorM ddq_max_;     ///< Deceleration of joints that brake without the law, rad/s^2 or m/s^2
@@ -210,7 +210,7 @@ class Cycle {
   safety::Monitor monitor_;
   safety::Sanitiser sanitiser_;
   rendering::LawResult law_;  ///< Result of the law in this cycle; a member because of its size
-  State state_;
+  CycleState state_;
   StageProbe ended_;
 };
 

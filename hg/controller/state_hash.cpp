@@ -92,7 +92,7 @@ class Hash {
 
 }  // namespace
 
-std::uint64_t hash_of(const State& state, int rows) noexcept {
+std::uint64_t hash_of(const CycleState& state, int rows) noexcept {
   Hash hash;
   hashed(hash, state, rows);
   return hash.value();

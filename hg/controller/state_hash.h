@@ -14,9 +14,9 @@
 namespace hg::controller {
 
 /// Hash of `state`. Left out are the past commands of the drives but the last one (earlier hashes
-/// cover them), MonitorState::shaking, the filters of passivity::State, and some sums of
+/// cover them), MonitorState::shaking, the filters of passivity::PassivityState, and some sums of
 /// InertialUnitsState. `rows` is the number of rows of the rendering problem, whose active set is
 /// in the state.
-std::uint64_t hash_of(const State& state, int rows) noexcept;
+std::uint64_t hash_of(const CycleState& state, int rows) noexcept;
 
 }  // namespace hg::controller

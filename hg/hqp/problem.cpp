@@ -27,14 +27,14 @@ double norm_of(std::span<const double> v) noexcept {
   return std::sqrt(sum);
 }
 
-void check(const Capacity& capacity) {
+void check_capacity(const Capacity& capacity) {
   require_in_range("hqp capacity: variables", capacity.variables, 1, kMaxVariables);
   require_in_range("hqp capacity: levels", capacity.levels, 1, kMaxLevels);
   require_in_range("hqp capacity: rows", capacity.rows, 1, kMaxRows);
 }
 
 Problem::Problem(const Capacity& capacity) : capacity_(capacity), variables_(capacity.variables) {
-  check(capacity);
+  check_capacity(capacity);
   first_row_.reserve(index(capacity.levels) + 1);
   first_row_.assign(1, 0);
   rows_.reserve(index(capacity.rows));

@@ -28,11 +28,11 @@ struct Capacity {
 };
 
 /// Throws SetupError, naming the field, unless every size is in its range.
-void check(const Capacity& capacity);
+void check_capacity(const Capacity& capacity);
 
 class Problem {
  public:
-  /// An empty problem of capacity.variables variables. Throws SetupError, see check().
+  /// An empty problem of capacity.variables variables. Throws SetupError, see check_capacity().
   explicit Problem(const Capacity& capacity);
 
   /// Removes all levels and rows; the next ones are for `variables` (1..capacity) variables.

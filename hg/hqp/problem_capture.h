@@ -32,7 +32,7 @@ class ProblemCapture {
   static constexpr std::size_t kMost = 10;
   static constexpr std::size_t kMostSolved = 5;  ///< most slow but solved problems
 
-  /// Accepts problems of exactly this capacity. Throws SetupError, see check(Capacity).
+  /// Accepts problems of exactly this capacity. Throws SetupError, see check_capacity().
   explicit ProblemCapture(const Capacity& capacity);
 
   /// Copies the problem while there is room, one per cycle. To be called by the loop only.

@@ -18,7 +18,7 @@ const char* to_string(Status status) noexcept {
   return "unknown";
 }
 
-void check(const SolverOptions& options) {
+void check_solver_options(const SolverOptions& options) {
   const auto require = [](bool ok, const char* text) {
     if (!ok) throw SetupError(text);
   };
@@ -31,7 +31,7 @@ void check(const SolverOptions& options) {
 }
 
 Solution::Solution(const Capacity& capacity) {
-  check(capacity);
+  check_capacity(capacity);
   x.reserve(index(capacity.variables));
   state.reserve(index(capacity.rows));
   slack.reserve(index(capacity.rows));

@@ -60,7 +60,7 @@ struct SolverOptions {
 
 /// Throws SetupError, naming the field, unless 0 < tolerances <= 1e-3 max_iterations > 0 and
 /// budget >= 0.
-void check(const SolverOptions& options);
+void check_solver_options(const SolverOptions& options);
 
 struct LevelResult {
   double slack_squared;  ///< sum of (weight * slack)^2 over the level's rows
@@ -70,7 +70,7 @@ struct LevelResult {
 
 /// Result of one solve. Vectors have the size of the problem; they never grow beyond `capacity`.
 struct Solution {
-  /// Throws SetupError, see check(Capacity).
+  /// Throws SetupError, see check_capacity().
   explicit Solution(const Capacity& capacity);
 
   Status status = Status::kSolved;

@@ -233,7 +233,7 @@ void read_levels(const Problem& problem, int levels, const Workspace& work,
 }  // namespace
 
 Solver::Solver(const Capacity& capacity) {
-  check(capacity);
+  check_capacity(capacity);
   workspace_ = std::make_unique<Workspace>(capacity);
 }
 Solver::~Solver() = default;

@@ -24,7 +24,7 @@ struct Workspace;
 
 class Solver {
  public:
-  /// Solves problems within `capacity`. Throws SetupError, see check(Capacity).
+  /// Solves problems within `capacity`. Throws SetupError, see check_capacity().
   explicit Solver(const Capacity& capacity);
   ~Solver();
   Solver(Solver&&) noexcept;

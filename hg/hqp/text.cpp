@@ -218,7 +218,7 @@ SolverOptions parse_options(Reader& reader) {
     }
   }
   try {
-    check(options);
+    check_solver_options(options);
   } catch (const SetupError& error) {
     reader.fail(error.what());
   }
@@ -456,7 +456,7 @@ Capacity capacity_for(std::span<const RecordedProblem> problems) {
 }
 
 void write_problem(std::ostream& out, const RecordedProblem& recorded) {
-  check(recorded.options);
+  check_solver_options(recorded.options);
   const Problem& problem = recorded.problem;
   out << "hqp " << problem.variables() << ' ' << problem.levels() << '\n';
   write_name(out, recorded.name);

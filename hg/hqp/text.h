@@ -56,7 +56,7 @@ Capacity capacity_for(std::span<const RecordedProblem> problems);
 
 /// Writes one problem so that the same one is read back, bit for bit. Ids stay the same, so
 /// equalities that do not come first in their level are written as lb = ub. Line breaks and other
-/// control characters of a name become blanks. Throws SetupError, see check(SolverOptions), and
+/// control characters of a name become blanks. Throws SetupError, see check_solver_options(), and
 /// then writes nothing.
 void write_problem(std::ostream& out, const RecordedProblem& recorded);
 void write_problem(std::ostream& out, const Problem& problem);

@@ -122,7 +122,7 @@ Interval viability_bounds(const ViableState& s, double ddq_max, double dt) noexc
 
 }  // namespace
 
-void check(const JointLimits& limits, std::string_view item) {
+void check_joint_limits(const JointLimits& limits, std::string_view item) {
   require(limits.q_min < kInfinity, item, "q_min must be a number or -infinity", limits.q_min);
   require(limits.q_max > -kInfinity, item, "q_max must be a number or infinity", limits.q_max);
   require(limits.q_max >= limits.q_min, item, "q_max must not be below q_min", limits.q_max);
@@ -135,8 +135,8 @@ RecoverableOptions recoverable_options(const JointLimits& limits, double dt, dou
           .v_rec = std::min(kReturnSpeedMax, kReturnSpeedShare * limits.dq_max)};
 }
 
-void check(const RecoverableOptions& options, const JointLimits& limits, double dt_max,
-           std::string_view item) {
+void check_recoverable_options(const RecoverableOptions& options, const JointLimits& limits,
+                               double dt_max, std::string_view item) {
   require(std::isfinite(options.tau) && options.tau >= dt_max, item,
           "tau must be finite and not below the longest period", options.tau);
   require(std::isfinite(options.tau_rec) && options.tau_rec >= dt_max, item,

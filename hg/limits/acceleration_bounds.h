@@ -16,8 +16,8 @@
 
 namespace hg::limits {
 
-/// Limits of one coordinate; infinity means "no limit". Set-up data: check() once, trust
-/// afterwards.
+/// Limits of one coordinate; infinity means "no limit". Set-up data: check_joint_limits() once,
+/// trust afterwards.
 struct JointLimits {
   double q_min = -kInfinity;   ///< lowest position
   double q_max = kInfinity;    ///< highest position, >= q_min; equal: a lock
@@ -27,9 +27,10 @@ struct JointLimits {
 
 /// Throws SetupError unless all limits are in range; the message begins with `item`, for example
 /// "joint m4" or "handle z".
-void check(const JointLimits& limits, std::string_view item);
+void check_joint_limits(const JointLimits& limits, std::string_view item);
 
-/// Shape of bounds R close to a limit and beyond it. Set-up data: check() once, trust afterwards.
+/// Shape of bounds R close to a limit and beyond it. Set-up data: check_recoverable_options() once,
+/// trust afterwards.
 struct RecoverableOptions {
   double tau = 2e-3;            ///< time constant of the approach, s; two periods of 1 kHz
   double tau_rec = 20e-3;       ///< time constant of the return, s; slow enough to be no jerk
@@ -44,8 +45,8 @@ struct RecoverableOptions {
 RecoverableOptions recoverable_options(const JointLimits& limits, double dt, double dt_max);
 
 /// Throws SetupError unless the options suit the limits and periods up to `dt_max`.
-void check(const RecoverableOptions& options, const JointLimits& limits, double dt_max,
-           std::string_view item);
+void check_recoverable_options(const RecoverableOptions& options, const JointLimits& limits,
+                               double dt_max, std::string_view item);
 
 /// Bounds R, for any state. With the distance d = q_max - q, its value d+ and the speed v+ at the
 /// end of the sample, A = ddq_max, A_rec = ddq_rec_factor A, and likewise for q_min:

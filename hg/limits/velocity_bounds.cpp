@@ -26,7 +26,7 @@ double max_velocity(double d, const DriveResponse& drive) noexcept {
 
 }  // namespace
 
-void check(const DriveResponse& drive, std::string_view item) {
+void check_drive_response(const DriveResponse& drive, std::string_view item) {
   require_positive(item, "tau", drive.tau);
   require_positive(item, "ddq_max", drive.ddq_max);
 }

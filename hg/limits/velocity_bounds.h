@@ -15,14 +15,15 @@
 
 namespace hg::limits {
 
-/// Response of a drive to its velocity command. Set-up data: check() once, trust afterwards.
+/// Response of a drive to its velocity command. Set-up data: check_drive_response() once, trust
+/// afterwards.
 struct DriveResponse {
   double tau = 45e-3;    ///< Delay of the velocity, > 0, s: dead time + lag + one period
   double ddq_max = 2.0;  ///< Guaranteed deceleration, > 0, m/s^2
 };
 
 /// Throws SetupError unless both values are finite and positive; the message begins with `item`.
-void check(const DriveResponse& drive, std::string_view item);
+void check_drive_response(const DriveResponse& drive, std::string_view item);
 
 /// Bounds (28)-(29): at constant speed the limits `q_limits` are not passed within dt > 0.
 Interval constant_velocity_bounds(Interval q_limits, double q, double dt) noexcept;

@@ -279,7 +279,7 @@ ChainParts build(const Urdf& urdf, const ChainOptions& options) {
 
 ChainParts build(const FreeBody& body, const ChainOptions& options) {
   const Inertial inertial = {body.mass, body.p_handle_com, body.inertia};
-  check(inertial, "free body");
+  check_inertial(inertial, "free body");
   ChainParts chain;
   chain.name = "free_body";
   const pinocchio::JointIndex root = chain.add_floating_root(options.T_B_root);

@@ -8,7 +8,7 @@
 
 namespace hg {
 
-void check(const DeviceModel& device) {
+void check_device_model(const DeviceModel& device) {
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError(text);
   };

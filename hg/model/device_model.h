@@ -85,7 +85,7 @@ struct DeviceModel {
 
 /// Throws SetupError where a list has not one entry per joint or axis, where the rate is not
 /// 100..20000 Hz, or where a dead time spans too many periods.
-void check(const DeviceModel& device);
+void check_device_model(const DeviceModel& device);
 
 /// All Cartesian limits of the handle combined, along x, y, z of B; infinite where there are none.
 std::array<limits::JointLimits, 3> handle_limits(const DeviceModel& device);

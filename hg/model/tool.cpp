@@ -36,7 +36,7 @@ void attach(const Tool& tool, Urdf& urdf) {
     const Pose T_handle_link = inverse(tool.T_link_handle);
     const Inertial inertial = {tool.mass, T_handle_link.p + T_handle_link.R * tool.p_com,
                                T_handle_link.R * tool.inertia * T_handle_link.R.transpose()};
-    check(inertial, "tool");
+    check_inertial(inertial, "tool");
     link.inertial = inertial;
   }
   urdf.links.push_back(link);

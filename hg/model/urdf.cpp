@@ -173,7 +173,7 @@ class Reader {
                              .inertia = pose.R * inertia * pose.R.transpose()};
     if (result.mass == 0.0 && inertia.isZero(0.0)) return {};
     try {
-      check(result, place(urdf_, e.GetLineNum()) + item);
+      check_inertial(result, place(urdf_, e.GetLineNum()) + item);
     } catch (const SetupError& error) {
       fault = error.what();
     }
@@ -317,7 +317,7 @@ class Reader {
 
 }  // namespace
 
-void check(const Inertial& inertial, std::string_view item) {
+void check_inertial(const Inertial& inertial, std::string_view item) {
   // exported files carry six digits; a flat plate has I3 = I1 + I2
   constexpr double kRounding = 1e-5;
   const auto require = [&](bool holds, const std::string& rule, const std::string& value) {

@@ -70,7 +70,7 @@ Urdf read_urdf_file(const std::filesystem::path& file);
 Urdf read_urdf_text(std::string_view text, std::string_view source);
 
 /// Throws SetupError, beginning with `item`, unless the mass distribution is physically possible.
-void check(const Inertial& inertial, std::string_view item);
+void check_inertial(const Inertial& inertial, std::string_view item);
 
 using hg::to_text;
 

@@ -46,7 +46,7 @@ void add_limits(const limits::JointLimits& limits, viewer_server::SceneJoint& jo
   joint.dq_max = limits.dq_max;
 }
 
-viewer_server::SceneChain device_chain(const config::Device& device) {
+viewer_server::SceneChain device_chain(const config::DeviceConfig& device) {
   viewer_server::SceneChain chain;
   chain.urdf = device.urdf;
   for (const model::Joint& joint : device.model.chain.joints()) {
@@ -138,7 +138,7 @@ void add_own(const std::string& name, std::vector<Choice>& choices) {
   if (!is_choice(choices, name)) choices.push_back({name, fs::path(name).filename().string()});
 }
 
-std::string stopping_text(const config::Device& device) {
+std::string stopping_text(const config::DeviceConfig& device) {
   const safety::MonitorConfig& stated = device.monitor;
   bool has_turns = false, has_slides = false;
   for (int i = 0; i < device.model.n_m; ++i) {
@@ -176,7 +176,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   return scene;
 }
 
-viewer_server::Choices page_choices(const scenario::Options& options) {
+viewer_server::Choices page_choices(const scenario::ScenarioOptions& options) {
   viewer_server::Choices choices;
   const fs::path models = config::models_root() / "models";
   for (const auto& entry : fs::directory_iterator(models / "scenarios")) {

@@ -16,8 +16,8 @@ namespace hg::page {
 viewer_server::Scene page_scene(const config::Scenario& scenario);
 
 /// Choices of scenarios, twins, laws and people shipped with the program, and those of `options`.
-/// Names are as in scenario::Options; empty twin and person stand for the scenario's own.
-viewer_server::Choices page_choices(const scenario::Options& options);
+/// Names are as in scenario::ScenarioOptions; empty twin and person stand for the scenario's own.
+viewer_server::Choices page_choices(const scenario::ScenarioOptions& options);
 
 /// True when `name` is one of `choices`.
 bool is_choice(const std::vector<viewer_server::Choice>& choices, const std::string& name);

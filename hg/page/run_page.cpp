@@ -16,7 +16,7 @@
 namespace hg::page {
 namespace {
 
-using scenario::Options;
+using scenario::ScenarioOptions;
 using viewer_server::Choice;
 using viewer_server::Choices;
 using viewer_server::Command;
@@ -45,14 +45,15 @@ constexpr NamedRequest kRequests[] = {{"arm", ModeRequest::kArm},
 struct Chooser {
   CommandName command;
   std::vector<Choice> Choices::*list;
-  std::string Options::*option;
+  std::string ScenarioOptions::*option;
 };
-constexpr Chooser kChoosers[] = {{CommandName::kScenario, &Choices::scenarios, &Options::scenario},
-                                 {CommandName::kTwin, &Choices::twins, &Options::twin},
-                                 {CommandName::kLaw, &Choices::laws, &Options::law},
-                                 {CommandName::kPerson, &Choices::people, &Options::user}};
+constexpr Chooser kChoosers[] = {
+    {CommandName::kScenario, &Choices::scenarios, &ScenarioOptions::scenario},
+    {CommandName::kTwin, &Choices::twins, &ScenarioOptions::twin},
+    {CommandName::kLaw, &Choices::laws, &ScenarioOptions::law},
+    {CommandName::kPerson, &Choices::people, &ScenarioOptions::user}};
 
-viewer_server::Options with(OperatorDesk* desk, viewer_server::Options options) {
+viewer_server::ServerOptions with(OperatorDesk* desk, viewer_server::ServerOptions options) {
   options.desk = desk;
   return options;
 }
@@ -111,7 +112,8 @@ std::span<const RunPage::Order> RunPage::orders() {
   return kOrders;
 }
 
-RunPage::RunPage(const viewer_server::Options& options, const ShownRun& first, Prepare prepare)
+RunPage::RunPage(const viewer_server::ServerOptions& options, const ShownRun& first,
+                 Prepare prepare)
     : run_(first),
       prepare_(std::move(prepare)),
       form_(config::twin_form(first.scenario->twin.model)),
@@ -308,7 +310,7 @@ std::string RunPage::set_pace(const Command& command, runtime::Runtime* runtime,
 // prepares the next run; the present one continues meanwhile, and also if that fails
 std::string RunPage::choose(const Command& command, runtime::Runtime*, const Note&) {
   if (is_preparing() || has_next_) return "another run is being prepared";
-  Options options = *run_.options;
+  ScenarioOptions options = *run_.options;
   const auto* chooser = std::ranges::find(kChoosers, command.name, &Chooser::command);
   if (chooser != std::end(kChoosers)) {
     if (!is_choice(page_choices(options).*chooser->list, command.argument)) {

@@ -28,7 +28,8 @@ namespace hg::page {
 /// A run as its page sees it. What is pointed at outlives the begin of the next run.
 struct ShownRun {
   const config::Scenario* scenario = nullptr;
-  const scenario::Options* options = nullptr;  ///< options that the scenario was loaded with
+  /// Options that the scenario was loaded with
+  const scenario::ScenarioOptions* options = nullptr;
   /// Why the device neither waits nor starts anew; empty = it does, being simulated here
   std::string refusal;
 };
@@ -39,9 +40,9 @@ class RunPage {
   using Note = std::function<void(std::string_view name, const std::string& text)>;
   /// Prepares the run that a page has chosen, on a thread of its own, for when take_next() returns
   /// true. Throws SetupError.
-  using Prepare = std::function<void(const scenario::Options& options)>;
+  using Prepare = std::function<void(const scenario::ScenarioOptions& options)>;
 
-  RunPage(const viewer_server::Options& options, const ShownRun& first, Prepare prepare);
+  RunPage(const viewer_server::ServerOptions& options, const ShownRun& first, Prepare prepare);
 
   std::string url() const { return server_.url(); }
   /// Number of pages connected.

@@ -51,7 +51,7 @@ std::string join(const std::vector<std::string>& names) {
   return text;
 }
 
-void check(const RecordingInfo& info) {
+void check_recording_info(const RecordingInfo& info) {
   const auto require_positive = [](const char* item, double value) {
     if (!(value > 0.0 && std::isfinite(value))) {
       throw SetupError(std::string("recording ") + item + ": must be positive, got " +
@@ -357,7 +357,7 @@ std::uint64_t Recorder::Writer::log_time(double time_s) const {
 }
 
 Recorder::Recorder(const RecordingInfo& info) {
-  check(info);
+  check_recording_info(info);
   writer_ = std::make_unique<Writer>(info);
 }
 

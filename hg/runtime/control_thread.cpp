@@ -48,7 +48,7 @@ int lock_memory() noexcept {
 
 }  // namespace
 
-void check(const ThreadOptions& options) {
+void check_thread_options(const ThreadOptions& options) {
   const auto refuse = [](const char* rule, int value) {
     throw SetupError(std::string("runtime: ") + rule + ", got " + std::to_string(value));
   };

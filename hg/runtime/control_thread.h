@@ -12,7 +12,7 @@ struct ThreadOptions {
 };
 
 /// Throws SetupError naming the option that is out of range.
-void check(const ThreadOptions& options);
+void check_thread_options(const ThreadOptions& options);
 
 /// Real-time properties granted by the system. Errors are those of errno, 0 = granted or not
 /// requested.

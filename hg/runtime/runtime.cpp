@@ -44,7 +44,7 @@ class WayToRest {
 
 }  // namespace
 
-void check(const Options& options) {
+void check_runtime_options(const RuntimeOptions& options) {
   const auto require = [](bool ok, const char* rule, double value) {
     if (!ok) throw SetupError(std::string("runtime: ") + rule + ", got " + std::to_string(value));
   };
@@ -52,11 +52,11 @@ void check(const Options& options) {
           "duration_s must not be negative", options.duration_s);
   require(std::isfinite(options.longest_stop_s) && options.longest_stop_s > 0.0,
           "longest_stop_s must be above 0", options.longest_stop_s);
-  check(options.thread);
+  check_thread_options(options.thread);
 }
 
-Runtime::Runtime(const Options& options, controller::Cycle& cycle, device::Device& device)
-    : options_((check(options), options)),
+Runtime::Runtime(const RuntimeOptions& options, controller::Cycle& cycle, device::Device& device)
+    : options_((check_runtime_options(options), options)),
       cycle_(cycle),
       device_(device),
       session_(cycle, device, {.changes = options.changes, .load = options.load}),
@@ -81,7 +81,7 @@ void Runtime::start() {
   thread_ = std::thread([this] { loop(); });
 }
 
-Report Runtime::join() {
+RuntimeReport Runtime::join() {
   if (thread_.joinable()) thread_.join();
   report_.dropped = samples_.dropped();
   return report_;

@@ -31,7 +31,7 @@
 namespace hg::runtime {
 
 /// Options of a run; set-up data.
-struct Options {
+struct RuntimeOptions {
   bool is_fast = false;     ///< As fast as possible instead of in real time
   double duration_s = 0.0;  ///< Duration until the stop, s; 0 = until request_stop()
   /// Longest wait for standstill before only the brakes stop the device, s: slightly longer than a
@@ -59,10 +59,10 @@ struct Options {
 };
 
 /// Throws SetupError naming the option that is out of range.
-void check(const Options& options);
+void check_runtime_options(const RuntimeOptions& options);
 
 /// Statistics of a run, available after join().
-struct Report {
+struct RuntimeReport {
   std::uint64_t cycles = 0;
   std::uint64_t overruns = 0;  ///< Cycles that ended after the next one was due, or were left out
   std::uint64_t most_overruns_in_a_row = 0;
@@ -80,7 +80,7 @@ struct Report {
 class Runtime {
  public:
   /// `cycle` and `device` must outlive the runtime and belong to it from start() to join().
-  Runtime(const Options& options, controller::Cycle& cycle, device::Device& device);
+  Runtime(const RuntimeOptions& options, controller::Cycle& cycle, device::Device& device);
   ~Runtime();
 
   /// Starts the control thread: arms the device, runs while the dead-man switch is closed, stops it
@@ -90,7 +90,7 @@ class Runtime {
   void request_stop() noexcept { stop_requested_.store(true); }
   bool is_finished() const noexcept { return finished_.load(); }
   /// Waits for the end of the run and returns its statistics.
-  Report join();
+  RuntimeReport join();
 
   /// Takes the next sample; false if there is none yet. One observer thread only.
   bool pop(Sample& sample) noexcept { return samples_.pop(sample); }
@@ -138,7 +138,7 @@ class Runtime {
   static void stage_ended(void* runtime, Stage stage) noexcept;
   void count_stages() noexcept;
 
-  Options options_;
+  RuntimeOptions options_;
   controller::Cycle& cycle_;
   device::Device& device_;
   Session session_;
@@ -160,7 +160,7 @@ class Runtime {
   std::uint64_t overruns_in_a_row_ = 0;
   std::atomic<bool> stop_requested_{false};
   std::atomic<bool> finished_{false};
-  Report report_;
+  RuntimeReport report_;
   std::thread thread_;
 };
 

@@ -42,7 +42,7 @@ void fill_in_start(const config::Scenario& scenario, const Start& start, person:
 }
 
 // Ends of travel of a joint with these limits.
-Interval end_stops(const config::Simulation& reality, const model::Joint& joint, double q_min,
+Interval end_stops(const config::SimulationConfig& reality, const model::Joint& joint, double q_min,
                    double q_max) {
   const bool is_slide = joint.type == model::JointType::kPrismatic;
   const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
@@ -51,7 +51,7 @@ Interval end_stops(const config::Simulation& reality, const model::Joint& joint,
 
 simulator::PlantConfig elastic_plant(const config::SimulatedDevice& device, const Start& start,
                                      double step) {
-  const config::Simulation& reality = device.simulation;
+  const config::SimulationConfig& reality = device.simulation;
   simulator::PlantConfig plant = {
       .step = step,
       .gantry = reality.gantry,
@@ -87,12 +87,13 @@ simulator::PlantConfig elastic_plant(const config::SimulatedDevice& device, cons
 }
 
 // The machine of a device: elastic joints where its joints have actuators.
-simulator::Config device_simulation(const config::SimulatedDevice& device, const Start& start) {
-  const config::Simulation& reality = device.simulation;
+simulator::SimulatorConfig device_simulation(const config::SimulatedDevice& device,
+                                             const Start& start) {
+  const config::SimulationConfig& reality = device.simulation;
   const double period = device.model.dt();
   const bool is_elastic = device.control.method != tracking::Method::kDrives;
-  simulator::Config config = {.sensors = reality.sensors,
-                              .has_dead_man = device.monitor.has_dead_man};
+  simulator::SimulatorConfig config = {.sensors = reality.sensors,
+                                       .has_dead_man = device.monitor.has_dead_man};
   if (is_elastic) {
     config.steps = static_cast<int>(std::ceil(period / reality.step_s - 1e-9));
     config.latency = actual(device.control.loop, reality.factors).latency;
@@ -127,7 +128,7 @@ simulator::Config device_simulation(const config::SimulatedDevice& device, const
 
 // Places the bystander. Throws SetupError where the arm cannot hit anyone.
 void place(const config::BystanderInTheWay& bystander, const model::ChainModel& chain,
-           simulator::Config& simulation) {
+           simulator::SimulatorConfig& simulation) {
   auto* plant = std::get_if<simulator::PlantConfig>(&simulation.plant);
   if (plant == nullptr) {
     throw SetupError(
@@ -146,7 +147,7 @@ simulator::Simulation simulation_of(
       device.simulation.chain && is_elastic ? *device.simulation.chain : device.model.chain;
   const std::string& handle =
       device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
-  simulator::Config config = device_simulation(device, start);
+  simulator::SimulatorConfig config = device_simulation(device, start);
   for (const int frame : device.estimation.units.frames) {
     const auto index = static_cast<std::size_t>(frame);
     config.link_units.push_back(chain.frame(device.model.chain.frame_names()[index]));
@@ -170,15 +171,15 @@ bool notices_frozen_sensors(const config::SimulatedDevice& device) {
 }
 
 controller::Cycle make_cycle(const config::Scenario& scenario) {
-  config::Device device = scenario.device;
+  config::DeviceConfig device = scenario.device;
   if (!notices_frozen_sensors(scenario.device)) device.monitor.frozen_samples = 0.0;
   return config::make_cycle(device, scenario.twin, scenario.surfaces,
                             faults::solver_caps_of(scenario.faults));
 }
 
 person::Person make_person(const config::Scenario& scenario, const Start& start) {
-  person::Config person{scenario.person, scenario.script.hand, scenario.script.script,
-                        scenario.device.simulation.seed};
+  person::PersonConfig person{scenario.person, scenario.script.hand, scenario.script.script,
+                              scenario.device.simulation.seed};
   if (scenario.person == person::PersonKind::kScript) fill_in_start(scenario, start, person.script);
   return person::Person(person, scenario.twin.model.chain, scenario.twin.model.end_effector,
                         scenario.twin.T_B_root);

@@ -15,11 +15,11 @@ std::vector<std::string> joint_names(const DeviceModel& device, int first, int c
 
 }  // namespace
 
-std::vector<std::string> gantry_joints(const config::Device& device) {
+std::vector<std::string> gantry_joints(const config::DeviceConfig& device) {
   return joint_names(device.model, 0, device.model.n_p);
 }
 
-std::vector<std::string> manipulator_joints(const config::Device& device) {
+std::vector<std::string> manipulator_joints(const config::DeviceConfig& device) {
   return joint_names(device.model, device.model.n_p, device.model.n_m);
 }
 
@@ -34,7 +34,7 @@ analysis::RunFacts facts_of_scenario(const config::Scenario& scenario) {
   using rendering::Braking;
   using rendering::Gantry;
   const DeviceModel& device = scenario.device.model;
-  const rendering::Options& law = scenario.device.rendering;
+  const rendering::RenderingOptions& law = scenario.device.rendering;
   const Gantry gantry = rendering::leads_gantry(device, law) ? Gantry::kLaw : Gantry::kRule;
   const Braking braking =
       rendering::brakes_together(device, law) ? Braking::kTogether : Braking::kAlone;

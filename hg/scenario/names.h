@@ -11,10 +11,10 @@
 namespace hg::scenario {
 
 /// Names of the gantry's axes, from the base on.
-std::vector<std::string> gantry_joints(const config::Device& device);
+std::vector<std::string> gantry_joints(const config::DeviceConfig& device);
 
 /// Names of the manipulator's joints, from the gantry on.
-std::vector<std::string> manipulator_joints(const config::Device& device);
+std::vector<std::string> manipulator_joints(const config::DeviceConfig& device);
 
 /// Names of the parts of the device for messages.
 analysis::Names part_names(const config::Scenario& scenario);

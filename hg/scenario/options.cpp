@@ -18,7 +18,8 @@ namespace {
 
 // applies --device, --simulation, --twin, --user and --rate-hz; expected events belong to the
 // scenario as it stands
-void apply(const Options& options, config::SourceReader& reader, config::Scenario& scenario) {
+void apply(const ScenarioOptions& options, config::SourceReader& reader,
+           config::Scenario& scenario) {
   const auto add_sources = [&](const std::vector<config::SourceText>& sources) {
     scenario.sources.insert(scenario.sources.end(), sources.begin(), sources.end());
   };
@@ -85,7 +86,7 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
 }
 
 // applies --plant, --sensors, --hand, --seed and --step
-void apply_to_simulation(const Options& options, config::Scenario& scenario) {
+void apply_to_simulation(const ScenarioOptions& options, config::Scenario& scenario) {
   config::SimulatedDevice& device = scenario.device;
   if (options.plant == "ideal") device.control.method = tracking::Method::kDrives;
   if (options.plant == "elastic" && device.model.actuators.empty()) {
@@ -104,8 +105,8 @@ void apply_to_simulation(const Options& options, config::Scenario& scenario) {
 }
 
 // the options of to_text() that determine the cycle
-Options recorded_options(const std::string& text) {
-  Options options;
+ScenarioOptions recorded_options(const std::string& text) {
+  ScenarioOptions options;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     const std::size_t space = line.find(' ');
@@ -125,7 +126,7 @@ Options recorded_options(const std::string& text) {
   return options;
 }
 
-void apply_law(const Options& options, config::Scenario& scenario) {
+void apply_law(const ScenarioOptions& options, config::Scenario& scenario) {
   choose("--law", options.law, config::Choices<rendering::Law>(config::kLaws),
          scenario.device.rendering.law);
   choose("--bounds", options.bounds, config::Choices<rendering::Bounds>(config::kBounds),
@@ -142,7 +143,7 @@ void apply_law(const Options& options, config::Scenario& scenario) {
 
 }  // namespace
 
-config::Scenario load(const Options& options) {
+config::Scenario load(const ScenarioOptions& options) {
   config::Scenario scenario = config::load_scenario(config::find_scenario(options.scenario));
   config::SourceReader reader;
   apply(options, reader, scenario);
@@ -151,7 +152,7 @@ config::Scenario load(const Options& options) {
   return scenario;
 }
 
-std::string to_text(const Options& options) {
+std::string to_text(const ScenarioOptions& options) {
   std::string text;
   const auto line = [&](const char* option, const std::string& value) {
     if (!value.empty()) text += fmt::format("{} {}\n", option, value);
@@ -175,7 +176,7 @@ std::string to_text(const Options& options) {
 }
 
 config::Scenario load_recorded(std::vector<config::SourceText> sources, const std::string& text) {
-  const Options options = recorded_options(text);
+  const ScenarioOptions options = recorded_options(text);
   config::Scenario scenario = config::load_scenario(sources);
   config::SourceReader reader(std::move(sources));
   apply(options, reader, scenario);

@@ -11,7 +11,7 @@
 namespace hg::scenario {
 
 /// What replaces parts of a scenario: device, person, twin, simulation and law.
-struct Options {
+struct ScenarioOptions {
   std::string scenario = "door";  ///< file, or name of a shipped one
   std::string device;             ///< device.yaml instead of the scenario's; empty = its own
   std::string twin;               ///< twin.yaml instead of the scenario's; empty = its own
@@ -34,10 +34,10 @@ struct Options {
 
 /// Loads the scenario and applies the options. Throws SetupError, which names an option as the
 /// command line does: "--plant elastic: ...".
-config::Scenario load(const Options& options);
+config::Scenario load(const ScenarioOptions& options);
 
 /// The options that change what the scenario says, one per line, for load_recorded().
-std::string to_text(const Options& options);
+std::string to_text(const ScenarioOptions& options);
 
 /// The scenario from the files that a recording holds, and the text of its options; the disk is not
 /// touched. Throws SetupError.

@@ -13,7 +13,8 @@ namespace {
 
 std::string text_of(int error) { return error == 0 ? "" : std::strerror(error); }
 
-analysis::Timing timing_of(const runtime::Options& options, const runtime::Report& report) {
+analysis::Timing timing_of(const runtime::RuntimeOptions& options,
+                           const runtime::RuntimeReport& report) {
   const runtime::ThreadReport& thread = report.thread;
   analysis::Timing timing = {.is_fast = options.is_fast,
                              .priority = thread.priority,
@@ -36,8 +37,8 @@ analysis::Timing timing_of(const runtime::Options& options, const runtime::Repor
 
 }  // namespace
 
-runtime::Options run_options(const config::Scenario& scenario) {
-  runtime::Options options;
+runtime::RuntimeOptions run_options(const config::Scenario& scenario) {
+  runtime::RuntimeOptions options;
   options.duration_s = planned_duration_s(scenario);
   options.longest_stop_s = longest_stop_s(scenario);
   options.changes = scenario.changes;
@@ -48,8 +49,9 @@ runtime::Options run_options(const config::Scenario& scenario) {
   return options;
 }
 
-analysis::RunFacts facts_of_run(const config::Scenario& scenario, const runtime::Options& options,
-                                const runtime::Report& report) {
+analysis::RunFacts facts_of_run(const config::Scenario& scenario,
+                                const runtime::RuntimeOptions& options,
+                                const runtime::RuntimeReport& report) {
   analysis::RunFacts facts = facts_of_scenario(scenario);
   facts.rate_Hz = scenario.device.model.rate_Hz;
   facts.timing = timing_of(options, report);

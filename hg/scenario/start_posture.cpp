@@ -56,7 +56,8 @@ std::optional<Violation> find_violation(const DeviceModel& device, model::ChainD
 }
 
 // throws SetupError when the device may not be at `start`
-void check_limits(const config::Device& device, const config::Twin& twin, const Start& start) {
+void check_limits(const config::DeviceConfig& device, const config::Twin& twin,
+                  const Start& start) {
   model::ChainData chain(device.model.chain);
   const std::optional<Violation> violation =
       find_violation(device.model, chain, stacked(start.q_p, start.q_m));
@@ -70,7 +71,7 @@ void check_limits(const config::Device& device, const config::Twin& twin, const 
 
 // throws SetupError when the handle or a part of the device would be in the floor at `start`: the
 // guard accepts a device in its present posture, so no other check reports it
-void check_floor(const config::Device& device, const config::Twin& twin, const Start& start) {
+void check_floor(const config::DeviceConfig& device, const config::Twin& twin, const Start& start) {
   if (!device.has_floor) return;
   const auto refuse = [&](const std::string& what) {
     throw SetupError(
@@ -95,7 +96,7 @@ void check_floor(const config::Device& device, const config::Twin& twin, const S
   }
 }
 
-Start closed_form_start(const config::Device& device, const config::Twin& twin) {
+Start closed_form_start(const config::DeviceConfig& device, const config::Twin& twin) {
   Start start;
   start.T_B_H = handle_start(twin.model);
   const auto require_solved = [&](model::haptic_giant::InverseStatus status, const char* what) {
@@ -180,7 +181,7 @@ Pose handle_start(const rendering::TwinModel& twin) {
   return chain.pose(twin.end_effector);
 }
 
-Start find_start(const config::Device& device, const config::Twin& twin) {
+Start find_start(const config::DeviceConfig& device, const config::Twin& twin) {
   Start start = device.model.has_closed_form ? closed_form_start(device, twin)
                                              : numeric_start(device.model, twin);
   check_limits(device, twin, start);

@@ -20,6 +20,6 @@ Pose handle_start(const rendering::TwinModel& twin);
 /// The device in its best posture with the handle where the twin's end effector starts. Throws
 /// SetupError with a suggested change when the device cannot be there within its limits and above
 /// its floor.
-Start find_start(const config::Device& device, const config::Twin& twin);
+Start find_start(const config::DeviceConfig& device, const config::Twin& twin);
 
 }  // namespace hg::scenario

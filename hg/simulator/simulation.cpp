@@ -9,8 +9,8 @@
 namespace hg::simulator {
 namespace {
 
-std::variant<IdealPlant, Plant> make_plant(const Config& config, const model::ChainModel& chain,
-                                           int handle) {
+std::variant<IdealPlant, Plant> make_plant(const SimulatorConfig& config,
+                                           const model::ChainModel& chain, int handle) {
   if (const auto* elastic = std::get_if<PlantConfig>(&config.plant)) {
     return Plant(*elastic, chain, handle);
   }
@@ -29,7 +29,7 @@ CommandFrame silence(const Truth& truth) {
 
 }  // namespace
 
-Simulation::Simulation(const Config& config, const model::ChainModel& chain, int handle,
+Simulation::Simulation(const SimulatorConfig& config, const model::ChainModel& chain, int handle,
                        person::Person person)
     : config_(config),
       plant_(make_plant(config, chain, handle)),

@@ -22,7 +22,7 @@
 namespace hg::simulator {
 
 /// Set-up data of a simulation.
-struct Config {
+struct SimulatorConfig {
   /// Series elastic joints that take torques, or drives that take positions.
   std::variant<IdealPlantConfig, PlantConfig> plant;
   int steps = 1;         ///< steps of the plant per period; 1 for an ideal one
@@ -43,7 +43,7 @@ class Simulation {
 
   /// `chain` is that of the plant, `handle` its frame H. Throws SetupError when the latency is
   /// longer than kMaxLatency periods.
-  Simulation(const Config& config, const model::ChainModel& chain, int handle,
+  Simulation(const SimulatorConfig& config, const model::ChainModel& chain, int handle,
              person::Person person);
 
   /// Present sensor readings.
@@ -68,7 +68,7 @@ class Simulation {
   void watch_over(const SafetyPanel& panel) noexcept;
   void sample() noexcept;
 
-  Config config_;
+  SimulatorConfig config_;
   std::variant<IdealPlant, Plant> plant_;
   std::uint64_t latency_steps_;
   Sensors sensors_;

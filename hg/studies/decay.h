@@ -7,7 +7,7 @@
 namespace hg::studies {
 
 /// Decay of a handle's motion after a kick, classified as in [C] 3.
-enum class Verdict {
+enum class DecayClass {
   kStable,     ///< at rest in time
   kSlow,       ///< decays, but is not at rest in time
   kHunts,      ///< continues, but only because of friction: the joints stick and slip
@@ -15,11 +15,11 @@ enum class Verdict {
   kDiverges,   ///< grows, loses the reference, or ends in a fault
 };
 
-std::string_view to_string(Verdict verdict) noexcept;
+std::string_view to_string(DecayClass verdict) noexcept;
 /// Whether the motion comes to rest. Continued motion counts as unstable even if only friction
 /// sustains it.
-constexpr bool is_stable(Verdict verdict) noexcept {
-  return verdict == Verdict::kStable || verdict == Verdict::kSlow;
+constexpr bool is_stable(DecayClass verdict) noexcept {
+  return verdict == DecayClass::kStable || verdict == DecayClass::kSlow;
 }
 
 /// Rule for a handle at rest. [C] 3 looks at 2 s; a heavy body on a soft hand swings too slowly for
@@ -34,6 +34,6 @@ struct CalmRule {
 
 /// Judges the speeds after a kick, at least three windows long. The first window, with the kick,
 /// does not count; the last one does. Never kHunts: that takes a second kick.
-Verdict judge_decay(std::span<const double> speed, const CalmRule& rule, double rate_Hz);
+DecayClass judge_decay(std::span<const double> speed, const CalmRule& rule, double rate_Hz);
 
 }  // namespace hg::studies

@@ -99,7 +99,7 @@ class Travel {
     share_ = std::max(share_, std::min(std::abs(off), std::abs(moved)) / stated);
   }
 
-  const config::Device& device_;
+  const config::DeviceConfig& device_;
   bool has_begun_ = false;
   VectorM from_m_, plan_from_m_, plan_m_, at_stop_m_, off_m_;
   VectorP from_p_, plan_p_, speed_p_, at_stop_p_, off_p_;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kLags = 12;  // periods that the units may be late
 
 // The first link that each joint moves, root to tip.
-std::vector<std::string> moved_links(const config::Device& device) {
+std::vector<std::string> moved_links(const config::DeviceConfig& device) {
   model::ChainData chain(device.model.chain);
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(chain.model().nv(), 0.5);
   chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.model().nv()));
@@ -67,7 +67,7 @@ Vector6 at_handle(const Vector6& root, const Eigen::Vector3d& from_root) {
 
 class Judge {
  public:
-  Judge(const config::Device& device, const UnitSet& units)
+  Judge(const config::DeviceConfig& device, const UnitSet& units)
       : model_(device.model),
         dt_(device.model.dt()),
         root_(frames_of(device, units.links).front()) {}
@@ -182,13 +182,14 @@ nlohmann::ordered_json to_json(const EstimateErrors& errors) {
 
 }  // namespace
 
-std::vector<int> frames_of(const config::Device& device, const std::vector<std::string>& links) {
+std::vector<int> frames_of(const config::DeviceConfig& device,
+                           const std::vector<std::string>& links) {
   std::vector<int> frames;
   for (const std::string& link : links) frames.push_back(device.model.chain.frame(link));
   return frames;
 }
 
-std::vector<UnitSet> unit_sets(const config::Device& device) {
+std::vector<UnitSet> unit_sets(const config::DeviceConfig& device) {
   const std::vector<std::string> links = moved_links(device);
   const auto n_p = device.model.n_p;
   std::vector<std::string> all = links, arm(links.begin() + n_p, links.end());

@@ -24,10 +24,11 @@ struct UnitSet {
 
 /// Sets of units: one on each link that a different joint moves, and subsets. Without a gantry,
 /// those of the arm.
-std::vector<UnitSet> unit_sets(const config::Device& device);
+std::vector<UnitSet> unit_sets(const config::DeviceConfig& device);
 
 /// Frames of the links in the device's chain.
-std::vector<int> frames_of(const config::Device& device, const std::vector<std::string>& links);
+std::vector<int> frames_of(const config::DeviceConfig& device,
+                           const std::vector<std::string>& links);
 
 /// rms of an estimate minus the truth. Joints of the manipulator are taken together.
 struct EstimateErrors {

@@ -44,7 +44,7 @@ void set_kick(const Kick& kick, config::Scenario& scenario) {
 
 // From the first stable mass of the ladder downwards.
 double stable_from(const StabilityConfig& config, const StabilityRow& row,
-                   const std::function<Verdict(double)>& verdict_at) {
+                   const std::function<DecayClass(double)>& verdict_at) {
   const auto first = std::ranges::find_if(
       row.outcomes, [](const KickOutcome& outcome) { return is_stable(outcome.verdict); });
   if (first == row.outcomes.end()) return kInfinity;
@@ -77,13 +77,13 @@ KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) 
   outcome.fault = player.record().fault.code;
   if (!player.is_running()) {
     outcome.was_lost = true;
-    outcome.verdict = Verdict::kDiverges;
+    outcome.verdict = DecayClass::kDiverges;
     return outcome;
   }
   const auto window = std::llround(config.calm.window * rate_Hz);
   outcome.last_speed = *std::max_element(speed.end() - window, speed.end());
   outcome.was_lost = was_lost;
-  outcome.verdict = was_lost ? Verdict::kDiverges : judge_decay(speed, config.calm, rate_Hz);
+  outcome.verdict = was_lost ? DecayClass::kDiverges : judge_decay(speed, config.calm, rate_Hz);
   return outcome;
 }
 
@@ -135,7 +135,7 @@ KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config
   KickOutcome outcome = play(played, config);
   if (!is_stable(outcome.verdict) && !outcome.was_lost) {
     take_friction(played.device.model);
-    if (is_stable(play(played, config).verdict)) outcome.verdict = Verdict::kHunts;
+    if (is_stable(play(played, config).verdict)) outcome.verdict = DecayClass::kHunts;
   }
   return outcome;
 }

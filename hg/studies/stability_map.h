@@ -52,7 +52,7 @@ struct StabilityConfig {
 
 /// Result of one kick.
 struct KickOutcome {
-  Verdict verdict = Verdict::kStable;
+  DecayClass verdict = DecayClass::kStable;
   double last_speed = 0.0;  ///< largest speed of the handle in the last window, m/s
   bool was_lost = false;    ///< the reference was not followed in the last window, or a fault came
   FaultCode fault = FaultCode::kNone;

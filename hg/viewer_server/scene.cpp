@@ -31,7 +31,7 @@ int coordinate_count(const SceneChain& chain) {
   return count;
 }
 
-void check(const Scene& scene) {
+void check_scene(const Scene& scene) {
   check_chain(scene.device, "device");
   check_chain(scene.twin, "twin");
   if (scene.box.isEmpty() || !scene.box.min().allFinite() || !scene.box.max().allFinite()) {

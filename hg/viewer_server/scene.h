@@ -105,6 +105,6 @@ struct Scene {
 int coordinate_count(const SceneChain& chain);
 
 /// Throws SetupError unless the files exist, names are given and the box and rate are finite.
-void check(const Scene& scene);
+void check_scene(const Scene& scene);
 
 }  // namespace hg::viewer_server

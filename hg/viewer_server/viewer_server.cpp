@@ -106,7 +106,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kSendBuffer = 64 * 1024;  // bytes; small, so that what arrives is fresh
 
-tcp::acceptor listen_on(asio::io_context& context, const Options& options) {
+tcp::acceptor listen_on(asio::io_context& context, const ServerOptions& options) {
   tcp::acceptor acceptor(context);
   error_code error;
   const tcp::endpoint endpoint(asio::ip::make_address(options.address, error), options.port);
@@ -148,7 +148,7 @@ AssetTable assets_of(const Scene& scene, double update_rate_hz) {
 }  // namespace
 
 struct ViewerServer::Impl {
-  Impl(const Options& options, const Scene& scene)
+  Impl(const ServerOptions& options, const Scene& scene)
       : update_rate_hz(options.update_rate_hz),
         period(std::chrono::duration_cast<Clock::duration>(
             std::chrono::duration<double>(1.0 / options.update_rate_hz))),
@@ -268,7 +268,7 @@ struct ViewerServer::Impl {
 
 namespace {
 
-void check(const Options& options) {
+void check_server_options(const ServerOptions& options) {
   if (!std::isfinite(options.update_rate_hz) || options.update_rate_hz <= 0.0) {
     throw SetupError("viewer: update_rate_hz must be positive, got " +
                      std::to_string(options.update_rate_hz));
@@ -280,9 +280,9 @@ void check(const Options& options) {
 
 }  // namespace
 
-ViewerServer::ViewerServer(const Options& options, const Scene& scene) {
-  check(options);
-  check(scene);
+ViewerServer::ViewerServer(const ServerOptions& options, const Scene& scene) {
+  check_server_options(options);
+  check_scene(scene);
   impl_ = std::make_unique<Impl>(options, scene);
   impl_->run = scene.run;
 }
@@ -297,7 +297,7 @@ std::string ViewerServer::url() const {
 }
 
 void ViewerServer::set_scene(const Scene& scene) {
-  check(scene);
+  check_scene(scene);
   auto next = std::make_unique<Impl::NewScene>(
       Impl::NewScene{scene, assets_of(scene, impl_->update_rate_hz)});
   impl_->run = scene.run;

@@ -25,7 +25,7 @@
 
 namespace hg::viewer_server {
 
-struct Options {
+struct ServerOptions {
   /// Listening address; 0.0.0.0 or :: = all addresses of this machine
   std::string address = "127.0.0.1";
   std::uint16_t port = 0;        ///< 0 = any free port
@@ -49,7 +49,7 @@ class ViewerServer {
  public:
   /// Starts listening before it returns. Throws SetupError: port taken, page or URDF file missing,
   /// scene inconsistent.
-  ViewerServer(const Options& options, const Scene& scene);
+  ViewerServer(const ServerOptions& options, const Scene& scene);
   ~ViewerServer();
   ViewerServer(const ViewerServer&) = delete;
   ViewerServer& operator=(const ViewerServer&) = delete;

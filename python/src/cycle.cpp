@@ -139,8 +139,8 @@ struct OwnDevice {
   std::unique_ptr<device::Device> device;
 };
 
-void restore(controller::Cycle& cycle, const controller::State& state) {
-  const rendering::State &now = cycle.state().rendering, &then = state.rendering;
+void restore(controller::Cycle& cycle, const controller::CycleState& state) {
+  const rendering::RenderingState &now = cycle.state().rendering, &then = state.rendering;
   require_size("state: joints", now.reference.q_m.size(), then.reference.q_m.size());
   require_size("state: coordinates of the twin", now.twin.q_a.size(), then.twin.q_a.size());
   require_size("state: gantry", cycle.state().dq_p.size(), state.dq_p.size());
@@ -148,7 +148,7 @@ void restore(controller::Cycle& cycle, const controller::State& state) {
 }
 
 void bind_parts(nb::module_& module) {
-  nb::class_<controller::State>(module, "State", "All that a cycle remembers; a snapshot.");
+  nb::class_<controller::CycleState>(module, "State", "All that a cycle remembers; a snapshot.");
   nb::class_<OwnCycle>(module, "Cycle",
                        "One pass of the control loop per step(); no clock, no I/O.")
       .def(nb::init<const Scenario&>(), nb::arg("scenario"))
@@ -170,7 +170,7 @@ void bind_parts(nb::module_& module) {
           nb::arg("sensors"), "Whether the handle is held; nothing runs otherwise.")
       .def_prop_rw(
           "state", [](const OwnCycle& self) { return self.cycle.state(); },
-          [](OwnCycle& self, const controller::State& state) { restore(self.cycle, state); },
+          [](OwnCycle& self, const controller::CycleState& state) { restore(self.cycle, state); },
           "copy of its memory; assign it to go back");
   nb::class_<OwnDevice>(module, "SimulatedDevice",
                         "The device of a scenario and the person who holds it.")
@@ -219,7 +219,7 @@ void bind_session(nb::module_& module) {
           "what the next step() gets: set hand_target or change in it")
       .def_prop_rw(
           "state", [](Session& self) { return self.cycle().state(); },
-          [](Session& self, const controller::State& state) { restore(self.cycle(), state); },
+          [](Session& self, const controller::CycleState& state) { restore(self.cycle(), state); },
           "of the cycle, not of the simulated world");
 }
 

@@ -116,7 +116,7 @@ std::vector<int> add_bounds(Problem& problem, const ArrayIn& lb, const ArrayIn& 
 
 SolutionOut solve(const Problem& problem, const ActiveSet* active,
                   const hqp::SolverOptions& options) {
-  hqp::check(options);
+  hqp::check_solver_options(options);
   hqp::Solver solver(problem.capacity());
   SolutionOut out{problem, options, Solution(problem.capacity()), active ? *active : ActiveSet{}};
   const hqp::Status status = solver.solve(problem, options, out.active_set, out.solution);
@@ -145,7 +145,7 @@ std::string explain(const SolutionOut& out, std::optional<int> level) {
 
 void write_problem(const std::string& file, const Problem& problem, const ActiveSet* active,
                    const hqp::SolverOptions& options, const std::string& name) {
-  hqp::check(options);  // before the file is touched
+  hqp::check_solver_options(options);  // before the file is touched
   std::optional<ActiveSet> guess;
   if (active != nullptr) guess = *active;
   std::ofstream out(file);

@@ -69,7 +69,7 @@ void bind_structs(nb::module_& module) {
           "__init__",
           [](JointLimits* self, double q_min, double q_max, double dq_max, double ddq_max) {
             const JointLimits given{q_min, q_max, dq_max, ddq_max};
-            check(given, "JointLimits");
+            check_joint_limits(given, "JointLimits");
             new (self) JointLimits(given);
           },
           nb::arg("q_min") = -kInfinity, nb::arg("q_max") = kInfinity,
@@ -96,7 +96,7 @@ void bind_acceleration_bounds(nb::module_& module) {
         require_positive("dt", dt);
         const RecoverableOptions options =
             given ? *given : limits::recoverable_options(joint, dt, dt);
-        check(options, joint, dt, "RecoverableOptions");
+        check_recoverable_options(options, joint, dt, "RecoverableOptions");
         return for_each_state(q, dq, [&](double position, double speed) {
           return limits::recoverable_bounds(joint, options, position, speed, dt);
         });
@@ -133,7 +133,7 @@ void bind_limits(nb::module_& module) {
       "braking_velocity_bounds",
       [](double q_min, double q_max, const ArrayLike& q, double tau, double ddq_max) {
         const limits::DriveResponse drive{.tau = tau, .ddq_max = ddq_max};
-        check(drive, "braking_velocity_bounds");
+        check_drive_response(drive, "braking_velocity_bounds");
         return for_each_state(q, q, [&](double position, double) {
           return limits::braking_velocity_bounds({q_min, q_max}, drive, position);
         });

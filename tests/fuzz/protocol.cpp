@@ -43,7 +43,7 @@ void protocol(Bytes bytes) {
     std::memcpy(datagram.data() + datagram.size() - 4, &crc, sizeof crc);
   }
   Header header;
-  if (read_header(datagram, header) != Verdict::kGood) return;
+  if (read_header(datagram, header) != DatagramCheck::kGood) return;
   switch (static_cast<MessageType>(header.type)) {
     case MessageType::kHello:
       return go_round<Hello>(datagram, header);

@@ -145,7 +145,7 @@ rendering::TwinModel recorded_twin(const Recording& recording, const std::vector
   return twin;
 }
 
-rendering::Options recorded_options(const Recording& recording) {
+rendering::RenderingOptions recorded_options(const Recording& recording) {
   const nlohmann::json& params = recording.header.at("params");
   return {.law = rendering::Law::kPaper,
           .bounds = rendering::Bounds::kPaper,

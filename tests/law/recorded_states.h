@@ -33,6 +33,6 @@ Eigen::VectorXd vector_of(const nlohmann::json& array);
 /// at zero that holds always.
 DeviceModel recorded_device(const Recording& recording);
 rendering::TwinModel recorded_twin(const Recording& recording, const std::vector<int>& locked);
-rendering::Options recorded_options(const Recording& recording);
+rendering::RenderingOptions recorded_options(const Recording& recording);
 
 }  // namespace hg

@@ -36,8 +36,9 @@ std::size_t limit_of(std::size_t i, std::size_t n_a, std::size_t count) {
   return i < n_a ? count - n_a + i : i - n_a;
 }
 
-rendering::State recorded_state(const nlohmann::json& in, rendering::Rendering& rendering) {
-  rendering::State state = rendering.start(vector_of(in.at("qm")));
+rendering::RenderingState recorded_state(const nlohmann::json& in,
+                                         rendering::Rendering& rendering) {
+  rendering::RenderingState state = rendering.start(vector_of(in.at("qm")));
   state.reference.dq_m = vector_of(in.at("dqm"));
   state.twin.q_a = vector_of(in.at("qa"));
   state.twin.dq_a = vector_of(in.at("dqa"));
@@ -93,7 +94,8 @@ void expect_same_problem(const hqp::Problem& got, const hqp::Problem& expected) 
 }
 
 void expect_same_outputs(const nlohmann::json& out, const std::vector<double>& solution,
-                         const rendering::LawResult& result, const rendering::State& state) {
+                         const rendering::LawResult& result,
+                         const rendering::RenderingState& state) {
   double largest = 0.0;
   const int n_a = static_cast<int>(result.ddq_a.size());
   for (int i = 0; i < 6 + n_a; ++i) {
@@ -136,7 +138,7 @@ TEST_P(RecordedStates, GiveTheRecordedProblemsAccelerationsAndFlags) {
     SCOPED_TRACE("state " + std::to_string(k));
     const nlohmann::json& line = recording.states[k];
     rendering::Rendering& rendering = renderings.with(line.at("locked").get<std::vector<int>>());
-    rendering::State state = recorded_state(line, rendering);
+    rendering::RenderingState state = recorded_state(line, rendering);
     const RobotState robot = recorded_input(line);
     rendering::LawResult result;
     ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
@@ -180,7 +182,7 @@ TEST(RecordedDoor, FollowsALockThatEngagesInMotion) {
     SCOPED_TRACE("state " + std::to_string(k));
     const double q = 2e-4 * static_cast<double>(1 + states++);
     const double dq = -std::sqrt(2.0 * ddq_max * q);
-    const auto step = [&](const std::vector<int>& locks, rendering::State& state) {
+    const auto step = [&](const std::vector<int>& locks, rendering::RenderingState& state) {
       rendering::Rendering& rendering = renderings.with(locks);
       state = recorded_state(line, rendering);
       state.twin.q_a[0] = q;
@@ -191,7 +193,7 @@ TEST(RecordedDoor, FollowsALockThatEngagesInMotion) {
       EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
       return result;
     };
-    rendering::State state;
+    rendering::RenderingState state;
     step({0, 0}, state);
     hqp::Problem expected = renderings.with({0, 0}).problem();
     const double ddq = std::clamp(-dq / dt, -ddq_max, ddq_max);

@@ -25,7 +25,7 @@ Played played(ScenarioRun& run, double seconds) {
   Played result;
   run.play([&](const Sample& sample) { result.hashes.push_back(sample.record.state_hash); },
            seconds);
-  for (const analysis::Event& event : run.summary().events()) {
+  for (const analysis::RunEvent& event : run.summary().events()) {
     result.events.push_back(event.name + " " + std::to_string(event.time_s));
   }
   return result;

@@ -107,7 +107,7 @@ class ScenarioRun {
 
   /// Time of an event; -1 if it did not happen.
   double time_of(const std::string& name) const {
-    for (const analysis::Event& event : summary_.events()) {
+    for (const analysis::RunEvent& event : summary_.events()) {
       if (event.name == name) return event.time_s;
     }
     return -1.0;

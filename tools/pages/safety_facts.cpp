@@ -13,13 +13,13 @@ using namespace safety;
 nlohmann::ordered_json safety_facts() {
   nlohmann::ordered_json facts;
   for (std::size_t s = 0; s < kStateCount; ++s) {
-    facts["states"].push_back(to_string(static_cast<State>(s)));
+    facts["states"].push_back(to_string(static_cast<SafetyState>(s)));
   }
   for (std::size_t e = 0; e < kEventCount; ++e) {
-    const auto event = static_cast<Event>(e);
+    const auto event = static_cast<SafetyEvent>(e);
     nlohmann::ordered_json row = {to_string(event)};
     for (std::size_t s = 0; s < kStateCount; ++s) {
-      const auto state = static_cast<State>(s);
+      const auto state = static_cast<SafetyState>(s);
       const Transition to = transition(state, event);
       row.push_back(to.refusal != Refusal::kNone ? "refused"
                     : to.next == state           ? "-"

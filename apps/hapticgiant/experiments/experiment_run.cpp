@@ -101,14 +101,15 @@ void show_progress(std::string_view name, double done_s, double total_s) {
                  : fmt::format("{}: {:.0f} of {:.0f} s simulated", name, done_s, total_s));
 }
 
-runtime::Options runtime_options(const config::Scenario& scenario, const RunArguments& arguments) {
-  runtime::Options options;
+runtime::RuntimeOptions runtime_options(const config::Scenario& scenario,
+                                        const RunArguments& arguments) {
+  runtime::RuntimeOptions options;
   options.is_fast = true;
   options.duration_s = arguments.duration_s.value_or(scenario::planned_duration_s(scenario));
   options.longest_stop_s = scenario::longest_stop_s(scenario);
   options.changes = scenario.changes;
   options.load = faults::loads_of(scenario.faults);
-  runtime::check(options);
+  runtime::check_runtime_options(options);
   return options;
 }
 
@@ -118,7 +119,7 @@ void play_experiment(const PaperExperiment& experiment, const RunArguments& argu
                      const std::string& command) {
   const fs::path folder = arguments.recordings;
   const config::Scenario scenario = make_scenario(arguments);
-  const runtime::Options options = runtime_options(scenario, arguments);
+  const runtime::RuntimeOptions options = runtime_options(scenario, arguments);
   controller::Cycle cycle = scenario::make_cycle(scenario);
   const auto device = scenario::make_simulated_device(scenario);
   runtime::Runtime runtime(options, cycle, *device);
@@ -138,7 +139,7 @@ void play_experiment(const PaperExperiment& experiment, const RunArguments& argu
     show_progress(experiment.name, sample->record.time_s, options.duration_s);
     if (!is_finished) std::this_thread::sleep_for(kIdle);
   }
-  const runtime::Report report = runtime.join();
+  const runtime::RuntimeReport report = runtime.join();
   show_progress(experiment.name, 1.0, 1.0);
 
   Json run = describe(scenario);

@@ -44,7 +44,7 @@ Json measure(const PaperExperimentArguments& arguments, const std::string& law, 
   return row;
 }
 
-void check(const std::vector<double>& rates_Hz) {
+void check_rates(const std::vector<double>& rates_Hz) {
   for (const double rate_Hz : rates_Hz) {
     if (rate_Hz >= 100.0 && rate_Hz <= 20000.0) continue;
     throw SetupError(fmt::format("--rates: must be from 100 to 20000, got {:g}", rate_Hz));
@@ -54,7 +54,7 @@ void check(const std::vector<double>& rates_Hz) {
 }  // namespace
 
 int timing_experiment(const PaperExperimentArguments& arguments) {
-  check(arguments.rates_Hz);
+  check_rates(arguments.rates_Hz);
   const fs::path folder = fs::path(arguments.out) / "timing";
   make_folder(folder.string());
   print_out(fmt::format("HapticGiant {}  computing time of a cycle\n\n", kVersion));

@@ -98,13 +98,13 @@ class MachineTest : public ::testing::Test {
   }
   ~MachineTest() override { std::filesystem::remove_all(folder_); }
 
-  void keep_result(const config::Device& device, bool has_passed = true) {
-    start_test::Result result = {.device = device.name,
-                                 .address = arguments_.device_address,
-                                 .version = "test",
-                                 .files_sha256 = start_test::sha256_of(device),
-                                 .ended = std::time(nullptr),
-                                 .has_passed = has_passed};
+  void keep_result(const config::DeviceConfig& device, bool has_passed = true) {
+    start_test::StartTestResult result = {.device = device.name,
+                                          .address = arguments_.device_address,
+                                          .version = "test",
+                                          .files_sha256 = start_test::sha256_of(device),
+                                          .ended = std::time(nullptr),
+                                          .has_passed = has_passed};
     write_whole_file(
         start_test::start_test_file(folder_.string(), device, arguments_.device_address),
         to_json(result));
@@ -138,7 +138,7 @@ TEST_F(MachineTest, RunsOnlyWithAStartTestThatCounts) {
   expect_part(refusal(), "--without-start-test");
   keep_result(scenario.device, false);
   expect_part(refusal(), "it did not finish");
-  config::Device other = scenario.device;
+  config::DeviceConfig other = scenario.device;
   other.sources.front().content += "# changed";
   keep_result(other);
   expect_part(refusal(), "the files of the device have changed since");

@@ -270,7 +270,7 @@ TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
     sample.cycle_time_us = k;
     summary.add(sample);
   }
-  summary.add(Event{"open", 0.5, "the door is open"});
+  summary.add(RunEvent{"open", 0.5, "the door is open"});
   const auto json = nlohmann::json::parse(summary.to_json({.version = "1.2.3"}, {"closed"}));
   EXPECT_EQ(json["version"], "1.2.3");
   EXPECT_EQ(json["events"][0]["name"], "open");

@@ -9,7 +9,7 @@
 
 namespace hg::checks {
 
-nlohmann::ordered_json capability_map(const config::Device& device) {
+nlohmann::ordered_json capability_map(const config::DeviceConfig& device) {
   constexpr int kPostures = 60'000;
   const Eigen::AlignedBox3d box = handle_box(device.model);
   nlohmann::ordered_json json = {{"kind", "capability"}, {"device", device.name}};

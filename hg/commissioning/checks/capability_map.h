@@ -9,6 +9,6 @@ namespace hg::checks {
 
 /// Title, box of the handle, and 60,000 positions within all limits as x, y, z in m, force in N;
 /// null = no limit. python/hapticgiant/report/capability.py draws sections through them.
-nlohmann::ordered_json capability_map(const config::Device& device);
+nlohmann::ordered_json capability_map(const config::DeviceConfig& device);
 
 }  // namespace hg::checks

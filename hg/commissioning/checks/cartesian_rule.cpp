@@ -38,7 +38,8 @@ bool is_limited(const limits::JointLimits& limits) {
 
 }  // namespace
 
-std::vector<CartesianRule> cartesian_rules(const config::Device& device, const Survey& survey) {
+std::vector<CartesianRule> cartesian_rules(const config::DeviceConfig& device,
+                                           const Survey& survey) {
   const DeviceModel& model = device.model;
   const std::size_t n = 3 * model.cartesian_limits.size();
   std::vector<std::vector<double>> values(n);  // half of what the joints give, m/s^2
@@ -74,7 +75,8 @@ std::vector<CartesianRule> cartesian_rules(const config::Device& device, const S
   return rules;
 }
 
-void inspect_cartesian_rule(const config::Device& device, const Survey& survey, Collector& out) {
+void inspect_cartesian_rule(const config::DeviceConfig& device, const Survey& survey,
+                            Collector& out) {
   constexpr double kTolerated = 0.25, kRare = 0.01;  // shares of postures
   for (const CartesianRule& rule : cartesian_rules(device, survey)) {
     if (rule.share_too_weak < kRare) continue;

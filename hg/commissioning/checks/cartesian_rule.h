@@ -22,8 +22,10 @@ struct CartesianRule {
   double low_acceleration = 0.0;  ///< 5 % of these have less acceleration for braking
 };
 
-std::vector<CartesianRule> cartesian_rules(const config::Device& device, const Survey& survey);
+std::vector<CartesianRule> cartesian_rules(const config::DeviceConfig& device,
+                                           const Survey& survey);
 
-void inspect_cartesian_rule(const config::Device& device, const Survey& survey, Collector& out);
+void inspect_cartesian_rule(const config::DeviceConfig& device, const Survey& survey,
+                            Collector& out);
 
 }  // namespace hg::checks

@@ -12,8 +12,8 @@
 
 namespace hg::checks {
 
-void inspect_collisions(const config::Device& device, Collector& out) {
-  const collision::Config& config = device.collision;
+void inspect_collisions(const config::DeviceConfig& device, Collector& out) {
+  const collision::CollisionConfig& config = device.collision;
   const std::string unknown =
       device.unknown_links.empty()
           ? std::string()
@@ -39,7 +39,7 @@ void inspect_collisions(const config::Device& device, Collector& out) {
           "");
 }
 
-void inspect_floor(const config::Device& device, const Survey& survey, Collector& out) {
+void inspect_floor(const config::DeviceConfig& device, const Survey& survey, Collector& out) {
   if (!device.has_floor) return;
   constexpr const char* kKey = "floor_z_m";
   double highest = -kInfinity;

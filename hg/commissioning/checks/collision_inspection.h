@@ -8,10 +8,10 @@
 namespace hg::checks {
 
 /// Adds one finding: a note, or a warning where parts of the device move unwatched.
-void inspect_collisions(const config::Device& device, Collector& out);
+void inspect_collisions(const config::DeviceConfig& device, Collector& out);
 
 /// Adds findings on a floor above all places of the handle, or one that contains a part of the
 /// device in all postures.
-void inspect_floor(const config::Device& device, const Survey& survey, Collector& out);
+void inspect_floor(const config::DeviceConfig& device, const Survey& survey, Collector& out);
 
 }  // namespace hg::checks

@@ -31,7 +31,7 @@ Distribution distribution(const Survey& survey, Value value) {
   return {quantile(values, 0.0), quantile(values, kLow), quantile(values, 0.5)};
 }
 
-Bottleneck bottleneck(const config::Device& device, const Survey& survey, int first_joint,
+Bottleneck bottleneck(const config::DeviceConfig& device, const Survey& survey, int first_joint,
                       Guarantee Posture::*guarantee) {
   const auto& joints = device.model.chain.joints();
   std::vector<int> counts(joints.size(), 0);
@@ -45,7 +45,7 @@ Bottleneck bottleneck(const config::Device& device, const Survey& survey, int fi
           static_cast<double>(*most) / static_cast<double>(survey.postures.size())};
 }
 
-std::vector<JointLine> joint_lines(const config::Device& device, const Survey& survey) {
+std::vector<JointLine> joint_lines(const config::DeviceConfig& device, const Survey& survey) {
   const DeviceModel& model = device.model;
   std::vector<JointLine> lines;
   for (std::size_t i = 0; i < model.chain.joints().size(); ++i) {
@@ -70,7 +70,7 @@ std::vector<JointLine> joint_lines(const config::Device& device, const Survey& s
   return lines;
 }
 
-void fill_capability(const config::Device& device, const Survey& survey, Datasheet& sheet) {
+void fill_capability(const config::DeviceConfig& device, const Survey& survey, Datasheet& sheet) {
   const int n_p = device.model.n_p;
   sheet.force = distribution(survey, [](const Posture& p) { return p.force.value; });
   sheet.torque = distribution(survey, [](const Posture& p) { return p.torque.value; });
@@ -88,7 +88,7 @@ void fill_capability(const config::Device& device, const Survey& survey, Datashe
 
 }  // namespace
 
-Datasheet make_datasheet(const config::Device& device, const Survey& survey) {
+Datasheet make_datasheet(const config::DeviceConfig& device, const Survey& survey) {
   Datasheet sheet;
   sheet.name = device.name;
   sheet.options = survey.options;

@@ -51,7 +51,7 @@ struct Datasheet {
   std::vector<JointLine> joints;  ///< line per joint, gantry first
   /// Distance of the handle from the axis of the arm's first joint, m; 0 = no axis
   double reach = 0.0;
-  Workspace workspace;
+  HandleWorkspace workspace;
   bool has_ratings = false;  ///< some joint has a torque rating
   Distribution force;        ///< force in the worst direction, N
   Distribution torque;       ///< torque in the worst direction, Nm
@@ -71,6 +71,6 @@ struct Datasheet {
   double stop_time = 0.0;          ///< stated stopping time, s
 };
 
-Datasheet make_datasheet(const config::Device& device, const Survey& survey);
+Datasheet make_datasheet(const config::DeviceConfig& device, const Survey& survey);
 
 }  // namespace hg::checks

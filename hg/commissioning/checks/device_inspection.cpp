@@ -23,7 +23,7 @@ std::string position_key(const model::Joint& joint, const char* end) {
                      joint.type == model::JointType::kPrismatic ? "m" : "rad");
 }
 
-void inspect_synchronisation(const config::Device& device, Collector& out) {
+void inspect_synchronisation(const config::DeviceConfig& device, Collector& out) {
   const double dt = device.model.dt();
   const auto inspect_pair = [&](double kP, double kD, const char* tag) {
     const std::string key_P = fmt::format("synchronisation.kP_{}_1_per_s2", tag);
@@ -56,7 +56,7 @@ void inspect_synchronisation(const config::Device& device, Collector& out) {
   inspect_pair(device.rendering.kP_rot, device.rendering.kD_rot, "rot");
 }
 
-void inspect_gantry(const config::Device& device, Collector& out) {
+void inspect_gantry(const config::DeviceConfig& device, Collector& out) {
   if (device.model.n_p == 0) return;
   const double k_max = 1.0 / (4.0 * device.model.drive.lag);
   const double k_unstable = 1.0 / (device.model.drive.lag + device.model.drive.dead_time);
@@ -69,7 +69,7 @@ void inspect_gantry(const config::Device& device, Collector& out) {
       fmt::format("lower it to {:.2g}, or give the drive's true lag in drive.lag_s", 0.7 * k_max));
 }
 
-void inspect_joints(const config::Device& device, const Survey& survey, Collector& out) {
+void inspect_joints(const config::DeviceConfig& device, const Survey& survey, Collector& out) {
   const DeviceModel& model = device.model;
   for (std::size_t i = 0; i < model.chain.joints().size(); ++i) {
     const model::Joint& joint = model.chain.joints()[i];
@@ -97,7 +97,7 @@ void inspect_joints(const config::Device& device, const Survey& survey, Collecto
   }
 }
 
-void inspect_virtual_joints(const config::Device& device, Collector& out) {
+void inspect_virtual_joints(const config::DeviceConfig& device, Collector& out) {
   const DeviceModel& model = device.model;
   for (std::size_t k = 0; k < model.virtual_joints.size(); ++k) {
     const VirtualJoint& joint = model.virtual_joints[k];
@@ -131,7 +131,7 @@ void inspect_virtual_joints(const config::Device& device, Collector& out) {
   }
 }
 
-void inspect_boxes(const config::Device& device, const Survey& survey, Collector& out) {
+void inspect_boxes(const config::DeviceConfig& device, const Survey& survey, Collector& out) {
   constexpr double kFixed = 1e-6;  // m; a coordinate that varies less is constant
   const DeviceModel& model = device.model;
   for (std::size_t k = 0; k < survey.cloud.frames.size(); ++k) {
@@ -168,7 +168,7 @@ std::ptrdiff_t faults_of(const Collector& out) {
 }
 
 // Sums of joints and boxes that are possible one by one may leave no room together.
-void inspect_room(const config::Device& device, const Survey& survey, Collector& out) {
+void inspect_room(const config::DeviceConfig& device, const Survey& survey, Collector& out) {
   const std::ptrdiff_t faults_before = faults_of(out);
   inspect_virtual_joints(device, out);
   inspect_boxes(device, survey, out);
@@ -186,7 +186,7 @@ void inspect_room(const config::Device& device, const Survey& survey, Collector&
 }
 
 // The joint whose motion leads away from the singularity fastest.
-std::string joint_out_of_singularity(const config::Device& device, const Survey& survey) {
+std::string joint_out_of_singularity(const config::DeviceConfig& device, const Survey& survey) {
   constexpr double kStep = 1e-2;
   const DeviceModel& model = device.model;
   model::ChainData chain(model.chain);
@@ -208,7 +208,7 @@ std::string joint_out_of_singularity(const config::Device& device, const Survey&
   return model.manipulator_joint(joint);
 }
 
-std::string posture_text(const config::Device& device, const Eigen::VectorXd& q) {
+std::string posture_text(const config::DeviceConfig& device, const Eigen::VectorXd& q) {
   std::string text;
   for (int i = 0; i < device.model.n_m; ++i) {
     text += fmt::format("{}{} {:.2f}", i > 0 ? ", " : "", device.model.manipulator_joint(i),
@@ -217,7 +217,8 @@ std::string posture_text(const config::Device& device, const Eigen::VectorXd& q)
   return text;
 }
 
-void inspect_singularities(const config::Device& device, const Survey& survey, Collector& out) {
+void inspect_singularities(const config::DeviceConfig& device, const Survey& survey,
+                           Collector& out) {
   constexpr double kSingular = 5e-3;  // of the scaled Jacobian: 1 rad/s at the handle takes 200
   if (survey.postures.empty()) return;
   const Posture& worst = survey.most_singular;
@@ -241,7 +242,7 @@ double synchronisation_pole(double kP, double kD, double dt) {
   return std::max(std::abs(0.5 * trace + root), std::abs(0.5 * trace - root));
 }
 
-Findings inspect(const config::Device& device, const Survey& survey) {
+Findings inspect(const config::DeviceConfig& device, const Survey& survey) {
   Collector out(device.sources, device.places);
   inspect_synchronisation(device, out);
   inspect_gantry(device, out);

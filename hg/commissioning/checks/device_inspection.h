@@ -8,7 +8,7 @@
 namespace hg::checks {
 
 /// Inspects a device; all findings, in no particular order.
-Findings inspect(const config::Device& device, const Survey& survey);
+Findings inspect(const config::DeviceConfig& device, const Survey& survey);
 
 /// Largest eigenvalue, in magnitude, of (11) in discrete time: e'' = -kD e' - kP e with the
 /// acceleration held over dt. Below 1 the handle converges to the twin.

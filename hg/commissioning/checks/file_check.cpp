@@ -110,12 +110,12 @@ void check_scripts(Check& check) {
 }
 
 void check_devices(Check& check) {
-  const auto inspect = [&](const config::Device& device, bool has_datasheet) {
+  const auto inspect = [&](const config::DeviceConfig& device, bool has_datasheet) {
     const Survey found = survey(device);
     add(checks::inspect(device, found), check);
     if (has_datasheet) check.report.datasheets.push_back(make_datasheet(device, found));
   };
-  for (const config::Device& device : check.devices) inspect(device, true);
+  for (const config::DeviceConfig& device : check.devices) inspect(device, true);
   for (const config::Scenario& scenario : check.scenarios) inspect(scenario.device, false);
 }
 

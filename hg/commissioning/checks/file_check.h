@@ -22,7 +22,7 @@ struct CheckReport {
   Findings findings;  ///< by file and line, each once
   std::vector<Datasheet> datasheets;
   /// The first device that could be loaded, else that of the first scenario
-  std::optional<config::Device> first_device;
+  std::optional<config::DeviceConfig> first_device;
 };
 
 /// Checks the files. Never throws SetupError: a file that cannot be read is a finding.

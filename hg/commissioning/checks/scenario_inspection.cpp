@@ -119,7 +119,7 @@ void inspect_demand(const rendering::TwinDof& dof, const Demand& demand, Collect
 // The work of a cycle grows with the cube of the twin's degrees of freedom at most. Measured, 99.9
 // % of the cycles (docs/reports/benchmarks.md): gauss 38 us with 20 and 79 us with 30, paper 1.2 ms
 // with 30.
-void inspect_work(const config::Device& device, const config::Twin& twin, Collector& out) {
+void inspect_work(const config::DeviceConfig& device, const config::Twin& twin, Collector& out) {
   const bool is_paper = device.rendering.law == rendering::Law::kPaper;
   const double most =
       std::floor((is_paper ? 20.0 : 40.0) * std::cbrt(1000.0 / device.model.rate_Hz) + 1e-9);
@@ -136,7 +136,7 @@ void inspect_work(const config::Device& device, const config::Twin& twin, Collec
 
 }  // namespace
 
-Match match(const config::Device& device, const config::Twin& twin) {
+Match match(const config::DeviceConfig& device, const config::Twin& twin) {
   config::Twin moved = twin;
   const std::vector<ConfigurationA> postures = twin_postures(twin, kPostures, kSeed);
   const std::array<limits::JointLimits, 3> hand = handle_limits(device.model);

@@ -33,7 +33,7 @@ struct Match {
   std::vector<Demand> demands;  ///< demand per scalar joint of the twin, over the reached postures
 };
 
-Match match(const config::Device& device, const config::Twin& twin);
+Match match(const config::DeviceConfig& device, const config::Twin& twin);
 
 /// All findings about the pair; they stand at keys of the twin.
 Findings inspect(const config::SimulatedDevice& device, const config::Twin& twin);

@@ -37,9 +37,9 @@ double delay_of(const config::SimulatedDevice& device) {
 
 // The least along the axes of B, at the start; where the device does not get there it is stated
 // itself.
-double braking_of(const config::Device& device, const config::Twin& twin) {
-  rendering::Motion motion = {.dq_p = VectorP::Zero(device.model.n_p),
-                              .dq_m = VectorM::Zero(device.model.n_m)};
+double braking_of(const config::DeviceConfig& device, const config::Twin& twin) {
+  rendering::DeviceMotion motion = {.dq_p = VectorP::Zero(device.model.n_p),
+                                    .dq_m = VectorM::Zero(device.model.n_m)};
   try {
     const scenario::Start start = scenario::find_start(device, twin);
     motion.q_p = start.q_p;

@@ -9,7 +9,7 @@
 
 namespace hg::checks {
 
-std::vector<Stopping> stopping_of(const config::Device& device) {
+std::vector<Stopping> stopping_of(const config::DeviceConfig& device) {
   const DeviceModel& model = device.model;
   const safety::MonitorConfig& monitor = device.monitor;
   std::vector<Stopping> all;
@@ -33,7 +33,7 @@ std::vector<Stopping> stopping_of(const config::Device& device) {
   return all;
 }
 
-void inspect_stopping(const config::Device& device, Collector& out) {
+void inspect_stopping(const config::DeviceConfig& device, Collector& out) {
   // Factor over the need of the slowest axis from which the distance is no useful bound
   constexpr double kTooFar = 4.0;
   std::map<std::string, Stopping> slowest;  // by the key that states their distance

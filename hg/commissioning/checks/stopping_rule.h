@@ -20,10 +20,10 @@ struct Stopping {
 };
 
 /// Stopping needs of all axes, gantry first.
-std::vector<Stopping> stopping_of(const config::Device& device);
+std::vector<Stopping> stopping_of(const config::DeviceConfig& device);
 
 /// Adds a fault for every distance, and a warning for a time, that an ordinary stop would exceed,
 /// and a warning for a distance far above any stop.
-void inspect_stopping(const config::Device& device, Collector& out);
+void inspect_stopping(const config::DeviceConfig& device, Collector& out);
 
 }  // namespace hg::checks

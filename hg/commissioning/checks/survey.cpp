@@ -23,14 +23,14 @@ double draw_coordinate(const JointRanges& ranges, Eigen::Index k, bool at_limits
 }
 
 struct Scene {
-  const config::Device& device;
+  const config::DeviceConfig& device;
   JointRanges ranges;
   model::ChainData chain;
   Eigen::VectorXd zero;
   Eigen::VectorXd effort, ddq_max;
 };
 
-Scene make_scene(const config::Device& device) {
+Scene make_scene(const config::DeviceConfig& device) {
   const DeviceModel& model = device.model;
   Scene scene = {
       device, joint_ranges(device), model.chain, Eigen::VectorXd::Zero(model.chain.nv()), {}, {}};
@@ -193,7 +193,7 @@ void find_most_singular(Scene& scene, Survey& result) {
 
 }  // namespace
 
-JointRanges joint_ranges(const config::Device& device) {
+JointRanges joint_ranges(const config::DeviceConfig& device) {
   const DeviceModel& model = device.model;
   const int n = model.chain.nv();
   JointRanges ranges = {Eigen::VectorXd(n), Eigen::VectorXd(n)};
@@ -226,7 +226,7 @@ bool permits_boxes(const DeviceModel& model, const model::ChainData& chain) {
   });
 }
 
-std::optional<Eigen::VectorXd> draw(const config::Device& device, const JointRanges& ranges,
+std::optional<Eigen::VectorXd> draw(const config::DeviceConfig& device, const JointRanges& ranges,
                                     bool at_limits, Random& random) {
   Eigen::VectorXd q(ranges.lower.size());
   for (int i = 0; i < kTries; ++i) {
@@ -238,7 +238,7 @@ std::optional<Eigen::VectorXd> draw(const config::Device& device, const JointRan
   return {};
 }
 
-Cloud cloud(const config::Device& device, int postures, bool at_limits, Random& random,
+Cloud cloud(const config::DeviceConfig& device, int postures, bool at_limits, Random& random,
             const Adjust& adjust) {
   constexpr int kCopies = 8;  // gantry positions per posture of the arm
   const DeviceModel& model = device.model;
@@ -261,7 +261,7 @@ Cloud cloud(const config::Device& device, int postures, bool at_limits, Random& 
   return result;
 }
 
-Survey survey(const config::Device& device, const SurveyOptions& options) {
+Survey survey(const config::DeviceConfig& device, const SurveyOptions& options) {
   Survey result;
   result.options = options;
   Random random(options.seed);

@@ -27,7 +27,7 @@ struct SurveyOptions {
 struct JointRanges {
   Eigen::VectorXd lower, upper;
 };
-JointRanges joint_ranges(const config::Device& device);
+JointRanges joint_ranges(const config::DeviceConfig& device);
 
 using hg::Random;
 
@@ -39,7 +39,7 @@ bool permits_boxes(const DeviceModel& model, const model::ChainData& chain);
 /// Draws a posture uniformly in the joint ranges, respecting virtual joints. With `at_limits` every
 /// joint stands at one of its limits with a chance of 1/5, so that the edges of the workspace are
 /// reached. Empty after 1000 failed tries.
-std::optional<Eigen::VectorXd> draw(const config::Device& device, const JointRanges& ranges,
+std::optional<Eigen::VectorXd> draw(const config::DeviceConfig& device, const JointRanges& ranges,
                                     bool at_limits, Random& random);
 
 /// One posture within all limits, Cartesian ones included.
@@ -72,7 +72,7 @@ struct Cloud {
 using Adjust = std::function<bool(model::ChainData& chain, Eigen::VectorXd& q)>;
 
 /// Draws `postures` of the arm, each with several positions of a gantry that only shifts it.
-Cloud cloud(const config::Device& device, int postures, bool at_limits, Random& random,
+Cloud cloud(const config::DeviceConfig& device, int postures, bool at_limits, Random& random,
             const Adjust& adjust = {});
 
 struct Survey {
@@ -85,7 +85,7 @@ struct Survey {
   Posture most_singular;        ///< most singular posture, found by descent from the worst ones
 };
 
-Survey survey(const config::Device& device, const SurveyOptions& options = {});
+Survey survey(const config::DeviceConfig& device, const SurveyOptions& options = {});
 
 /// Manipulator columns of the Jacobian of `frame`; `chain`: after update_kinematics().
 MatrixJ manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain, int frame);

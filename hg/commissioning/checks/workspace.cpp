@@ -59,7 +59,7 @@ double filled_volume(const Cloud& points) {
   return grid.volume();
 }
 
-double share_in_nominal_orientation(const config::Device& device, const Survey& survey,
+double share_in_nominal_orientation(const config::DeviceConfig& device, const Survey& survey,
                                     const Eigen::AlignedBox3d& box, Eigen::Vector3d& axis) {
   constexpr int kPostures = 20'000;
   const DeviceModel& model = device.model;
@@ -141,8 +141,8 @@ Eigen::AlignedBox3d handle_box(const DeviceModel& model) {
           Eigen::Vector3d(limits[0].q_max, limits[1].q_max, limits[2].q_max)};
 }
 
-Workspace workspace(const config::Device& device, const Survey& survey) {
-  Workspace result;
+HandleWorkspace workspace(const config::DeviceConfig& device, const Survey& survey) {
+  HandleWorkspace result;
   result.nominal_axis.setZero();
   if (survey.cloud.positions.empty()) return result;
   result.bounds = bounds_of(survey.cloud);

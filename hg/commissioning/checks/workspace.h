@@ -34,7 +34,7 @@ class VoxelGrid {
 /// Box in which all Cartesian limits of the handle together keep it; infinite on unlimited axes.
 Eigen::AlignedBox3d handle_box(const DeviceModel& model);
 
-struct Workspace {
+struct HandleWorkspace {
   Eigen::AlignedBox3d bounds;    ///< bounds of the handle, m
   double volume = 0.0;           ///< m^3
   bool has_box = false;          ///< the handle is limited on all axes
@@ -44,6 +44,6 @@ struct Workspace {
   Eigen::Vector3d nominal_axis;  ///< z axis of the handle in B in the nominal posture
 };
 
-Workspace workspace(const config::Device& device, const Survey& survey);
+HandleWorkspace workspace(const config::DeviceConfig& device, const Survey& survey);
 
 }  // namespace hg::checks

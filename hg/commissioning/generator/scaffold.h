@@ -19,6 +19,6 @@ std::string device_yaml(const ChainPart& part, const std::filesystem::path& fold
 /// Text of a twin.yaml that will stand in `folder`, placed upright where `device` reaches most of
 /// what the twin's joints can do.
 std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder,
-                      const config::Device& device);
+                      const config::DeviceConfig& device);
 
 }  // namespace hg::generator

@@ -72,7 +72,7 @@ Pose tip(TwinDraft& d, const Eigen::VectorXd& q) {
 // tests whether the device can hold its handle at a pose
 class Reach {
  public:
-  explicit Reach(const config::Device& device)
+  explicit Reach(const config::DeviceConfig& device)
       : device_(device),
         twin_{.name = "draft",
               .model = {.chain = model::ChainModel::free_body({}),
@@ -92,12 +92,12 @@ class Reach {
   }
 
  private:
-  const config::Device& device_;
+  const config::DeviceConfig& device_;
   config::Twin twin_;
 };
 
 // the handle with every joint of the device at its goal or in the middle of its range
-Pose nominal_handle(const config::Device& device) {
+Pose nominal_handle(const config::DeviceConfig& device) {
   model::ChainData chain(device.model.chain);
   const std::vector<Interval> ranges = joint_ranges(device.model.chain);
   Eigen::VectorXd q(chain.model().nq());
@@ -125,7 +125,7 @@ std::vector<Eigen::Vector3d> offsets() {
 }
 
 // upright, turned and moved until the device reaches the start and most other postures
-Placement find_placement(TwinDraft& d, const config::Device& device) {
+Placement find_placement(TwinDraft& d, const config::DeviceConfig& device) {
   Reach reach(device);
   const Pose nominal = nominal_handle(device);
   const Pose T_root_start = tip(d, d.start);
@@ -179,7 +179,7 @@ struct TipRatings {
   double turn_braking = 20.0;  // rad/s^2
 };
 
-TipRatings tip_ratings(const config::Device& device) {
+TipRatings tip_ratings(const config::DeviceConfig& device) {
   limits::JointLimits hand{.dq_max = 1.5, .ddq_max = 5.0};
   for (const limits::JointLimits& axis : handle_limits(device.model)) {
     hand.dq_max = std::min(hand.dq_max, axis.dq_max);
@@ -229,7 +229,7 @@ std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
 }  // namespace
 
 std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder,
-                      const config::Device& device) {
+                      const config::DeviceConfig& device) {
   TwinDraft d = make_draft(part);
   const Placement placement = find_placement(d, device);
   return fmt::format(

@@ -15,7 +15,7 @@ namespace {
 // Collects the traces of all joints, with the device of the recording unless another is given.
 class Reader final : public recording::RecordingListener {
  public:
-  explicit Reader(std::optional<config::Device> device) : device_(std::move(device)) {}
+  explicit Reader(std::optional<config::DeviceConfig> device) : device_(std::move(device)) {}
 
   void configuration(const recording::NamedText& text) override {
     if (!traces_) configuration_.push_back(text);
@@ -26,7 +26,7 @@ class Reader final : public recording::RecordingListener {
     traces_->add(sample);
   }
 
-  const config::Device& device() const { return *device_; }
+  const config::DeviceConfig& device() const { return *device_; }
   const FrictionTraces& traces() const { return *traces_; }
 
  private:
@@ -43,7 +43,7 @@ class Reader final : public recording::RecordingListener {
     traces_.emplace(device_->model, device_->control.loop.current_lag);
   }
 
-  std::optional<config::Device> device_;
+  std::optional<config::DeviceConfig> device_;
   std::optional<FrictionTraces> traces_;
   std::vector<recording::NamedText> configuration_;
 };
@@ -51,7 +51,7 @@ class Reader final : public recording::RecordingListener {
 }  // namespace
 
 RecordedFriction identify_recorded_friction(const std::string& file,
-                                            std::optional<config::Device> device) {
+                                            std::optional<config::DeviceConfig> device) {
   Reader reader(std::move(device));
   RecordedFriction result;
   result.losses = recording::read_recording(file, reader).losses;

@@ -26,6 +26,6 @@ struct RecordedFriction {
 /// Identifies the friction in a recording, compared with `device`; empty = the device that the
 /// recording was made with. Throws SetupError, also where no sample shows friction.
 RecordedFriction identify_recorded_friction(const std::string& file,
-                                            std::optional<config::Device> device);
+                                            std::optional<config::DeviceConfig> device);
 
 }  // namespace hg::identification

@@ -53,7 +53,7 @@ struct Candidate {
   Eigen::Vector3d up_S;
 };
 
-std::vector<Candidate> candidates(const config::Device& device) {
+std::vector<Candidate> candidates(const config::DeviceConfig& device) {
   const DeviceModel& model = device.model;
   model::ChainData chain(model.chain);
   std::vector<Candidate> usable;
@@ -128,7 +128,7 @@ std::array<int, 10> find_columns(const std::vector<std::string>& header, const s
 
 }  // namespace
 
-std::vector<VectorM> static_postures(const config::Device& device, int count) {
+std::vector<VectorM> static_postures(const config::DeviceConfig& device, int count) {
   const std::vector<Candidate> all = candidates(device);
   std::vector<Candidate> chosen;
   while (!all.empty() && static_cast<int>(chosen.size()) < count) {

@@ -11,7 +11,7 @@ namespace hg::identification {
 
 /// `count` postures of the manipulator within all limits, gantry at 0: as different as possible in
 /// the direction of gravity in the sensor. The same for the same device; fewer when it has fewer.
-std::vector<VectorM> static_postures(const config::Device& device, int count);
+std::vector<VectorM> static_postures(const config::DeviceConfig& device, int count);
 
 /// Measurement of the simulated device at rest in such a posture, brakes closed, handle free: the
 /// mean over a second, a second after the start.

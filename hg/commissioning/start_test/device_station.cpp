@@ -20,7 +20,7 @@ bool is_gone(FaultCode code) {
 
 }  // namespace
 
-Setup setup_of(const config::Device& device, bool is_simulated) {
+Setup setup_of(const config::DeviceConfig& device, bool is_simulated) {
   constexpr double kOverFriction = 2.0;
   constexpr double kTorque = 1.0, kForce = 10.0;  // where friction is unknown
   constexpr double kGantryTorque = 5.0, kGantryForce = 20.0;

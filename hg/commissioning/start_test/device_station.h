@@ -16,7 +16,7 @@ namespace hg::start_test {
 
 /// The joints to test, with the least load of each: a brake that holds less than twice the friction
 /// of its joint proves nothing.
-Setup setup_of(const config::Device& device, bool is_simulated);
+Setup setup_of(const config::DeviceConfig& device, bool is_simulated);
 
 class DeviceStation final : public Station {
  public:

@@ -32,11 +32,11 @@ std::optional<std::string> text_of(const std::string& file) {
   return read_file(file, kMost);
 }
 
-std::string posture_file(const MachineMemory& memory, const config::Device& device) {
+std::string posture_file(const MachineMemory& memory, const config::DeviceConfig& device) {
   return file_of(memory.folder, "posture", device.name, memory.address);
 }
 
-std::vector<Position> posture_of(const config::Device& device, const SensorFrame& sensors) {
+std::vector<Position> posture_of(const config::DeviceConfig& device, const SensorFrame& sensors) {
   std::vector<Position> posture;
   const std::vector<model::Joint>& joints = device.model.chain.joints();
   for (int i = 0; i < device.model.n_p + device.model.n_m; ++i) {
@@ -51,7 +51,7 @@ std::vector<Position> posture_of(const config::Device& device, const SensorFrame
 }
 
 // Posture with drives off and brakes closed; empty if the connection to the device is lost.
-std::optional<std::vector<Position>> braked_posture(const config::Device& device,
+std::optional<std::vector<Position>> braked_posture(const config::DeviceConfig& device,
                                                     udp::RemoteDevice& remote,
                                                     double duration_s = kBraked) {
   SensorFrame sensors;
@@ -67,7 +67,8 @@ std::optional<std::vector<Position>> braked_posture(const config::Device& device
 }
 
 // Names of joints and axes that move although their brakes are closed.
-std::vector<std::string> slipping(const config::Device& device, const std::vector<Position>& from,
+std::vector<std::string> slipping(const config::DeviceConfig& device,
+                                  const std::vector<Position>& from,
                                   const std::vector<Position>& to) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -81,18 +82,18 @@ std::vector<std::string> slipping(const config::Device& device, const std::vecto
 
 }  // namespace
 
-std::string sha256_of(const config::Device& device) {
+std::string sha256_of(const config::DeviceConfig& device) {
   std::vector<std::string_view> texts;
   for (const config::SourceText& source : device.sources) texts.push_back(source.content);
   return sha256(texts);
 }
 
-std::string start_test_file(const std::string& folder, const config::Device& device,
+std::string start_test_file(const std::string& folder, const config::DeviceConfig& device,
                             const std::string& address) {
   return file_of(folder, "start_test", device.name, address.empty() ? "simulated" : address);
 }
 
-std::string check_start_test(const MachineMemory& memory, const config::Device& device) {
+std::string check_start_test(const MachineMemory& memory, const config::DeviceConfig& device) {
   const std::string file = start_test_file(memory.folder, device, memory.address);
   Validity validity = {.objection = "there is none"};
   try {
@@ -120,7 +121,7 @@ std::string check_start_test(const MachineMemory& memory, const config::Device& 
       file, device.name, validity.objection, memory.address));
 }
 
-std::string check_posture(const MachineMemory& memory, const config::Device& device,
+std::string check_posture(const MachineMemory& memory, const config::DeviceConfig& device,
                           udp::RemoteDevice& remote) {
   const auto now = braked_posture(device, remote);
   const std::string farewell = remote.farewell();
@@ -162,7 +163,8 @@ std::string check_posture(const MachineMemory& memory, const config::Device& dev
                   file, device.name, lines, names));
 }
 
-std::vector<std::string> leave_machine(const MachineMemory& memory, const config::Device& device,
+std::vector<std::string> leave_machine(const MachineMemory& memory,
+                                       const config::DeviceConfig& device,
                                        udp::RemoteDevice& remote, FaultCode fault) {
   std::vector<std::string> lines;
   const auto braked = braked_posture(device, remote);

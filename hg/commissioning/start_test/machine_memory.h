@@ -21,27 +21,28 @@ struct MachineMemory {
 };
 
 /// SHA-256 of the files that describe the device.
-std::string sha256_of(const config::Device& device);
+std::string sha256_of(const config::DeviceConfig& device);
 
 /// File of the start test of the machine at `address` in the folder of the recordings; an empty
 /// address stands for all simulations, whose results are never used for a machine.
-std::string start_test_file(const std::string& folder, const config::Device& device,
+std::string start_test_file(const std::string& folder, const config::DeviceConfig& device,
                             const std::string& address);
 
 /// Message on whether brakes and stop inputs were tested. Throws SetupError if they were not,
 /// unless `memory` waives the test.
-std::string check_start_test(const MachineMemory& memory, const config::Device& device);
+std::string check_start_test(const MachineMemory& memory, const config::DeviceConfig& device);
 
 /// Compares the machine's posture with that at the end of the last run, in a short session with
 /// closed brakes, which it ends. Returns a message; throws SetupError if joints have moved that
 /// `memory` does not confirm.
-std::string check_posture(const MachineMemory& memory, const config::Device& device,
+std::string check_posture(const MachineMemory& memory, const config::DeviceConfig& device,
                           udp::RemoteDevice& remote);
 
 /// Stores the machine's posture at the end of its session, after a second with closed brakes. If a
 /// brake slips meanwhile, or `fault` reports that one did, its start test becomes invalid. Returns
 /// messages, one line each; empty if all is well.
-std::vector<std::string> leave_machine(const MachineMemory& memory, const config::Device& device,
+std::vector<std::string> leave_machine(const MachineMemory& memory,
+                                       const config::DeviceConfig& device,
                                        udp::RemoteDevice& remote, FaultCode fault);
 
 }  // namespace hg::start_test

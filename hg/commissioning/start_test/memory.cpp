@@ -61,7 +61,7 @@ std::string file_of(std::string_view folder, std::string_view kind, std::string_
   return fmt::format("{}/{}_{}.json", folder, kind, name);
 }
 
-std::string to_json(const Result& result) {
+std::string to_json(const StartTestResult& result) {
   Json json;
   json["device"] = result.device;
   json["address"] = result.address;

@@ -13,7 +13,7 @@
 namespace hg::start_test {
 
 /// Result of a start test.
-struct Result {
+struct StartTestResult {
   std::string device;         ///< name in device.yaml
   std::string address;        ///< address of a remote device
   std::string version;        ///< version of the program
@@ -32,7 +32,7 @@ std::string sha256(std::span<const std::string_view> texts);
 std::string file_of(std::string_view folder, std::string_view kind, std::string_view device,
                     std::string_view where);
 
-std::string to_json(const Result& result);
+std::string to_json(const StartTestResult& result);
 
 /// Requirements of a run of a machine.
 struct Requirements {

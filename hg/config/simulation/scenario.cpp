@@ -29,7 +29,7 @@ auto part(LoaderFile& file, const std::filesystem::path& path, Load load)
   }
 }
 
-EventNames names_of(const Device& device, const Twin& twin, const LimitCatalogue& catalogue) {
+EventNames names_of(const DeviceConfig& device, const Twin& twin, const LimitCatalogue& catalogue) {
   EventNames names;
   for (const LimitInfo& limit : catalogue) names.limits.push_back(limit.name);
   const std::size_t first_twin_limit = catalogue.size() - twin.model.dofs.size();
@@ -70,7 +70,7 @@ std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
                 "'" + draft.surface.name + "' around it");
   }
   try {
-    surfaces::check(surfaces);
+    surfaces::check_surfaces(surfaces);
   } catch (const SetupError& error) {
     loader.rule(false, "surfaces", error.what());
   }

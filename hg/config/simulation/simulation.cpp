@@ -43,7 +43,7 @@ std::vector<int> find_joints(Loader& loader, const std::vector<std::string>& wan
 // Every joint of the plant is driven or flexible.
 void take_plant(Loader& loader, const SimulationTarget& device, SimulationDraft& draft,
                 const model::ChainModel& chain) {
-  Simulation& simulation = draft.simulation;
+  SimulationConfig& simulation = draft.simulation;
   simulation.gantry = find_joints(loader, device.gantry, draft);
   simulation.manipulator = find_joints(loader, device.manipulator, draft);
   std::vector<int> driven = simulation.gantry;
@@ -105,7 +105,7 @@ void yield(Loader& loader, LoaderFile& file, const SimulationTarget& device,
   }
 }
 
-void check_filters(Loader& loader, const Simulation& simulation) {
+void check_filters(Loader& loader, const SimulationConfig& simulation) {
   const double longest = simulator::kMaxFilterSteps * simulation.step_s;
   for (const simulator::SensorFilterConfig& filter :
        {simulation.sensors.wrench.filter, simulation.sensors.imu_filter,
@@ -205,8 +205,8 @@ void load(const std::filesystem::path& path, SourceReader& reader, const Simulat
 
 }  // namespace
 
-Simulation load_simulation(const std::filesystem::path& path, SourceReader& reader,
-                           const SimulationTarget& device) {
+SimulationConfig load_simulation(const std::filesystem::path& path, SourceReader& reader,
+                                 const SimulationTarget& device) {
   SimulationDraft draft;
   load(path, reader, device, false, draft);
   draft.simulation.is_from_file = true;
@@ -217,7 +217,7 @@ Simulation load_simulation(const std::filesystem::path& path, SourceReader& read
 
 namespace {
 
-SimulationTarget target_of(const Device& device) {
+SimulationTarget target_of(const DeviceConfig& device) {
   const DeviceModel& model = device.model;
   SimulationTarget target = {
       .handle = model.chain.frame_names()[static_cast<std::size_t>(model.handle)],
@@ -230,8 +230,8 @@ SimulationTarget target_of(const Device& device) {
   return target;
 }
 
-Simulation ideal_simulation(const Device& device) {
-  Simulation simulation;
+SimulationConfig ideal_simulation(const DeviceConfig& device) {
+  SimulationConfig simulation;
   simulation.sensors = simulator::ideal_sensors();
   simulation.gear_ratio = VectorM::Ones(device.model.n_m);
   return simulation;

@@ -62,7 +62,7 @@ TorqueLoop actual(TorqueLoop nominal, const RealityFactors& factors);
 DriveModel actual(DriveModel nominal, const RealityFactors& factors);
 Payload actual(Payload nominal, const RealityFactors& factors);
 
-struct Simulation {
+struct SimulationConfig {
   bool is_from_file = false;  ///< false: no simulation file, the device file is exact
   double step_s = 0.25e-3;    ///< largest step of the plant; a period is a whole number of steps
   std::uint64_t seed = 1;
@@ -93,12 +93,12 @@ struct SimulationTarget {
 };
 
 /// Loads a simulation. Throws SetupError with all faults of the file, one per line.
-Simulation load_simulation(const std::filesystem::path& file, SourceReader& reader,
-                           const SimulationTarget& target);
+SimulationConfig load_simulation(const std::filesystem::path& file, SourceReader& reader,
+                                 const SimulationTarget& target);
 
 /// A device with its simulation: ideal sensors, and nothing differs, where its file names none.
-struct SimulatedDevice : Device {
-  Simulation simulation;
+struct SimulatedDevice : DeviceConfig {
+  SimulationConfig simulation;
 };
 
 /// Loads a device with its simulation. Throws SetupError with all faults of the device's file or

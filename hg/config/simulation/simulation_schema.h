@@ -206,7 +206,7 @@ struct StructureDraft {
 
 /// Content of simulation.yaml, before it becomes a Simulation.
 struct SimulationDraft {
-  Simulation simulation;
+  SimulationConfig simulation;
   double seed = 1.0;
   std::filesystem::path base, urdf;
   /// Structure per joint of the device, where given
@@ -233,7 +233,7 @@ void describe(V& v, RealityFactors& factors) {
 }
 
 template <class V>
-void describe_end_stops(V& v, Simulation& simulation) {
+void describe_end_stops(V& v, SimulationConfig& simulation) {
   v.number("beyond_rad", simulation.stop_distance_angle, kNotNegative,
            "beyond the limits of revolute joints");
   v.number("beyond_m", simulation.stop_distance_length, kNotNegative,

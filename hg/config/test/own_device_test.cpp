@@ -60,7 +60,7 @@ TEST(OwnDevice, AToolBringsHandleSensorMassAndItsSwitch) {
   SourceReader reader =
       reader_of(kGantry + "tool: tool.yaml\nflange: l7\n", arm_urdf("revolute"),
                 std::string(kTool) + "handle: {z_m: 0.2}\nsensor: {x_m: 0.01}\ndead_man: false\n");
-  const Device device = load_device("device.yaml", reader);
+  const DeviceConfig device = load_device("device.yaml", reader);
   EXPECT_EQ(device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)],
             "handle");
   EXPECT_EQ(device.model.T_H_S.p.x(), 0.01);
@@ -133,7 +133,7 @@ TEST(OwnDevice, ReportsHowSensorsAreReadAndWhatHangsBeyondThem) {
       "payload: {mass_kg: 1.2, centre_of_mass_m: [0.01, 0, 0.02], inertia_kg_m2: [3e-3, 3e-3, "
       "1e-3]}\n",
       arm_urdf("revolute"), kTool);
-  const estimation::Config estimation = load_device("device.yaml", reader).estimation;
+  const estimation::EstimationConfig estimation = load_device("device.yaml", reader).estimation;
   EXPECT_EQ(estimation.link_pole_Hz, 80.0);
   EXPECT_EQ(estimation.motor_low_pass_Hz, 150.0);
   EXPECT_EQ(estimation.wrench.low_pass_Hz, 50.0);
@@ -175,11 +175,11 @@ TEST(OwnDevice, WithoutPrepositioningTheGantryKeepsWithinItsDrive) {
     SourceReader reader = reader_of(kGantry + "handle: l7\n" + rest, arm_urdf("revolute"), kTool);
     return load_device("device.yaml", reader);
   };
-  const Device slow = load("drive: {dq_max_rad_per_s: 0.3, ddq_max_rad_per_s2: 0.5}\n");
+  const DeviceConfig slow = load("drive: {dq_max_rad_per_s: 0.3, ddq_max_rad_per_s2: 0.5}\n");
   EXPECT_EQ(slow.prepositioning.dq_max, 0.3);
   EXPECT_EQ(slow.prepositioning.ddq_max, 0.5);
   EXPECT_EQ(load("drive: {dq_max_rad_per_s: 9}\n").prepositioning.dq_max,
-            prepositioning::Config().dq_max);
+            prepositioning::PrepositioningConfig().dq_max);
   EXPECT_EQ(message(kGantry + "handle: l7\ndrive: {dq_max_rad_per_s: 0.3}\nprepositioning: "
                               "{dq_max_rad_per_s: 0.4}\n"),
             "device.yaml:8:36: prepositioning.dq_max_rad_per_s: must not exceed the speed of the "

@@ -7,7 +7,7 @@
 
 namespace hg::estimation {
 
-Estimation::Estimation(const Config& config, const DeviceModel& device)
+Estimation::Estimation(const EstimationConfig& config, const DeviceModel& device)
     : config_(config),
       chain_(device.chain),
       n_p_(device.n_p),
@@ -31,7 +31,7 @@ double Estimation::unwrapped(int joint, double measured, double last) const noex
   return turns_without_end(joint) ? model::haptic_giant::nearest_turn(measured, last) : measured;
 }
 
-void Estimation::tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept {
+void Estimation::tare(bool is_asked_for, bool is_at_rest, EstimationState& state) const noexcept {
   TareState& tare = state.wrench.tare;
   if (is_asked_for) begin(tare);
   if (tare.status == TareStatus::kUnderWay && !is_at_rest) {
@@ -39,7 +39,8 @@ void Estimation::tare(bool is_asked_for, bool is_at_rest, State& state) const no
   }
 }
 
-void Estimation::check_motion(const SensorFrame& sensors, bool is_on, State& state) const noexcept {
+void Estimation::check_motion(const SensorFrame& sensors, bool is_on,
+                              EstimationState& state) const noexcept {
   if (!config_.wrench.has_imu) return;
   const Pose T_B_S = chain_.pose(handle_) * T_H_S_;
   advance(dt_, {.R_B_S = T_B_S.R, .p_S = T_B_S.p, .omega_S = sensors.omega_S, .a_S = sensors.a_S},
@@ -47,7 +48,7 @@ void Estimation::check_motion(const SensorFrame& sensors, bool is_on, State& sta
 }
 
 RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
-                            const VectorM& ddq_m_reference, State& state) noexcept {
+                            const VectorM& ddq_m_reference, EstimationState& state) noexcept {
   if (!state.is_started) start(sensors, state);
   RobotState robot;
   const VectorM q_m = observe_joints(sensors, ddq_m_reference, state, robot);
@@ -65,7 +66,7 @@ RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
   return robot;
 }
 
-void Estimation::start(const SensorFrame& sensors, State& state) const noexcept {
+void Estimation::start(const SensorFrame& sensors, EstimationState& state) const noexcept {
   state.q_m = sensors.q_m;
   for (int i = 0; i < n_m_; ++i) {
     const auto joint = static_cast<std::size_t>(i);
@@ -80,7 +81,7 @@ void Estimation::start(const SensorFrame& sensors, State& state) const noexcept 
 
 // Returns what the encoders show, unwrapped.
 VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference,
-                                   State& state, RobotState& robot) const noexcept {
+                                   EstimationState& state, RobotState& robot) const noexcept {
   VectorM measured(n_m_);
   robot.q_m = sensors.q_m;
   robot.dq_m = sensors.dq_m;
@@ -109,7 +110,7 @@ VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& dd
 
 // Observes the gantry. Returns what its encoders show, unwrapped.
 VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd,
-                                   State& state, RobotState& robot) const noexcept {
+                                   EstimationState& state, RobotState& robot) const noexcept {
   VectorP measured(n_p_);
   robot.q_p.resize(n_p_);
   robot.dq_p.resize(n_p_);
@@ -126,13 +127,13 @@ VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq
   return measured;
 }
 
-VectorP Estimation::gantry_disturbance(const State& state) const noexcept {
+VectorP Estimation::gantry_disturbance(const EstimationState& state) const noexcept {
   VectorP ddq(n_p_);
   for (int i = 0; i < n_p_; ++i) ddq[i] = state.gantry[static_cast<std::size_t>(i)].disturbance;
   return ddq;
 }
 
-void Estimation::observe_wrench(const SensorFrame& sensors, State& state,
+void Estimation::observe_wrench(const SensorFrame& sensors, EstimationState& state,
                                 RobotState& robot) noexcept {
   chain_.update_poses(stacked(robot.q_p, robot.q_m));
   const Eigen::Matrix3d& R_B_H = chain_.pose(handle_).R;

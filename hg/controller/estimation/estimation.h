@@ -22,7 +22,7 @@
 namespace hg::estimation {
 
 /// Set-up data.
-struct Config {
+struct EstimationConfig {
   double observer_pole_Hz = 8.0;     ///< Pole of the gantry observer, see gantry_observer.h
   double link_pole_Hz = 100.0;       ///< Pole of the link side; [C] 2: 60-160 equal, 40 marginal
   double motor_low_pass_Hz = 200.0;  ///< Low-pass of the motor side's speed
@@ -30,7 +30,7 @@ struct Config {
   InertialUnitsConfig units;  ///< Inertial units on links
 };
 
-struct State {
+struct EstimationState {
   bool is_started = false;
   std::array<GantryObserver, kMaxGantry> gantry;
   VectorM q_m;  ///< unwrapped joints of the last sample
@@ -42,7 +42,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const State& state) {
+void hashed(auto& hash, const EstimationState& state) {
   const auto& [is_started, gantry, q_m, link, motor, wrench, inertial, units] = state;
   for (const GantryObserver& axis : gantry) hash.mix(axis);
   hash.mix(q_m);
@@ -55,43 +55,44 @@ void hashed(auto& hash, const State& state) {
 
 class Estimation {
  public:
-  Estimation(const Config& config, const DeviceModel& device);
+  Estimation(const EstimationConfig& config, const DeviceModel& device);
 
   /// Estimates the state of a sample. `dq_p_cmd` is the gantry command that was sent in the last
   /// cycle (n_p), `ddq_m_reference` the acceleration of the manipulator's reference since then
   /// (n_m).
   RobotState step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
-                  const VectorM& ddq_m_reference, State& state) noexcept;
+                  const VectorM& ddq_m_reference, EstimationState& state) noexcept;
 
   /// Compares inertial unit and encoders, after step(); no effect without a unit. `is_on`: the
   /// drives have power.
-  void check_motion(const SensorFrame& sensors, bool is_on, State& state) const noexcept;
+  void check_motion(const SensorFrame& sensors, bool is_on, EstimationState& state) const noexcept;
 
   /// Starts a tare of the wrench when requested; ends a running one unless the device is at rest.
-  void tare(bool is_asked_for, bool is_at_rest, State& state) const noexcept;
+  void tare(bool is_asked_for, bool is_at_rest, EstimationState& state) const noexcept;
   /// Whether the wrench is tared, or the device needs no tare for running.
-  bool is_tared(const State& state) const noexcept {
+  bool is_tared(const EstimationState& state) const noexcept {
     return state.wrench.tare.is_valid || !config_.wrench.tare.is_needed;
   }
   bool has_units() const noexcept { return units_.has_any(); }
   /// Report of the units on the links; empty without.
-  InertialReport inertial_report(const State& state) const noexcept {
+  InertialReport inertial_report(const EstimationState& state) const noexcept {
     return units_.report(state.units);
   }
   /// Acceleration of the gantry not commanded to its drives, n_p, m/s^2 or rad/s^2.
-  VectorP gantry_disturbance(const State& state) const noexcept;
+  VectorP gantry_disturbance(const EstimationState& state) const noexcept;
 
  private:
   bool turns_without_end(int joint) const noexcept;
   double unwrapped(int joint, double measured, double last) const noexcept;
-  void start(const SensorFrame& sensors, State& state) const noexcept;
-  VectorM observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference, State& state,
-                         RobotState& robot) const noexcept;
-  VectorP observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd, State& state,
-                         RobotState& robot) const noexcept;
-  void observe_wrench(const SensorFrame& sensors, State& state, RobotState& robot) noexcept;
+  void start(const SensorFrame& sensors, EstimationState& state) const noexcept;
+  VectorM observe_joints(const SensorFrame& sensors, const VectorM& ddq_m_reference,
+                         EstimationState& state, RobotState& robot) const noexcept;
+  VectorP observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd,
+                         EstimationState& state, RobotState& robot) const noexcept;
+  void observe_wrench(const SensorFrame& sensors, EstimationState& state,
+                      RobotState& robot) noexcept;
 
-  Config config_;
+  EstimationConfig config_;
   model::ChainData chain_;
   int n_p_, n_m_, handle_;
   double dt_;  ///< Period, s

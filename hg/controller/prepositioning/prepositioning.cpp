@@ -21,7 +21,7 @@ VectorP speed_then(const DriveModel& drive, const RobotState& robot) noexcept {
 
 }  // namespace
 
-Prepositioning::Prepositioning(const Config& config, const DeviceModel& device)
+Prepositioning::Prepositioning(const PrepositioningConfig& config, const DeviceModel& device)
     : config_(config),
       range_(device.gantry_range),
       drive_(device.drive),
@@ -32,14 +32,15 @@ Prepositioning::Prepositioning(const Config& config, const DeviceModel& device)
   };
   require(std::isfinite(config.k_ppu) && config.k_ppu > 0.0, "k_ppu must be positive");
   require(config.dq_max > 0.0, "dq_max must be positive");
-  limits::check(response_, "prepositioning");
+  limits::check_drive_response(response_, "prepositioning");
 }
 
-Command Prepositioning::step(const RobotState& robot, const VectorP& q_target, bool device_blocked,
-                             double dq_max, const Room& room, const VectorP& away) const noexcept {
+GantryCommand Prepositioning::step(const RobotState& robot, const VectorP& q_target,
+                                   bool device_blocked, double dq_max, const Room& room,
+                                   const VectorP& away) const noexcept {
   const double fastest = std::min(config_.dq_max, dq_max);
   const auto n_p = static_cast<int>(range_.size());
-  Command command = {q_target, VectorP::Zero(n_p), VectorP::Zero(n_p), VectorP::Zero(n_p)};
+  GantryCommand command = {q_target, VectorP::Zero(n_p), VectorP::Zero(n_p), VectorP::Zero(n_p)};
   for (int i = 0; i < n_p; ++i) {
     const Interval q_limits = range_[static_cast<std::size_t>(i)];
     command.q_target[i] = std::clamp(command.q_target[i], q_limits.lb, q_limits.ub);
@@ -60,7 +61,7 @@ Command Prepositioning::step(const RobotState& robot, const VectorP& q_target, b
   return command;
 }
 
-GantryTask Prepositioning::accelerations(const Command& command, const RobotState& robot,
+GantryTask Prepositioning::accelerations(const GantryCommand& command, const RobotState& robot,
                                          const VectorP& last) const noexcept {
   const VectorP dq = speed_then(drive_, robot);
   const VectorP& before = last.size() > 0 ? last : robot.ddq_p;
@@ -78,7 +79,7 @@ GantryTask Prepositioning::accelerations(const Command& command, const RobotStat
   return task;
 }
 
-VectorP Prepositioning::velocity_for(const VectorP& ddq, const Command& command,
+VectorP Prepositioning::velocity_for(const VectorP& ddq, const GantryCommand& command,
                                      const RobotState& robot) const noexcept {
   const VectorP dq = speed_then(drive_, robot) + drive_.lag * ddq;
   return dq.cwiseMax(command.dq_min).cwiseMin(command.dq_max);

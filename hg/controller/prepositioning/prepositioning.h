@@ -16,7 +16,7 @@
 namespace hg::prepositioning {
 
 /// Set-up data.
-struct Config {
+struct PrepositioningConfig {
   double dq_max = 1.5;   ///< Largest speed, m/s or rad/s
   double k_ppu = 4.0;    ///< Gain of (27), 1/s; below 1 / (4 lag) there is no overshoot
   double ddq_max = 2.0;  ///< Deceleration that can be relied on, m/s^2 or rad/s^2
@@ -34,7 +34,7 @@ void hashed(auto& hash, const Room& room) {
   hash.mix(down, up);
 }
 
-struct Command {
+struct GantryCommand {
   VectorP q_target;        ///< Target of the gantry, within its limits, m or rad
   VectorP dq;              ///< Velocity command, m/s or rad/s
   VectorP dq_min, dq_max;  ///< Bounds of the velocity command, m/s or rad/s
@@ -43,33 +43,33 @@ struct Command {
 class Prepositioning {
  public:
   /// Throws SetupError naming the value that is out of range.
-  Prepositioning(const Config& config, const DeviceModel& device);
+  Prepositioning(const PrepositioningConfig& config, const DeviceModel& device);
 
   /// Computes the velocity command. `robot` gives the gantry. `device_blocked` (a manipulator row
   /// could not be met) makes the command zero: a gantry that drags a blocked arm is a fault. No
   /// axis is faster than `dq_max`, nor more than 0.25 m/s (rad/s) faster than lets it stop within
   /// its `room`: an arm at its limits compensates no more. `away` replaces the motion to the
   /// target: the velocity with which the gantry leaves a contact of the arm; empty: no contact.
-  Command step(const RobotState& robot, const VectorP& q_target, bool device_blocked,
-               double dq_max = kInfinity, const Room& room = {},
-               const VectorP& away = {}) const noexcept;
+  GantryCommand step(const RobotState& robot, const VectorP& q_target, bool device_blocked,
+                     double dq_max = kInfinity, const Room& room = {},
+                     const VectorP& away = {}) const noexcept;
 
   /// Range in which the law may lead the gantry instead of `command`, which is its aim: 0.1 m/s
   /// (rad/s) beside it within the bounds of the command. Steps from `last` reach the full
   /// acceleration of the drives within the larger of 60 ms and 15 dead times. `last` (n_p, or
   /// empty) is the acceleration that the law demanded a period before.
-  GantryTask accelerations(const Command& command, const RobotState& robot,
+  GantryTask accelerations(const GantryCommand& command, const RobotState& robot,
                            const VectorP& last) const noexcept;
 
   /// Velocity command that makes the drives accelerate by `ddq`, within the bounds of `command`.
-  VectorP velocity_for(const VectorP& ddq, const Command& command,
+  VectorP velocity_for(const VectorP& ddq, const GantryCommand& command,
                        const RobotState& robot) const noexcept;
 
   /// Largest speed of an axis, m/s or rad/s.
   double dq_max() const noexcept { return config_.dq_max; }
 
  private:
-  Config config_;
+  PrepositioningConfig config_;
   std::vector<Interval> range_;  ///< Ranges of the axes, m or rad
   DriveModel drive_;
   double dt_;                       ///< Period, s

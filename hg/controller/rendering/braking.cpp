@@ -27,7 +27,7 @@ double rating(const DeviceModel& device, const Eigen::Vector3d& direction) {
 
 }  // namespace
 
-double largest_acceleration(const DeviceModel& device, const Motion& motion,
+double largest_acceleration(const DeviceModel& device, const DeviceMotion& motion,
                             const Eigen::Vector3d& direction) {
   if (device.motors().empty()) return rating(device, direction);
   const int n_p = device.n_p, n_m = device.n_m;

@@ -9,7 +9,7 @@
 namespace hg::rendering {
 
 /// State of the device, the gantry at constant speed.
-struct Motion {
+struct DeviceMotion {
   VectorP q_p, dq_p;
   VectorM q_m, dq_m;
   Vector6 w_H = Vector6::Zero();  ///< Wrench of the hand on the handle, as in CycleRecord
@@ -20,7 +20,7 @@ struct Motion {
 /// its bounds, M of the links, J of the rotors, h of gravity, Coriolis and w_H. 0 where the motors
 /// cannot even hold the handle. Where the law does not model the motors: rating of the handle along
 /// that direction, infinity without one.
-double largest_acceleration(const DeviceModel& device, const Motion& motion,
+double largest_acceleration(const DeviceModel& device, const DeviceMotion& motion,
                             const Eigen::Vector3d& direction);
 
 }  // namespace hg::rendering

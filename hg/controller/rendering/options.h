@@ -45,7 +45,7 @@ constexpr std::string_view to_string(Braking braking) noexcept {
   return braking == Braking::kTogether ? "together" : "alone";
 }
 
-struct Options {
+struct RenderingOptions {
   Law law = Law::kGauss;
   Bounds bounds = Bounds::kRecoverable;
   Gantry gantry = Gantry::kRule;

@@ -89,14 +89,15 @@ int changed_rows(const RowStates& a, const RowStates& b, int first, int count) n
 
 }  // namespace
 
-void check(const DeviceModel& device, const TwinModel& twin, const Options& options) {
+void check_rendering(const DeviceModel& device, const TwinModel& twin,
+                     const RenderingOptions& options) {
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError(text);
   };
   require(options.slow_solve > 0, "rendering: slow_solve must be positive");
   require(options.solver_budget >= 0, "rendering: solver_budget must not be negative");
   const bool is_paper = options.law == Law::kPaper;
-  hg::check(device);
+  hg::check_device_model(device);
   require(!is_paper || device.n_m == 6, "device: law paper needs six manipulator joints, got " +
                                             std::to_string(device.n_m) +
                                             "; law gauss takes seven as well");
@@ -108,23 +109,23 @@ void check(const DeviceModel& device, const TwinModel& twin, const Options& opti
           "rendering: T_C must not be below the period");
   require(device.handle >= 0, "device: a handle frame is needed");
   for (int i = 0; i < device.n_m; ++i) {
-    limits::check(device.joint_limits[static_cast<std::size_t>(i)],
-                  "joint " + device.manipulator_joint(i));
+    limits::check_joint_limits(device.joint_limits[static_cast<std::size_t>(i)],
+                               "joint " + device.manipulator_joint(i));
   }
   for (const VirtualJoint& joint : device.virtual_joints) {
     require(joint.weights.size() == device.n_m, joint.name + ": one weight per manipulator joint");
-    limits::check(joint.limits, joint.name);
+    limits::check_joint_limits(joint.limits, joint.name);
   }
   for (const CartesianLimit& frame : device.cartesian_limits) {
-    for (const limits::JointLimits& axis : frame.axes) limits::check(axis, frame.name);
+    for (const limits::JointLimits& axis : frame.axes) limits::check_joint_limits(axis, frame.name);
   }
 
-  check(twin);
+  check_twin_model(twin);
 }
 
 namespace {
 
-void check_stops(const DeviceModel& device, const Options& options) {
+void check_stops(const DeviceModel& device, const RenderingOptions& options) {
   if (options.law != Law::kGauss || options.bounds != Bounds::kRecoverable) {
     throw SetupError("surfaces with 'contact: stop' need law gauss with bounds recoverable");
   }
@@ -137,9 +138,9 @@ void check_stops(const DeviceModel& device, const Options& options) {
 
 }  // namespace
 
-Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
+Rendering::Rendering(DeviceModel device, TwinModel twin, const RenderingOptions& options,
                      surfaces::Environment environment)
-    : device_((check(device, twin, options), std::move(device))),
+    : device_((check_rendering(device, twin, options), std::move(device))),
       twin_(std::move(twin)),
       device_now_(device_.chain),
       twin_now_(twin_.chain),
@@ -160,8 +161,8 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const Options& options,
       std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
 }
 
-State Rendering::start(const VectorM& q_m) const {
-  State state;
+RenderingState Rendering::start(const VectorM& q_m) const {
+  RenderingState state;
   state.reference = {q_m, VectorM::Zero(q_m.size()), VectorM::Zero(q_m.size())};
   const int n_a = twin_.chain.nv();
   state.twin = {twin_.q_start, VectorA::Zero(n_a), VectorA::Zero(n_a)};
@@ -169,7 +170,8 @@ State Rendering::start(const VectorM& q_m) const {
   return state;
 }
 
-ChangeStatus Rendering::change(const ParameterChange& change, State& state) const noexcept {
+ChangeStatus Rendering::change(const ParameterChange& change,
+                               RenderingState& state) const noexcept {
   return apply(twin_, change, state.inner.parameters);
 }
 
@@ -182,7 +184,8 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
   }
 }
 
-SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& result) noexcept {
+SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
+                             LawResult& result) noexcept {
   update_device(input.robot, state.reference);
   advance_parameters(twin_, state.twin, dt_, state.inner.parameters);
   const TwinValues& values = state.inner.parameters.now;
@@ -214,7 +217,7 @@ SolverStatus Rendering::step(const LawInput& input, State& state, LawResult& res
 
 // Torques on the twin that are no constraints: the user's, and the parts of the budget that balance
 // it.
-void Rendering::add_torques(const LawInput& input, bool is_released, State& state,
+void Rendering::add_torques(const LawInput& input, bool is_released, RenderingState& state,
                             LawResult& result) const noexcept {
   const int n_a = twin_.chain.nv();
   const double share = input.force_share;
@@ -262,7 +265,8 @@ Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
 }
 
 // Updates the proxy even while no surface is felt.
-void Rendering::feel_surfaces(const LawInput& input, State& state, LawResult& result) noexcept {
+void Rendering::feel_surfaces(const LawInput& input, RenderingState& state,
+                              LawResult& result) noexcept {
   const Eigen::Vector3d p_E = twin_now_.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
   if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
@@ -292,7 +296,7 @@ void Rendering::add_stops(ContactReport& contact) const noexcept {
 }
 
 // A surface does not push with the part of its force that limits of the device take.
-void Rendering::give_way(const ContactReport& contact, State& state) const noexcept {
+void Rendering::give_way(const ContactReport& contact, RenderingState& state) const noexcept {
   const double force = contact.force.norm();
   if (contact.surface < 0 || force == 0.0) return;
   const auto factor = L_.triangularView<Eigen::Lower>();
@@ -305,7 +309,7 @@ void Rendering::give_way(const ContactReport& contact, State& state) const noexc
   environment_.give_way(contact, std::clamp(missing, 0.0, force), v_E, state.contact);
 }
 
-void Rendering::align(const RobotState& robot, State& state) noexcept {
+void Rendering::align(const RobotState& robot, RenderingState& state) noexcept {
   update_device(robot, state.reference);
   const Pose T_B_H = device_now_.pose(device_.handle);
   const VectorA at_rest = VectorA::Zero(twin_.chain.nv());
@@ -327,7 +331,8 @@ void Rendering::align(const RobotState& robot, State& state) noexcept {
   }
 }
 
-bool Rendering::clamp_reference(const RobotState& robot, double largest, State& state) noexcept {
+bool Rendering::clamp_reference(const RobotState& robot, double largest,
+                                RenderingState& state) noexcept {
   bool is_far = false;
   for (int i = 0; i < device_.n_m; ++i) {
     double& q = state.reference.q_m[i];
@@ -347,7 +352,7 @@ bool Rendering::clamp_reference(const RobotState& robot, double largest, State& 
 }
 
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
-void Rendering::solve(const LawInput& input, State& state, LawResult& result) noexcept {
+void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& result) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
   const int first_twin_limit = device_.limit_count();
   solver_options_.budget = smaller_budget(static_cast<int>(options_.solver_budget),
@@ -466,18 +471,18 @@ Vector6 Rendering::handle_twist(const RobotState& robot) const noexcept {
   return J_H_.lazyProduct(stacked(robot.dq_p, robot.dq_m));
 }
 
-Vector6 Rendering::end_effector_twist(const State& state) const noexcept {
+Vector6 Rendering::end_effector_twist(const RenderingState& state) const noexcept {
   return J_a_.lazyProduct(state.twin.dq_a);
 }
 
-double Rendering::apparent_mass(const State& state) const noexcept {
+double Rendering::apparent_mass(const RenderingState& state) const noexcept {
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
       J_a_.topRows<3>().transpose();
   L_.triangularView<Eigen::Lower>().solveInPlace(root);
   return 1.0 / (state.added.inertia * root.colwise().squaredNorm().maxCoeff());
 }
 
-void Rendering::find_kinematics(const State& state, LawResult& result) const noexcept {
+void Rendering::find_kinematics(const RenderingState& state, LawResult& result) const noexcept {
   result.T_B_H = device_now_.pose(device_.handle);
   result.v_H = device_now_.twist(device_.handle).head<3>();
   result.a_H =
@@ -488,7 +493,7 @@ void Rendering::find_kinematics(const State& state, LawResult& result) const noe
   result.sync_error_angle = angle_between(result.T_B_H.R, result.T_B_E.R);
 }
 
-void Rendering::integrate(State& state) const noexcept {
+void Rendering::integrate(RenderingState& state) const noexcept {
   rendering::integrate(state.reference, dt_);
   rendering::integrate(twin_.chain, state.twin, dt_);
 }

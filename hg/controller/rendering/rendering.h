@@ -39,7 +39,7 @@ void hashed(auto& hash, const AddedImpedance& added) {
 }
 
 /// Part of the copyable state of a cycle.
-struct State {
+struct RenderingState {
   ReferenceState reference;
   TwinState twin;
   TwinInnerState inner;
@@ -51,12 +51,12 @@ struct State {
   VectorP ddq_p;        ///< Gantry acceleration demanded by the last result; empty: none
   /// Motor torques demanded by the last result, Nm or N; empty: none, or not known.
   VectorM motor_torque;
-  surfaces::State contact;
+  surfaces::EnvironmentState contact;
 };
 
 /// Words of the state hash, in its order; `rows` of the active set are in use. `touch` is hashed by
 /// the cycle, where contacts of the arm are detected.
-void hashed(auto& hash, const State& state, int rows) {
+void hashed(auto& hash, const RenderingState& state, int rows) {
   const auto& [reference, twin, inner, added, touch, active_set, touched, ddq_p, motor_torque,
                contact] = state;
   hash.mix(reference, twin);
@@ -67,11 +67,12 @@ void hashed(auto& hash, const State& state, int rows) {
 }
 
 /// Throws SetupError naming the first property of the models that the law cannot use.
-void check(const DeviceModel& device, const TwinModel& twin, const Options& options);
+void check_rendering(const DeviceModel& device, const TwinModel& twin,
+                     const RenderingOptions& options);
 
 class Rendering {
  public:
-  Rendering(DeviceModel device, TwinModel twin, const Options& options,
+  Rendering(DeviceModel device, TwinModel twin, const RenderingOptions& options,
             surfaces::Environment environment = {});
 
   const DeviceModel& device() const noexcept { return device_; }
@@ -82,27 +83,27 @@ class Rendering {
   const model::ChainData& twin_chain() const noexcept { return twin_now_; }
 
   /// State at rest: manipulator at `q_m`, twin at its start.
-  State start(const VectorM& q_m) const;
+  RenderingState start(const VectorM& q_m) const;
 
   /// Changes a parameter of the twin, from the next step() on.
-  ChangeStatus change(const ParameterChange& change, State& state) const noexcept;
+  ChangeStatus change(const ParameterChange& change, RenderingState& state) const noexcept;
 
   /// Solves for the accelerations of this sample. Writes them, their causes and the kinematics to
   /// `result`, all fields of it, and the accelerations to `state`, too. Does not advance the state:
   /// integrate() does. Where the law leads the gantry, state.ddq_p is its demanded acceleration.
-  SolverStatus step(const LawInput& input, State& state, LawResult& result) noexcept;
+  SolverStatus step(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
 
   /// Whether the law can lead the gantry.
   bool leads_gantry() const noexcept { return tasks_.leads_gantry(); }
 
   /// Moves the twin, at rest, so that its end effector meets the handle, as far as its joints
   /// allow.
-  void align(const RobotState& robot, State& state) noexcept;
+  void align(const RobotState& robot, RenderingState& state) noexcept;
 
   /// Keeps the reference within `largest` (rad or m) of the measured joints; [C] 6. Where the
   /// device lags behind, reference and twin are moved back to it, so that the error cannot build up
   /// and release suddenly. True when they were moved.
-  bool clamp_reference(const RobotState& robot, double largest, State& state) noexcept;
+  bool clamp_reference(const RobotState& robot, double largest, RenderingState& state) noexcept;
 
   /// Whether in the last step a joint or virtual joint of the device could not be kept within its
   /// limits: the motion of the gantry at a held twin has priority over them.
@@ -119,10 +120,10 @@ class Rendering {
   const model::Jacobian& handle_jacobian() const noexcept { return J_H_; }
   /// Twist of the end effector of the twin at the speeds of `state` in the posture of the last
   /// step(), resolved in B.
-  Vector6 end_effector_twist(const State& state) const noexcept;
+  Vector6 end_effector_twist(const RenderingState& state) const noexcept;
   /// Mass of the twin as set up, in the posture of the last step(), at its end effector along the
   /// axis of B where it is least, kg.
-  double apparent_mass(const State& state) const noexcept;
+  double apparent_mass(const RenderingState& state) const noexcept;
 
   /// Installs a callback for the stages kRenderingSetUp, kSolver and kReactions.
   void watch(const StageProbe& probe) noexcept { ended_ = probe; }
@@ -139,23 +140,23 @@ class Rendering {
   const Vector6& synchronisation() const noexcept { return tasks_.synchronisation(); }
 
   /// Advances reference and twin by one period.
-  void integrate(State& state) const noexcept;
+  void integrate(RenderingState& state) const noexcept;
 
  private:
   void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
   Eigen::Vector3d push_of_twin(const Budget& budget) const noexcept;
-  void add_torques(const LawInput& input, bool is_released, State& state,
+  void add_torques(const LawInput& input, bool is_released, RenderingState& state,
                    LawResult& result) const noexcept;
-  void feel_surfaces(const LawInput& input, State& state, LawResult& result) noexcept;
-  void give_way(const ContactReport& contact, State& state) const noexcept;
-  void solve(const LawInput& input, State& state, LawResult& result) noexcept;
+  void feel_surfaces(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
+  void give_way(const ContactReport& contact, RenderingState& state) const noexcept;
+  void solve(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
   void add_stops(ContactReport& contact) const noexcept;
-  void find_kinematics(const State& state, LawResult& result) const noexcept;
+  void find_kinematics(const RenderingState& state, LawResult& result) const noexcept;
 
   DeviceModel device_;
   TwinModel twin_;
   model::ChainData device_now_, twin_now_;  ///< Both in the posture of the last update
-  Options options_;
+  RenderingOptions options_;
   double dt_;  ///< Period, s
   surfaces::Environment environment_;
   double stop_rating_;

@@ -16,12 +16,12 @@ constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its
 constexpr double kJumped = 1.5;              // times the speed of a motor without load
 constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
 
-int led_axes(const DeviceModel& device, const Options& options) noexcept {
+int led_axes(const DeviceModel& device, const RenderingOptions& options) noexcept {
   return leads_gantry(device, options) ? device.n_p : 0;
 }
 
-hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin, const Options& options,
-                          int stops) {
+hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
+                          const RenderingOptions& options, int stops) {
   const int n_m = device.n_m, n_a = twin.chain.nv();
   const int limits = device.limit_count() + n_a + stops;
   const int frames = static_cast<int>(device.cartesian_limits.size());
@@ -67,16 +67,16 @@ double stop_rating(const DeviceModel& device) {
   return rating;
 }
 
-bool leads_gantry(const DeviceModel& device, const Options& options) noexcept {
+bool leads_gantry(const DeviceModel& device, const RenderingOptions& options) noexcept {
   return options.gantry == Gantry::kLaw && options.law == Law::kGauss && device.n_p > 0;
 }
 
-bool brakes_together(const DeviceModel& device, const Options& options) noexcept {
+bool brakes_together(const DeviceModel& device, const RenderingOptions& options) noexcept {
   return options.braking == Braking::kTogether && options.law == Law::kGauss &&
          options.bounds == Bounds::kRecoverable && !device.motors().empty();
 }
 
-Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
+Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOptions& options,
              bool has_stops)
     : options_(options),
       dt_(device.dt()),

@@ -88,16 +88,16 @@ double stop_rating(const DeviceModel& device);
 
 /// Whether accelerations of the gantry are unknowns of the law. Where the law cannot have them, or
 /// there is no gantry, a rule leads it, whatever `options` select.
-bool leads_gantry(const DeviceModel& device, const Options& options) noexcept;
+bool leads_gantry(const DeviceModel& device, const RenderingOptions& options) noexcept;
 
 /// Whether limits of the device brake together. Where the law does not model the motors, or bounds
 /// do not brake in time, each brakes separately, whatever `options` select.
-bool brakes_together(const DeviceModel& device, const Options& options) noexcept;
+bool brakes_together(const DeviceModel& device, const RenderingOptions& options) noexcept;
 
 class Tasks {
  public:
   /// `has_stops`: there are virtual surfaces that the end effector of the twin must not enter.
-  Tasks(const DeviceModel& device, const TwinModel& twin, const Options& options,
+  Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOptions& options,
         bool has_stops = false);
 
   /// Writes all rows. `device` and `twin` are the models given to the constructor.
@@ -167,7 +167,7 @@ class Tasks {
                  double known_acceleration) noexcept;
   void hold(int limit, double ddq) noexcept;
 
-  Options options_;
+  RenderingOptions options_;
   double dt_;  ///< Period, s
   int n_m_, n_a_;
   int n_g_;  ///< Gantry axes that the law leads

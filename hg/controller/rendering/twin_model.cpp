@@ -10,7 +10,7 @@
 
 namespace hg::rendering {
 
-void check(const TwinModel& twin) {
+void check_twin_model(const TwinModel& twin) {
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError("twin" + text);
   };
@@ -21,7 +21,7 @@ void check(const TwinModel& twin) {
   require(twin.q_start.size() == twin.chain.nq(), ": one start value per coordinate is needed");
   require(twin.dofs.size() == n_a, ": one entry per degree of freedom is needed");
   for (const TwinDof& dof : twin.dofs) {
-    limits::check(dof.limits, "twin joint " + dof.name);
+    limits::check_joint_limits(dof.limits, "twin joint " + dof.name);
     require(dof.closer.stiffness == 0.0 || std::isfinite(dof.limits.q_min),
             " joint " + dof.name + ": a closer with stiffness needs a lower limit");
   }

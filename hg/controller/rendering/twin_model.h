@@ -82,7 +82,7 @@ struct TwinModel {
 };
 
 /// Throws SetupError naming the first inconsistency.
-void check(const TwinModel& twin);
+void check_twin_model(const TwinModel& twin);
 
 /// Mass that a force at the end effector has to move, at the start of the twin.
 struct FeltMass {

@@ -165,8 +165,8 @@ bool Monitor::has_jumped(const SensorFrame& sensors, const MonitorState& state) 
   return ((sensors.q_p - state.q_p).array().abs() > far * drive_.dq_max).any();
 }
 
-Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
-                       MonitorState& state) noexcept {
+MonitorResult Monitor::watch(const SensorFrame& sensors, const Rendered& rendered,
+                             const Watched& watched, MonitorState& state) noexcept {
   worst_ = fresh_;
   if (state.lowest.size() != n_m_) {
     state.lowest = state.highest = rendered.robot.q_m;
@@ -185,7 +185,7 @@ Verdict Monitor::watch(const SensorFrame& sensors, const Rendered& rendered, con
   check_clocks(sensors, watched, state);
   check_sensor_values(sensors, state);
   const Fault shaking = look_for_shaking(sensors, rendered, watched, state);
-  Verdict verdict = judge(state);
+  MonitorResult verdict = judge(state);
   if (shaking.code != FaultCode::kNone) verdict.warning = shaking;
   state.is_broken = verdict.fault.code != FaultCode::kNone;
   return verdict;
@@ -364,7 +364,7 @@ void Monitor::check_frames(const Rendered& rendered, const Watched& watched) noe
         is_sum ? config_.virtual_tolerance : config_.cartesian_tolerance);
   }
   look<FaultCode::kSyncLost>(-1, rendered.sync_error, config_.sync_tolerance);
-  if (watched.state != State::kAutonomous) return;
+  if (watched.state != SafetyState::kAutonomous) return;
   look<FaultCode::kSafeSpeedExceeded>(0, rendered.v_H.norm(), config_.safe_speed);
   if (!is_gantry_slide_) return;
   look<FaultCode::kSafeSpeedExceeded>(1, rendered.robot.dq_p.norm(), config_.safe_speed);
@@ -468,8 +468,8 @@ void Monitor::check_noise(const SensorFrame& sensors, MonitorState& state) noexc
 }
 
 // Of several rules that are broken the one with the hardest reaction, then the smallest number.
-Verdict Monitor::judge(MonitorState& state) const noexcept {
-  Verdict verdict;
+MonitorResult Monitor::judge(MonitorState& state) const noexcept {
+  MonitorResult verdict;
   Stop hardest = Stop::kNone;
   double nearest = 0.0;
   for (std::size_t i = 0; i < kRuleCount; ++i) {

@@ -127,11 +127,11 @@ struct Rendered {
 
 /// Other monitored values of a cycle.
 struct Watched {
-  State state = State::kOff;      ///< State of the supervisor
-  std::uint32_t late_cycles = 0;  ///< Late cycles since the last cycle
-  VectorP dq_p_command;           ///< Velocity command that the gantry follows now, m/s or rad/s
-  VectorM tau_m;                  ///< Motor torques commanded a period ago, Nm; empty = none
-  VectorM pulled_back;  ///< Shift of the reference back to the device, rad or m; empty = none
+  SafetyState state = SafetyState::kOff;  ///< State of the supervisor
+  std::uint32_t late_cycles = 0;          ///< Late cycles since the last cycle
+  VectorP dq_p_command;  ///< Velocity command that the gantry follows now, m/s or rad/s
+  VectorM tau_m;         ///< Motor torques commanded a period ago, Nm; empty = none
+  VectorM pulled_back;   ///< Shift of the reference back to the device, rad or m; empty = none
   /// Unexplained joint torques, TrackingReport::torque_unexplained; empty = none.
   VectorM unexplained;
   double turn = 0.0;              ///< Rotation of the gyroscope beyond the encoders', rad
@@ -185,7 +185,7 @@ void hashed(auto& hash, const MonitorState& state) {
            braking_ramp_p, is_stopping, stop_from, braking_ramp, ramp_speed);
 }
 
-struct Verdict {
+struct MonitorResult {
   Fault fault;  ///< Broken rule with the hardest reaction, or kNone
   /// Shaking of hand and device, if detected; otherwise the rule nearest to its threshold, once
   /// beyond its warning level. kNone without either.
@@ -200,8 +200,8 @@ class Monitor {
 
   /// Checks a cycle with usable sensors; call once per cycle, after the rendering. With unusable
   /// sensors call forget() instead.
-  Verdict watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
-                MonitorState& state) noexcept;
+  MonitorResult watch(const SensorFrame& sensors, const Rendered& rendered, const Watched& watched,
+                      MonitorState& state) noexcept;
 
   /// Whether a position moved farther since the last sample than its rated speed and jump_factor
   /// allow.
@@ -235,7 +235,7 @@ class Monitor {
                          const Watched& watched, MonitorState& state) noexcept;
   void check_clocks(const SensorFrame& sensors, const Watched& watched,
                     MonitorState& state) noexcept;
-  Verdict judge(MonitorState& state) const noexcept;
+  MonitorResult judge(MonitorState& state) const noexcept;
 
   MonitorConfig config_;
   MonitoredParts parts_;

@@ -15,7 +15,7 @@ namespace hg::safety {
 
 /// Part of the copyable state of a cycle.
 struct SupervisorState {
-  State state = State::kOff;
+  SafetyState state = SafetyState::kOff;
   /// Request of the last cycle; requests act on their edge.
   ModeRequest last_request = ModeRequest::kNone;
   Stop stop = Stop::kNone;  ///< Kind of the present stop, or of the one by a fault

@@ -3,16 +3,16 @@
 namespace hg::safety {
 namespace {
 
-using enum State;
+using enum SafetyState;
 
 using Row = std::array<Transition, kEventCount>;
 
-constexpr Transition not_ready_in(State state) { return {state, Refusal::kNotReady}; }
-constexpr Transition not_armed_in(State state) { return {state, Refusal::kNotArmed}; }
-constexpr Transition no_fault_in(State state) { return {state, Refusal::kNoFault}; }
-constexpr Transition reset_first_in(State state) { return {state, Refusal::kFaultPresent}; }
+constexpr Transition not_ready_in(SafetyState state) { return {state, Refusal::kNotReady}; }
+constexpr Transition not_armed_in(SafetyState state) { return {state, Refusal::kNotArmed}; }
+constexpr Transition no_fault_in(SafetyState state) { return {state, Refusal::kNoFault}; }
+constexpr Transition reset_first_in(SafetyState state) { return {state, Refusal::kFaultPresent}; }
 
-// Columns in the order of Event: sample | arm, run, run alone, stop, reset | hand opens, hand
+// Columns in the order of SafetyEvent: sample | arm, run, run alone, stop, reset | hand opens, hand
 // closes, key turns off, operator lets go | standstill | rule, hard rule
 constexpr std::array<Row, kStateCount> kTable = {{
     // off
@@ -146,7 +146,8 @@ constexpr std::array<Row, kStateCount> kTable = {{
 constexpr bool refused_stay() noexcept {
   for (std::size_t state = 0; state < kStateCount; ++state) {
     for (const Transition& cell : kTable[state]) {
-      if (cell.refusal != Refusal::kNone && cell.next != static_cast<State>(state)) return false;
+      if (cell.refusal != Refusal::kNone && cell.next != static_cast<SafetyState>(state))
+        return false;
     }
   }
   return true;
@@ -155,11 +156,11 @@ static_assert(refused_stay(), "a refused request changes nothing");
 
 }  // namespace
 
-const Transition& transition(State state, Event event) noexcept {
+const Transition& transition(SafetyState state, SafetyEvent event) noexcept {
   return kTable[static_cast<std::size_t>(state)][static_cast<std::size_t>(event)];
 }
 
-std::string_view to_string(State state) noexcept {
+std::string_view to_string(SafetyState state) noexcept {
   switch (state) {
     case kOff:
       return "off";
@@ -183,33 +184,33 @@ std::string_view to_string(State state) noexcept {
   return "unknown";
 }
 
-std::string_view to_string(Event event) noexcept {
+std::string_view to_string(SafetyEvent event) noexcept {
   switch (event) {
-    case Event::kSample:
+    case SafetyEvent::kSample:
       return "good sample";
-    case Event::kArm:
+    case SafetyEvent::kArm:
       return "request: arm";
-    case Event::kRun:
+    case SafetyEvent::kRun:
       return "request: run";
-    case Event::kRunAlone:
+    case SafetyEvent::kRunAlone:
       return "request: run autonomously";
-    case Event::kStop:
+    case SafetyEvent::kStop:
       return "request: stop";
-    case Event::kReset:
+    case SafetyEvent::kReset:
       return "request: reset";
-    case Event::kHandOpens:
+    case SafetyEvent::kHandOpens:
       return "hand lets go";
-    case Event::kHandCloses:
+    case SafetyEvent::kHandCloses:
       return "hand takes hold";
-    case Event::kKeyTurnsOff:
+    case SafetyEvent::kKeyTurnsOff:
       return "override key off";
-    case Event::kOperatorLetsGo:
+    case SafetyEvent::kOperatorLetsGo:
       return "operator lets go";
-    case Event::kStandstill:
+    case SafetyEvent::kStandstill:
       return "standstill";
-    case Event::kRule:
+    case SafetyEvent::kRule:
       return "rule with SS1 or SS2";
-    case Event::kHardRule:
+    case SafetyEvent::kHardRule:
       return "rule with STO";
   }
   return "unknown";

@@ -15,7 +15,7 @@ namespace hg::safety {
 
 /// Operating state: the mode and the details that the supervisor needs. Numbers are hashed and
 /// never change.
-enum class State : std::uint8_t {
+enum class SafetyState : std::uint8_t {
   kOff = 0,
   kReady = 1,
   kArmed = 2,
@@ -30,7 +30,7 @@ enum class State : std::uint8_t {
 inline constexpr std::size_t kStateCount = 9;
 
 /// Events of the state machine. A request is an edge whose other conditions have been checked.
-enum class Event : std::uint8_t {
+enum class SafetyEvent : std::uint8_t {
   kSample = 0,          ///< a valid sample arrived
   kArm = 1,             ///< arming requested
   kRun = 2,             ///< running by hand requested
@@ -50,11 +50,11 @@ inline constexpr std::size_t kEventCount = 13;
 
 /// Effect of an event on a state: next state, no change, or refusal.
 struct Transition {
-  State next;
+  SafetyState next;
   Refusal refusal = Refusal::kNone;  ///< Refusal of a request; `next` is then the present state
 };
 
-constexpr Mode mode_of(State state) noexcept {
+constexpr Mode mode_of(SafetyState state) noexcept {
   constexpr std::array<Mode, kStateCount> kModes = {
       Mode::kOff,      Mode::kReady,    Mode::kArmed,    Mode::kRunning, Mode::kRunning,
       Mode::kStopping, Mode::kStopping, Mode::kStopping, Mode::kFault};
@@ -62,14 +62,14 @@ constexpr Mode mode_of(State state) noexcept {
 }
 
 /// Whether drives are on and brakes open.
-constexpr bool is_powered(State state) noexcept {
-  return state != State::kOff && state != State::kReady && state != State::kFault;
+constexpr bool is_powered(SafetyState state) noexcept {
+  return state != SafetyState::kOff && state != SafetyState::kReady && state != SafetyState::kFault;
 }
 
-std::string_view to_string(State state) noexcept;
-std::string_view to_string(Event event) noexcept;
+std::string_view to_string(SafetyState state) noexcept;
+std::string_view to_string(SafetyEvent event) noexcept;
 
 /// Transition of `state` at `event`.
-const Transition& transition(State state, Event event) noexcept;
+const Transition& transition(SafetyState state, SafetyEvent event) noexcept;
 
 }  // namespace hg::safety

@@ -32,13 +32,14 @@ struct Loop {
   std::uint64_t latency = 1;  // periods; 0: the device does not answer
 
   explicit Loop(bool needs_tare = false, bool has_torque_loop = false, bool has_imu = false,
-                const Config& base = {}, const DeviceModel& model = rendering::unlimited_device())
+                const CycleConfig& base = {},
+                const DeviceModel& model = rendering::unlimited_device())
       : device(model) {
     rendering::TwinModel twin = rendering::unlimited_twin(
         model::ChainModel::free_body({.mass = 6.0}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(device, Eigen::Vector2d::Zero(), kPosture));
-    Config config = base;
+    CycleConfig config = base;
     config.estimation.wrench.tare.is_needed = needs_tare;
     config.estimation.wrench.has_imu = has_imu;
     device.has_closed_form = true;
@@ -294,7 +295,7 @@ TEST(Cycle, AfterAStopOfBrakedJointsTheTwinIsAtTheHandle) {
   loop.sensors.dead_man = false;
   loop.run(3);
   ASSERT_EQ(loop.record.mode, Mode::kStopping);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   state.motion = Motion::kBrakeJoints;  // as a collision ahead does
   loop.cycle->restore(state);
   loop.sensors.w_S[0] = 0.0;
@@ -317,7 +318,7 @@ TEST(Cycle, RunsAgainInTheCycleAfterJointsBrakedOneByOne) {
   loop.sensors.dead_man = false;
   loop.run(3);
   ASSERT_EQ(loop.record.mode, Mode::kStopping);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   state.motion = Motion::kBrakeJoints;
   loop.cycle->restore(state);
   loop.sensors.w_S[0] = 0.0;
@@ -461,7 +462,7 @@ TEST(Cycle, ATorqueThatIsNotFiniteIsAFaultAndAResetRestarts) {
     Loop loop(false, true);
     loop.run(110);
     loop.start_running();
-    State state = loop.cycle->state();
+    CycleState state = loop.cycle->state();
     if (in_estimation) state.estimation.motor[1].dtheta = nan;
     if (!in_estimation) state.control.friction[1] = nan;
     loop.cycle->restore(state);
@@ -595,7 +596,7 @@ TEST(Cycle, AFallingArmIsReportedThoughAnotherSensorIsNotFinite) {
 TEST(Cycle, HandleAndTwinApartIsAFault) {
   Loop loop;
   loop.start_running();
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   state.rendering.twin.q_a[0] += 0.03;
   loop.cycle->restore(state);
   expect_controlled_stop(loop, FaultCode::kSyncLost, Stop::kSs2);
@@ -609,7 +610,7 @@ TEST(Cycle, WithoutASolutionTheJointsBrakeAndAResetRunsAgain) {
   loop.run(400);
   const double speed = loop.record.reference.dq_m.lpNorm<Eigen::Infinity>();
   ASSERT_GT(speed, 0.05);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   state.rendering.twin.q_a[1] = std::numeric_limits<double>::quiet_NaN();
   loop.cycle->restore(state);
   loop.step();
@@ -652,7 +653,7 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
   loop.start_running();
   loop.sensors.w_S << 2, 1, -3, 0.1, 0.2, 0.1;
   loop.run(100);
-  const State snapshot = loop.cycle->state();
+  const CycleState snapshot = loop.cycle->state();
   const SensorFrame sensors = loop.sensors;
   const auto gantry_speed = loop.gantry_speed;
   const auto delay = loop.delay;
@@ -685,7 +686,7 @@ TEST(Cycle, ASnapshotInContactContinuesBitForBitInAnotherCycle) {
         .q_min = elbow[axis] - 0.01, .q_max = elbow[axis] + 0.01, .ddq_max = 5.0};
   }
   device.cartesian_limits = {wall};
-  Config config;
+  CycleConfig config;
   config.surfaces = {{.name = "floor",
                       .shape = surfaces::Plane{},
                       .pose = {.p = handle - Eigen::Vector3d(0.0, 0.0, 0.002)},
@@ -722,7 +723,7 @@ TEST(Cycle, ASnapshotInContactContinuesBitForBitInAnotherCycle) {
 
 // A person keeps pressing: the stop gives way for a third of its time and then brakes.
 TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
-  Config config;
+  CycleConfig config;
   config.compliance.is_on = true;
   DeviceModel device = rendering::unlimited_device();
   for (limits::JointLimits& joint : device.joint_limits) {
@@ -736,7 +737,7 @@ TEST(Cycle, AStopByAContactDoesNotGiveWayForLongerThanItMayTake) {
   ASSERT_EQ(loop.record.mode, Mode::kRunning);
   ASSERT_TRUE(loop.record.touch.is_reported);
   ASSERT_GT(loop.record.v_H.norm(), 0.05);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   safety::break_rule({.code = FaultCode::kTorqueUnexplained}, state.supervisor);
   loop.cycle->restore(state);
   loop.run(200);
@@ -751,7 +752,7 @@ TEST(Cycle, WhatTouchesTheArmIsNoSurfaceThatPushesBack) {
   Loop loop;
   loop.start_running();
   loop.run(10);
-  State state = loop.cycle->state();
+  CycleState state = loop.cycle->state();
   ASSERT_GT(state.passivity.since_pushed_s, 0.0);
   state.rendering.touch[0] = 5.0;
   loop.cycle->restore(state);

@@ -46,7 +46,7 @@ double largest_flatness_Hz(double rate_Hz) noexcept {
   return kFastestFilter * rate_Hz / (2.0 * std::numbers::pi);
 }
 
-void check(const Config& config, double rate_Hz) {
+void check_control_config(const ControlConfig& config, double rate_Hz) {
   if (config.method == Method::kDrives) return;
   const double longest = kMostLatency * (1.0 / rate_Hz);
   if (!(config.loop.latency <= longest)) {
@@ -62,7 +62,7 @@ void check(const Config& config, double rate_Hz) {
                    model::to_text(config.flatness_Hz) + ": lower it, or raise the rate");
 }
 
-JointControl::JointControl(const Config& config, const DeviceModel& device)
+JointControl::JointControl(const ControlConfig& config, const DeviceModel& device)
     : config_(config),
       chain_(device.chain),
       n_p_(device.n_p),
@@ -70,7 +70,7 @@ JointControl::JointControl(const Config& config, const DeviceModel& device)
       handle_(device.handle),
       dt_(device.dt()),
       actuators_(device.actuators) {
-  check(config_, device.rate_Hz);
+  check_control_config(config_, device.rate_Hz);
   if (config_.method == Method::kDrives) return;
   if (static_cast<int>(actuators_.size()) != n_m_) {
     throw SetupError("control: " + std::to_string(n_m_) + " actuators expected, got " +
@@ -90,8 +90,8 @@ JointControl::JointControl(const Config& config, const DeviceModel& device)
   has_feet_ = std::ranges::any_of(actuators_, has_presliding);
 }
 
-State JointControl::start() const {
-  State state;
+ControlState JointControl::start() const {
+  ControlState state;
   state.latency = config_.loop.latency / dt_;
   state.modes = Modes(n_m_);
   state.integral = VectorM::Zero(n_m_);
@@ -101,7 +101,7 @@ State JointControl::start() const {
   return state;
 }
 
-void JointControl::restart(State& state) const noexcept {
+void JointControl::restart(ControlState& state) const noexcept {
   const double latency = state.latency;
   const int answers = state.answers;
   state = start();
@@ -109,7 +109,7 @@ void JointControl::restart(State& state) const noexcept {
   state.answers = answers;
 }
 
-void JointControl::listen(const SensorFrame& sensors, bool on, State& state) const noexcept {
+void JointControl::listen(const SensorFrame& sensors, bool on, ControlState& state) const noexcept {
   const double age = age_of(sensors);
   if (on) {
     if (state.answers == 0) return;  // drives that follow positions need not answer
@@ -123,26 +123,28 @@ void JointControl::listen(const SensorFrame& sensors, bool on, State& state) con
   state.latency += kLatencyMemory * (age - state.latency);
 }
 
-Fault JointControl::check_latency(const SensorFrame& sensors, const State& state) const noexcept {
+Fault JointControl::check_latency(const SensorFrame& sensors,
+                                  const ControlState& state) const noexcept {
   if (config_.method == Method::kDrives) return {};
   return state.late * dt_ < kLateFor ? Fault{} : link_fault(sensors, state);
 }
 
 Fault JointControl::link_disturbance(const SensorFrame& sensors,
-                                     const State& state) const noexcept {
+                                     const ControlState& state) const noexcept {
   return state.late * dt_ < kDisturbedFor ? Fault{} : link_fault(sensors, state);
 }
 
 // Commands are lost when the command at work dates from before it became late: none has arrived
 // since. Where it is younger they arrive late; where it is not late at all they arrive again.
-Fault JointControl::link_fault(const SensorFrame& sensors, const State& state) const noexcept {
+Fault JointControl::link_fault(const SensorFrame& sensors,
+                               const ControlState& state) const noexcept {
   const double age = age_of(sensors), most = state.latency + kLatencyMargin;
   const bool has_grown = age < 0.0 || (age > most && age < state.late);
   if (has_grown) return {FaultCode::kLatencyGrew, -1, age * dt_, most * dt_};
   return {FaultCode::kCommandsLost, -1, std::max<double>(age, state.late) * dt_, most * dt_};
 }
 
-void JointControl::rest(const ReferenceState& reference, State& state,
+void JointControl::rest(const ReferenceState& reference, ControlState& state,
                         CommandFrame& command) const noexcept {
   fill(reference, command);
   state.is_started = false;
@@ -150,7 +152,7 @@ void JointControl::rest(const ReferenceState& reference, State& state,
 }
 
 void JointControl::step(const ReferenceState& now, const ReferenceState& next,
-                        const RobotState& robot, State& state, CommandFrame& command,
+                        const RobotState& robot, ControlState& state, CommandFrame& command,
                         TrackingReport& report) noexcept {
   fill(next, command);
   report.error = now.q_m - robot.q_m;
@@ -214,7 +216,7 @@ MatrixM JointControl::scaled_mass() const noexcept {
 }
 
 void JointControl::begin(const ReferenceState& reference, const RobotState& robot,
-                         State& state) noexcept {
+                         ControlState& state) noexcept {
   state.poles = poles_for(config_.poles, state.latency * dt_ + config_.loop.current_lag);
   const VectorM tau = link_torque(reference, robot);
   state.tau_r = fed(tau);
@@ -235,7 +237,7 @@ void JointControl::begin(const ReferenceState& reference, const RobotState& robo
 
 JointControl::Feedforward JointControl::feedforward(const ReferenceState& reference,
                                                     const RobotState& robot,
-                                                    State& state) noexcept {
+                                                    ControlState& state) noexcept {
   const VectorM tau = link_torque(reference, robot);
   link_torque_ = tau;
   ddq_r_ = reference.ddq_m;
@@ -251,21 +253,21 @@ JointControl::Feedforward JointControl::feedforward(const ReferenceState& refere
 }
 
 // How stiff each mode is.
-VectorM JointControl::stiffness_shares(const State& state) const noexcept {
+VectorM JointControl::stiffness_shares(const ControlState& state) const noexcept {
   VectorM shares(n_m_);
   for (int i = 0; i < n_m_; ++i) shares[i] = stiffness_share(state.poles, state.modes.mu()[i]);
   return shares;
 }
 
 // Torques on the joints from what acts on the modes.
-VectorM JointControl::of_modes(const VectorM& in_modes, const State& state) const noexcept {
+VectorM JointControl::of_modes(const VectorM& in_modes, const ControlState& state) const noexcept {
   const VectorM back = state.modes.Q() * in_modes;
   return sqrt_K_.cwiseProduct(back);
 }
 
 // The part of torques on the joints that bends stiff modes.
 VectorM JointControl::of_stiff_modes(const VectorM& tau, const VectorM& shares,
-                                     const State& state) const noexcept {
+                                     const ControlState& state) const noexcept {
   const VectorM scaled = tau.cwiseQuotient(sqrt_K_);
   const VectorM in_modes = state.modes.Q().transpose() * scaled;
   return of_modes(in_modes.cwiseProduct(shares), state);
@@ -275,7 +277,7 @@ VectorM JointControl::of_stiff_modes(const VectorM& tau, const VectorM& shares,
 // Stiff modes are fast enough without, and would pass the sensor's noise on to the handle: they get
 // the low-passed part.
 VectorM JointControl::timely(const VectorM& tau, const RobotState& robot,
-                             State& state) const noexcept {
+                             ControlState& state) const noexcept {
   const Vector6 rate = (robot.w_H - state.w_H) / dt_;
   estimation::low_pass(lead_pole_, rate, state.dw_H);
   state.w_H = robot.w_H;
@@ -290,7 +292,7 @@ VectorM JointControl::timely(const VectorM& tau, const RobotState& robot,
 
 // The springs cannot take a torque at once: their motors have to twist them. What is fed forward
 // follows as fast as the peak torque lets a rotor turn, so that nothing saturates at a stop.
-void JointControl::follow_torque(const VectorM& tau, State& state) const noexcept {
+void JointControl::follow_torque(const VectorM& tau, ControlState& state) const noexcept {
   const double w = 2.0 * std::numbers::pi * config_.flatness_Hz;
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
@@ -311,7 +313,7 @@ void JointControl::follow_torque(const VectorM& tau, State& state) const noexcep
 }
 
 // While a motor is saturated, the integral may only shrink.
-void JointControl::integrate(const VectorM& error, State& state) const noexcept {
+void JointControl::integrate(const VectorM& error, ControlState& state) const noexcept {
   for (int i = 0; i < n_m_; ++i) {
     double& integral = state.integral[i];
     if (state.is_saturated && error[i] * integral >= 0.0) continue;
@@ -320,7 +322,7 @@ void JointControl::integrate(const VectorM& error, State& state) const noexcept 
 }
 
 VectorM JointControl::modal_torque(const Errors& errors, const RobotState& robot,
-                                   const Feedforward& forward, State& state) const noexcept {
+                                   const Feedforward& forward, ControlState& state) const noexcept {
   integrate(errors.q, state);
   state.modes.follow(scaled_mass());
   const auto in_modes = [&](const VectorM& x) noexcept -> VectorM {
@@ -355,7 +357,7 @@ VectorM JointControl::motor_pd_torque(const Errors& errors,
 }
 
 // By the motion of the reference, whose sign is known before the motor turns.
-void JointControl::dry_friction(const ReferenceState& reference, State& state,
+void JointControl::dry_friction(const ReferenceState& reference, ControlState& state,
                                 Feedforward& forward) const noexcept {
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
@@ -370,7 +372,8 @@ void JointControl::dry_friction(const ReferenceState& reference, State& state,
   }
 }
 
-VectorM JointControl::friction(const Feedforward& forward, const State& state) const noexcept {
+VectorM JointControl::friction(const Feedforward& forward,
+                               const ControlState& state) const noexcept {
   VectorM tau(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
@@ -384,7 +387,7 @@ VectorM JointControl::friction(const Feedforward& forward, const State& state) c
 // a factor, it changes its sign with the motion; an integrator would be wrong at every reversal.
 // What is missing while a motor is saturated is torque. `feedback` are torques of the motors.
 void JointControl::learn_friction(const Feedforward& forward, const VectorM& feedback,
-                                  const RobotState& robot, State& state) const noexcept {
+                                  const RobotState& robot, ControlState& state) const noexcept {
   if (state.is_saturated) return;
   for (int i = 0; i < n_m_; ++i) {
     const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];

@@ -30,15 +30,16 @@ enum class Method {
 };
 
 /// Set-up data.
-struct Config {
+struct ControlConfig {
   Method method = Method::kDrives;
   TorqueLoop loop;  ///< Torque loop with the expected latency; the true latency is measured
   /// Largest measured latency with which the loop is known to be stable, s.
   double latency_max = kInfinity;
-  double integral_rate = 2.0;      ///< kModal: decay rate of the link error, 1/s
-  double integral_max = 3.5e-4;    ///< Largest integral of the link error, rad s: no wind-up beyond
-  Poles poles;                     ///< kModal: poles without latency
-  double flatness_Hz = 40.0;       ///< Low-pass of derivatives of feedforward torques; see check()
+  double integral_rate = 2.0;    ///< kModal: decay rate of the link error, 1/s
+  double integral_max = 3.5e-4;  ///< Largest integral of the link error, rad s: no wind-up beyond
+  Poles poles;                   ///< kModal: poles without latency
+  /// Low-pass of derivatives of feedforward torques; see check_control_config()
+  double flatness_Hz = 40.0;
   double wrench_lead = 0.0;        ///< kModal: lead of the user's wrench in the feedforward, s
   double lead_low_pass_Hz = 65.0;  ///< Low-pass of the wrench's rate of change for that lead
   double stiff_low_pass_Hz = 0.0;  ///< kModal: low-pass of the feedforward to stiff modes; 0 = none
@@ -57,10 +58,10 @@ inline constexpr int kMostLatency = 64;  // periods
 
 /// Throws SetupError where the period of `rate_Hz` is too long for flatness_Hz or too short for the
 /// latency.
-void check(const Config& config, double rate_Hz);
+void check_control_config(const ControlConfig& config, double rate_Hz);
 
 /// Part of the copyable state of a cycle.
-struct State {
+struct ControlState {
   bool is_started = false;
   double latency = 0.0;  ///< Mean latency measured while the drives were off, periods
   int answers = 0;       ///< Samples in that mean, counted up to kAnswersNeeded
@@ -80,7 +81,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const State& state) {
+void hashed(auto& hash, const ControlState& state) {
   const auto& [is_started, latency, answers, late, poles, modes, integral, friction, tau_r, dtau_r,
                ddtau_r, w_H, dw_H, stiff, feet, unexplained, is_saturated] = state;
   hash.mix(std::uint64_t{is_started} | std::uint64_t{is_saturated} << 1U, latency,
@@ -91,36 +92,38 @@ void hashed(auto& hash, const State& state) {
 
 class JointControl {
  public:
-  /// Throws SetupError where a torque loop has no actuators, and what check() throws.
-  JointControl(const Config& config, const DeviceModel& device);
+  /// Throws SetupError where a torque loop has no actuators, and what check_control_config()
+  /// throws.
+  JointControl(const ControlConfig& config, const DeviceModel& device);
 
-  State start() const;
+  ControlState start() const;
   /// Resets the state after a fault, except for the measured latency.
-  void restart(State& state) const noexcept;
+  void restart(ControlState& state) const noexcept;
   /// Evaluates the age of the command at work; call once per sample, with drives `on` or off. Off,
   /// the latency is learnt from it; on, it is monitored.
-  void listen(const SensorFrame& sensors, bool on, State& state) const noexcept;
+  void listen(const SensorFrame& sensors, bool on, ControlState& state) const noexcept;
   /// Whether enough commands were answered to determine the latency, or there is no torque loop.
-  bool is_latency_known(const State& state) const noexcept {
+  bool is_latency_known(const ControlState& state) const noexcept {
     return config_.method == Method::kDrives || state.answers >= kAnswersNeeded;
   }
   /// Whether the loop is stable with the measured latency; true without a torque loop.
-  bool is_stable(const State& state) const noexcept {
+  bool is_stable(const ControlState& state) const noexcept {
     return config_.method == Method::kDrives || state.latency * dt_ <= config_.latency_max;
   }
   /// kCommandsLost or kLatencyGrew once the samples with a command more than half a period older
   /// than the latency assumed by the gains outnumber the others by 50 ms; kNone otherwise, and
   /// without a torque loop.
-  Fault check_latency(const SensorFrame& sensors, const State& state) const noexcept;
+  Fault check_latency(const SensorFrame& sensors, const ControlState& state) const noexcept;
   /// Like check_latency(), but from 5 ms on and for any device that answers: enough to explain why
   /// the device does not move as commanded.
-  Fault link_disturbance(const SensorFrame& sensors, const State& state) const noexcept;
+  Fault link_disturbance(const SensorFrame& sensors, const ControlState& state) const noexcept;
   /// Fills `command` while the drives are off and resets the control for the next step().
-  void rest(const ReferenceState& reference, State& state, CommandFrame& command) const noexcept;
+  void rest(const ReferenceState& reference, ControlState& state,
+            CommandFrame& command) const noexcept;
   /// Fills the manipulator part of `command`: `now` is the reference at the time of the sample,
   /// `next` where the drives should be a period later.
   void step(const ReferenceState& now, const ReferenceState& next, const RobotState& robot,
-            State& state, CommandFrame& command, TrackingReport& report) noexcept;
+            ControlState& state, CommandFrame& command, TrackingReport& report) noexcept;
 
   /// Torques on the joints, Nm.
   struct JointTorques {
@@ -141,32 +144,33 @@ class JointControl {
     VectorM tau, dtheta, ddtheta;
     VectorM dry, along;  ///< dry friction: at most, Nm, and the share of that, -1..1
   };
-  Fault link_fault(const SensorFrame& sensors, const State& state) const noexcept;
+  Fault link_fault(const SensorFrame& sensors, const ControlState& state) const noexcept;
   VectorM link_torque(const ReferenceState& reference, const RobotState& robot) noexcept;
   VectorM fed(const VectorM& tau) const noexcept {
     return tau.cwiseMin(feed_max_).cwiseMax(-feed_max_);
   }
   MatrixM scaled_mass() const noexcept;
-  VectorM stiffness_shares(const State& state) const noexcept;
-  VectorM of_modes(const VectorM& in_modes, const State& state) const noexcept;
+  VectorM stiffness_shares(const ControlState& state) const noexcept;
+  VectorM of_modes(const VectorM& in_modes, const ControlState& state) const noexcept;
   VectorM of_stiff_modes(const VectorM& tau, const VectorM& shares,
-                         const State& state) const noexcept;
-  VectorM timely(const VectorM& tau, const RobotState& robot, State& state) const noexcept;
-  void begin(const ReferenceState& reference, const RobotState& robot, State& state) noexcept;
+                         const ControlState& state) const noexcept;
+  VectorM timely(const VectorM& tau, const RobotState& robot, ControlState& state) const noexcept;
+  void begin(const ReferenceState& reference, const RobotState& robot,
+             ControlState& state) noexcept;
   Feedforward feedforward(const ReferenceState& reference, const RobotState& robot,
-                          State& state) noexcept;
-  void integrate(const VectorM& error, State& state) const noexcept;
-  void follow_torque(const VectorM& tau, State& state) const noexcept;
+                          ControlState& state) noexcept;
+  void integrate(const VectorM& error, ControlState& state) const noexcept;
+  void follow_torque(const VectorM& tau, ControlState& state) const noexcept;
   VectorM modal_torque(const Errors& errors, const RobotState& robot, const Feedforward& forward,
-                       State& state) const noexcept;
+                       ControlState& state) const noexcept;
   VectorM motor_pd_torque(const Errors& errors, const Feedforward& forward) const noexcept;
-  void dry_friction(const ReferenceState& reference, State& state,
+  void dry_friction(const ReferenceState& reference, ControlState& state,
                     Feedforward& forward) const noexcept;
-  VectorM friction(const Feedforward& forward, const State& state) const noexcept;
+  VectorM friction(const Feedforward& forward, const ControlState& state) const noexcept;
   void learn_friction(const Feedforward& forward, const VectorM& feedback, const RobotState& robot,
-                      State& state) const noexcept;
+                      ControlState& state) const noexcept;
 
-  Config config_;
+  ControlConfig config_;
   model::ChainData chain_;
   int n_p_, n_m_, handle_;
   double dt_;                                  ///< Period, s

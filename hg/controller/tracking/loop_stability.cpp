@@ -24,12 +24,12 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const Vecto
   constexpr double kError = 1e-7;  // small against every limit of the controller
   const int n = loop.device.n_m;
   JointControl control(loop.config, loop.device);
-  State at_start = control.start();
+  ControlState at_start = control.start();
   at_start.latency = latency / loop.device.dt();
   const RobotState robot = standing(loop.device.actuators, q, weight);
   const ReferenceState reference = standing_reference(robot);
   const auto torque = [&](const RobotState& seen) -> Eigen::VectorXd {
-    State state = at_start;
+    ControlState state = at_start;
     CommandFrame command;
     TrackingReport report;
     control.step(reference, reference, seen, state, command, report);

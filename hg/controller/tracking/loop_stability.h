@@ -3,7 +3,7 @@
 /// Linear: without Coulomb friction (which only helps), the user, and torque limits. Only the
 /// response to errors of one period is modelled, so that slow or separate parts are excluded: the
 /// integral, the learning of friction, and the filter of the feedforward (stable on its own, see
-/// tracking::check()). Set-up only.
+/// tracking::check_control_config()). Set-up only.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ struct LoopFilters {
 
 /// Arm and controller, as far as they are part of the loop.
 struct Loop {
-  Config config;
+  ControlConfig config;
   LoopFilters filters;
   DeviceModel device;
 };

@@ -35,26 +35,28 @@ std::uint32_t checksum(std::span<const std::byte> bytes) noexcept {
       ::crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
 }
 
-Verdict read_header(std::span<const std::byte> datagram, Header& header, const Key& key) noexcept {
-  if (datagram.size() < kHeaderSize + kChecksumSize) return Verdict::kTruncated;
+DatagramCheck read_header(std::span<const std::byte> datagram, Header& header,
+                          const Key& key) noexcept {
+  if (datagram.size() < kHeaderSize + kChecksumSize) return DatagramCheck::kTruncated;
   Decoder decoder(datagram.data());
   layout(decoder, header);
-  if (header.magic != kMagic) return Verdict::kForeign;
-  if (header.length != datagram.size()) return Verdict::kTruncated;
+  if (header.magic != kMagic) return DatagramCheck::kForeign;
+  if (header.length != datagram.size()) return DatagramCheck::kTruncated;
   std::uint32_t crc = 0;
   std::memcpy(&crc, datagram.data() + datagram.size() - kChecksumSize, sizeof crc);
-  if (crc != checksum(datagram.first(datagram.size() - kChecksumSize))) return Verdict::kCorrupted;
-  if (header.version != kVersion) return Verdict::kWrongVersion;
+  if (crc != checksum(datagram.first(datagram.size() - kChecksumSize)))
+    return DatagramCheck::kCorrupted;
+  if (header.version != kVersion) return DatagramCheck::kWrongVersion;
   const std::size_t length = length_of(header.type);
-  if (length == 0) return Verdict::kForeign;
+  if (length == 0) return DatagramCheck::kForeign;
   const bool has_tag = datagram.size() == length + Key::kTagSize;
-  if (!has_tag && datagram.size() != length) return Verdict::kTruncated;
-  if (has_tag != key.is_set()) return Verdict::kForged;
-  if (!has_tag) return Verdict::kGood;
+  if (!has_tag && datagram.size() != length) return DatagramCheck::kTruncated;
+  if (has_tag != key.is_set()) return DatagramCheck::kForged;
+  if (!has_tag) return DatagramCheck::kGood;
   const std::size_t tagged = length - kChecksumSize;
   return key.fits(datagram.first(tagged), datagram.subspan(tagged).first<Key::kTagSize>())
-             ? Verdict::kGood
-             : Verdict::kForged;
+             ? DatagramCheck::kGood
+             : DatagramCheck::kForged;
 }
 
 }  // namespace hg::udp

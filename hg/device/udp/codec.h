@@ -142,7 +142,7 @@ std::size_t size_of() noexcept {
 }
 
 /// Result of checking a datagram, in the order of the checks.
-enum class Verdict {
+enum class DatagramCheck {
   kGood,
   kTruncated,     ///< shorter than any message, or its length differs from its header or its type
   kForeign,       ///< another magic, or a type that does not exist
@@ -155,8 +155,8 @@ enum class Verdict {
 std::uint32_t checksum(std::span<const std::byte> bytes) noexcept;
 
 /// Checks everything but the fields of the message; `header` is filled in unless kTruncated.
-Verdict read_header(std::span<const std::byte> datagram, Header& header,
-                    const Key& key = {}) noexcept;
+DatagramCheck read_header(std::span<const std::byte> datagram, Header& header,
+                          const Key& key = {}) noexcept;
 
 /// Encodes a message; fills in type and length of `header`, the tag and the checksum.
 template <typename Message>

@@ -43,9 +43,10 @@ DeviceServer::Event DeviceServer::receive() {
   if (!socket_.receive(datagram_, from)) return Event::kNone;
   if (capture_) capture_->add(now_ns(), datagram_.view());
   Header header;
-  const Verdict verdict = read_header(datagram_.view(), header, config_.key);
-  const bool is_whole =
-      verdict == Verdict::kGood || verdict == Verdict::kWrongVersion || verdict == Verdict::kForged;
+  const DatagramCheck verdict = read_header(datagram_.view(), header, config_.key);
+  const bool is_whole = verdict == DatagramCheck::kGood ||
+                        verdict == DatagramCheck::kWrongVersion ||
+                        verdict == DatagramCheck::kForged;
   if (is_whole && header.type == static_cast<std::uint16_t>(MessageType::kHello)) {
     on_hello(header, verdict, from);
     return Event::kNone;
@@ -54,7 +55,8 @@ DeviceServer::Event DeviceServer::receive() {
 }
 
 // a session begins with a hello; leftovers of an old one do not count for the next
-DeviceServer::Event DeviceServer::hear(Verdict verdict, const Header& header, const Peer& from) {
+DeviceServer::Event DeviceServer::hear(DatagramCheck verdict, const Header& header,
+                                       const Peer& from) {
   if (!has_client_) return hear_candidate(verdict, header, from);
   if (!(from == client_)) {
     if (from_others_++ == 0) first_other_ = from;
@@ -63,7 +65,7 @@ DeviceServer::Event DeviceServer::hear(Verdict verdict, const Header& header, co
   return inbox_.accept(verdict, header) ? take(header) : Event::kNone;
 }
 
-DeviceServer::Event DeviceServer::hear_candidate(Verdict verdict, const Header& header,
+DeviceServer::Event DeviceServer::hear_candidate(DatagramCheck verdict, const Header& header,
                                                  const Peer& from) {
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     Candidate& candidate = candidates_[i];
@@ -78,8 +80,8 @@ DeviceServer::Event DeviceServer::hear_candidate(Verdict verdict, const Header& 
     }
     return Event::kNone;
   }
-  const bool is_ready =
-      verdict == Verdict::kGood && header.type == static_cast<std::uint16_t>(MessageType::kReady);
+  const bool is_ready = verdict == DatagramCheck::kGood &&
+                        header.type == static_cast<std::uint16_t>(MessageType::kReady);
   if (!is_ready || !was_welcomed(from, header.session)) return Event::kNone;
   // its hello was forgotten: many have arrived since
   Candidate candidate{.peer = from,
@@ -173,9 +175,9 @@ DeviceServer::Event DeviceServer::take(const Header& header) {
   return Event::kNone;
 }
 
-void DeviceServer::on_hello(const Header& header, Verdict verdict, const Peer& from) {
-  if (verdict == Verdict::kWrongVersion) {
-    refuse(Refusal::kProtocol,
+void DeviceServer::on_hello(const Header& header, DatagramCheck verdict, const Peer& from) {
+  if (verdict == DatagramCheck::kWrongVersion) {
+    refuse(ConnectionRefusal::kProtocol,
            fmt::format("protocol: version {}, expected {}", kVersion, header.version), 0, from);
     return;
   }
@@ -184,8 +186,8 @@ void DeviceServer::on_hello(const Header& header, Verdict verdict, const Peer& f
     ++malformed_;
     return;
   }
-  if (verdict == Verdict::kForged) {
-    refuse(Refusal::kKey,
+  if (verdict == DatagramCheck::kForged) {
+    refuse(ConnectionRefusal::kKey,
            config_.key.is_set() ? "its key is another one, or none was given (--key-file)"
                                 : "it has no key (--key-file), and none may be given",
            hello.nonce, from);
@@ -193,14 +195,14 @@ void DeviceServer::on_hello(const Header& header, Verdict verdict, const Peer& f
   }
   const bool is_client = has_client_ && from == client_ && hello.nonce == hello_.nonce;
   if (has_client_ && !is_client) {
-    refuse(Refusal::kBusy,
+    refuse(ConnectionRefusal::kBusy,
            fmt::format("{} at {} has the device", hello_.client.printable(), to_string(client_)),
            hello.nonce, from);
     return;
   }
   const std::string unlike = difference(config_.actual, hello.expected);
   if (!unlike.empty()) {
-    refuse(Refusal::kMismatch, unlike, hello.nonce, from);
+    refuse(ConnectionRefusal::kMismatch, unlike, hello.nonce, from);
     return;
   }
   const Welcome welcome{.nonce = hello.nonce,
@@ -218,7 +220,7 @@ void DeviceServer::on_hello(const Header& header, Verdict verdict, const Peer& f
   }
 }
 
-void DeviceServer::refuse(Refusal refusal, const std::string& reason, std::uint64_t nonce,
+void DeviceServer::refuse(ConnectionRefusal refusal, const std::string& reason, std::uint64_t nonce,
                           const Peer& to) {
   ++refused_;
   Outbox outbox(0);  // without a tag, so that a client with another key or none can read it

@@ -85,15 +85,16 @@ class DeviceServer {
     std::int64_t give_up_ns = 0;
   };
   Event receive();
-  Event hear(Verdict verdict, const Header& header, const Peer& from);
-  Event hear_candidate(Verdict verdict, const Header& header, const Peer& from);
+  Event hear(DatagramCheck verdict, const Header& header, const Peer& from);
+  Event hear_candidate(DatagramCheck verdict, const Header& header, const Peer& from);
   void begin_session(const Candidate& chosen);
   Candidate& candidate_of(const Hello& hello, const Peer& from);
   std::uint32_t session_for(const Peer& peer, std::int64_t time_ns) const noexcept;
   bool was_welcomed(const Peer& peer, std::uint32_t session) const noexcept;
   Event take(const Header& header);
-  void on_hello(const Header& header, Verdict verdict, const Peer& from);
-  void refuse(Refusal refusal, const std::string& reason, std::uint64_t nonce, const Peer& to);
+  void on_hello(const Header& header, DatagramCheck verdict, const Peer& from);
+  void refuse(ConnectionRefusal refusal, const std::string& reason, std::uint64_t nonce,
+              const Peer& to);
   void live_in_real_time(device::Device& device, const std::atomic<bool>& stop);
   void live_in_lock_step(device::Device& device, const std::atomic<bool>& stop);
   void close_session(bool is_stopped);

@@ -21,24 +21,24 @@ NumberWindow::Place NumberWindow::accept(std::uint64_t number) noexcept {
   return Place::kOvertaken;
 }
 
-bool Inbox::accept(Verdict verdict, const Header& header) noexcept {
+bool Inbox::accept(DatagramCheck verdict, const Header& header) noexcept {
   was_overtaken_ = false;
   switch (verdict) {
-    case Verdict::kGood:
+    case DatagramCheck::kGood:
       break;
-    case Verdict::kTruncated:
+    case DatagramCheck::kTruncated:
       ++counts_.truncated;
       return false;
-    case Verdict::kForeign:
+    case DatagramCheck::kForeign:
       ++counts_.foreign;
       return false;
-    case Verdict::kCorrupted:
+    case DatagramCheck::kCorrupted:
       ++counts_.corrupted;
       return false;
-    case Verdict::kWrongVersion:
+    case DatagramCheck::kWrongVersion:
       ++counts_.wrong_version;
       return false;
-    case Verdict::kForged:
+    case DatagramCheck::kForged:
       ++counts_.forged;
       return false;
   }

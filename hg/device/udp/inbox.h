@@ -31,7 +31,7 @@ class Inbox {
   explicit Inbox(std::uint32_t session) : session_(session) {}
 
   /// Counts a datagram by the verdict of read_header(); true: its fields are to be decoded.
-  bool accept(Verdict verdict, const Header& header) noexcept;
+  bool accept(DatagramCheck verdict, const Header& header) noexcept;
   /// Whether the datagram accepted last was overtaken by a later one.
   bool was_overtaken() const noexcept { return was_overtaken_; }
 

@@ -78,7 +78,7 @@ void fields(Archive& a, T& description) {
   a("is_lock_step", description.is_lock_step, "0: real time, 1: lock-step");
 }
 
-enum class Refusal : std::uint32_t {
+enum class ConnectionRefusal : std::uint32_t {
   kNone = 0,
   kBusy = 1,      ///< another client has the device
   kProtocol = 2,  ///< other protocol version
@@ -129,7 +129,7 @@ void fields(Archive& a, T& hello) {
 
 struct Welcome {
   std::uint64_t nonce = 0;
-  Refusal refusal = Refusal::kNone;
+  ConnectionRefusal refusal = ConnectionRefusal::kNone;
   bool is_simulated = false;  ///< no machine moves, whatever is commanded
   Description actual;
   double command_timeout_s = 0.0;

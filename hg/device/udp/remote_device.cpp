@@ -63,24 +63,24 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_p
   Peer from;
   if (!socket_.receive(datagram_, from)) return false;
   Header header;
-  const Verdict verdict = read_header(datagram_.view(), header, config_.key);
-  if (verdict == Verdict::kWrongVersion) {
+  const DatagramCheck verdict = read_header(datagram_.view(), header, config_.key);
+  if (verdict == DatagramCheck::kWrongVersion) {
     throw SetupError(
         fmt::format("{}: the device speaks version {} of the protocol, this program {}", at,
                     header.version, kVersion));
   }
   // a server with another key or none can report just that
-  const bool is_forged = verdict == Verdict::kForged;
-  if (!(verdict == Verdict::kGood || is_forged) ||
+  const bool is_forged = verdict == DatagramCheck::kForged;
+  if (!(verdict == DatagramCheck::kGood || is_forged) ||
       header.type != static_cast<std::uint16_t>(MessageType::kWelcome)) {
     return false;
   }
   if (!decode(datagram_.view(), welcome_) || welcome_.nonce != nonce) return false;
-  if (is_forged && welcome_.refusal == Refusal::kNone) {
+  if (is_forged && welcome_.refusal == ConnectionRefusal::kNone) {
     throw SetupError(at + ": the device's answer is not of the key that was given (--key-file)");
   }
-  if (welcome_.refusal == Refusal::kBusy && is_patient) return false;  // busy: try again
-  if (welcome_.refusal != Refusal::kNone) {
+  if (welcome_.refusal == ConnectionRefusal::kBusy && is_patient) return false;  // busy: try again
+  if (welcome_.refusal != ConnectionRefusal::kNone) {
     throw SetupError(fmt::format("{}: the device refuses: {}", at, welcome_.reason.printable()));
   }
   const std::string unlike = difference(welcome_.actual, config_.expected);
@@ -125,7 +125,7 @@ void RemoteDevice::take_in() noexcept {
   for (int i = 0; i < kMostAtOnce; ++i) {
     if (queue_.is_full() || !socket_.receive(datagram_, from)) return;
     Header header;
-    const Verdict verdict = read_header(datagram_.view(), header, config_.key);
+    const DatagramCheck verdict = read_header(datagram_.view(), header, config_.key);
     if (inbox_.accept(verdict, header)) take(header);
   }
 }

@@ -295,8 +295,8 @@ TEST(RecoverableBounds, InfiniteLimitsInAnyCombinationGiveNoNan) {
     if (mask & 4) limits.dq_max = kInfinity;
     if (mask & 8) limits.ddq_max = kInfinity;
     const RecoverableOptions options = options_for(limits, kDt);
-    check(limits, kItem);
-    check(options, limits, kDt, kItem);
+    check_joint_limits(limits, kItem);
+    check_recoverable_options(options, limits, kDt, kItem);
     for (const double q : {-2.0, -1.0, 0.0, 0.499, 0.5, 0.5001, 2.0}) {
       for (const double dq : {-3.0, -1e-3, 0.0, 1e-3, 3.0}) {
         std::feclearexcept(FE_ALL_EXCEPT);
@@ -474,11 +474,15 @@ TEST(RecoverableOptions, DefaultsFollowPeriodsAndSpeed) {
   EXPECT_EQ(fast.v_rec, 0.5);
 }
 
-// What check() says, empty when it accepts.
+// Message of the check of these arguments; empty when they pass.
 template <typename... Arguments>
 std::string refusal(const Arguments&... arguments) {
   try {
-    check(arguments..., kItem);
+    if constexpr (sizeof...(arguments) == 1) {
+      check_joint_limits(arguments..., kItem);
+    } else {
+      check_recoverable_options(arguments..., kItem);
+    }
   } catch (const SetupError& error) {
     return error.what();
   }

@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Drives, ClosedLoop,
 TEST(CheckDriveResponse, AnImpossibleValueIsRefusedAndNamed) {
   const auto said = [](const DriveResponse& drive) -> std::string {
     try {
-      check(drive, "gantry x");
+      check_drive_response(drive, "gantry x");
     } catch (const SetupError& error) {
       return error.what();
     }

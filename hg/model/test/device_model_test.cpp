@@ -23,7 +23,7 @@ TEST(DeviceModel, ChecksEachFactThatItsPartsRelyOn) {
   const auto message = [](auto change) {
     DeviceModel device = haptic_giant();
     change(device);
-    return message_of([&] { check(device); });
+    return message_of([&] { check_device_model(device); });
   };
   EXPECT_EQ(message([](DeviceModel&) {}), "no error");
   EXPECT_EQ(message([](DeviceModel& d) { d.rate_Hz = 99.0; }),

@@ -21,7 +21,7 @@
 namespace hg::runtime {
 namespace {
 
-Report run(Parts& parts, const Options& options, std::uint64_t& seen) {
+RuntimeReport run(Parts& parts, const RuntimeOptions& options, std::uint64_t& seen) {
   Runtime runtime(options, *parts.cycle, parts.device);
   runtime.start();
   auto sample = std::make_unique<Sample>();
@@ -37,7 +37,7 @@ Report run(Parts& parts, const Options& options, std::uint64_t& seen) {
 TEST(Runtime, FastModePlaysTheWholeDurationAndLosesNoSample) {
   Parts parts;
   std::uint64_t seen = 0;
-  const Report report = run(parts, {.is_fast = true, .duration_s = 0.5, .ring = 16}, seen);
+  const RuntimeReport report = run(parts, {.is_fast = true, .duration_s = 0.5, .ring = 16}, seen);
   EXPECT_GE(report.cycles, 501u);
   EXPECT_LE(report.cycles, 501u + 1000u);
   EXPECT_EQ(seen, report.cycles);
@@ -50,7 +50,7 @@ TEST(Runtime, ADeviceThatIsTheClockIsNotWaitedFor) {
   Parts parts;
   parts.device.keeps_time = true;
   std::uint64_t seen = 0;
-  const Report report = run(parts, {.duration_s = 6.0}, seen);
+  const RuntimeReport report = run(parts, {.duration_s = 6.0}, seen);
   EXPECT_GE(report.cycles, 6001u);
   EXPECT_EQ(report.wake_up_us.count(), 0u);  // it never slept
 }
@@ -58,11 +58,11 @@ TEST(Runtime, ADeviceThatIsTheClockIsNotWaitedFor) {
 TEST(Runtime, KeepsProblemsOfSlowCyclesOnly) {
   for (const bool all_are_slow : {false, true}) {
     Parts parts;
-    Options options = {.is_fast = true, .duration_s = 0.05};
+    RuntimeOptions options = {.is_fast = true, .duration_s = 0.05};
     if (all_are_slow) options.slow_cycle_us = 0.0;
     Runtime runtime(options, *parts.cycle, parts.device);
     runtime.start();
-    const Report report = runtime.join();
+    const RuntimeReport report = runtime.join();
     EXPECT_EQ(report.allocations, 0u);
     EXPECT_EQ(runtime.kept_problems().count(), all_are_slow ? report.cycles : 0u);
     const std::size_t kept = all_are_slow ? hqp::ProblemCapture::kMostSolved : 0u;
@@ -77,7 +77,7 @@ TEST(Runtime, KeepsProblemsOfSlowCyclesOnly) {
 TEST(Runtime, RealTimeModePlaysTheWholeDuration) {
   Parts parts;
   std::uint64_t seen = 0;
-  const Report report = run(parts, {.duration_s = 0.2}, seen);
+  const RuntimeReport report = run(parts, {.duration_s = 0.2}, seen);
   EXPECT_GE(report.cycles, 100u);
   EXPECT_EQ(report.dropped + seen, report.cycles);
   EXPECT_EQ(report.allocations, 0u);
@@ -86,12 +86,12 @@ TEST(Runtime, RealTimeModePlaysTheWholeDuration) {
 TEST(Runtime, StaysInAFaultThatCanBeResetAndRequestsNothing) {
   Parts parts;
   parts.device.lost_sample = 50;
-  const Options options = {.is_fast = true,
-                           .duration_s = 2.0,
-                           .panel = {{0.8, {}, ModeRequest::kReset},
-                                     {1.0, {}, ModeRequest::kArm},
-                                     {1.2, {}, ModeRequest::kRun}},
-                           .stays_in_fault = true};
+  const RuntimeOptions options = {.is_fast = true,
+                                  .duration_s = 2.0,
+                                  .panel = {{0.8, {}, ModeRequest::kReset},
+                                            {1.0, {}, ModeRequest::kArm},
+                                            {1.2, {}, ModeRequest::kRun}},
+                                  .stays_in_fault = true};
   Runtime runtime(options, *parts.cycle, parts.device);
   runtime.start();
   const auto sample = std::make_unique<Sample>();
@@ -125,7 +125,7 @@ TEST(Runtime, EndsAtAFaultOnceTheDeviceRests) {
   Parts others;
   others.device.lost_sample = 50;
   others.device.speed = 0.5;
-  const Options options = {.is_fast = true, .duration_s = 10.0, .longest_stop_s = 0.7};
+  const RuntimeOptions options = {.is_fast = true, .duration_s = 10.0, .longest_stop_s = 0.7};
   EXPECT_NEAR(static_cast<double>(run(others, options, seen).cycles), 50.0 + 700.0, 5.0);
 }
 
@@ -189,8 +189,8 @@ class PagesAtWork : public ::testing::Test {
 
   void begin(std::vector<TimedPanel> script = {}) {
     runtime_ = std::make_unique<Runtime>(
-        Options{.panel = std::move(script), .stays_in_fault = true, .desk = &desk_}, *parts_.cycle,
-        device_);
+        RuntimeOptions{.panel = std::move(script), .stays_in_fault = true, .desk = &desk_},
+        *parts_.cycle, device_);
     runtime_->start();
   }
   // The sample of the next cycle.
@@ -406,7 +406,7 @@ TEST(Runtime, SlowMotionStretchesTheWallClockOnly) {
   ASSERT_TRUE(runtime.pace().set_speed(0.1));
   const auto begin = std::chrono::steady_clock::now();
   runtime.start();
-  const Report report = runtime.join();
+  const RuntimeReport report = runtime.join();
   EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(450));
   Parts others;
   std::uint64_t seen = 0;
@@ -433,7 +433,8 @@ TEST(Pace, RefusesWhatIsOutOfRange) {
 }
 
 // Late cycles reported to the cycle, by sample; the run is over before the device moves.
-std::vector<std::uint32_t> late_cycles(const Options& options, bool keeps_time, Report& report) {
+std::vector<std::uint32_t> late_cycles(const RuntimeOptions& options, bool keeps_time,
+                                       RuntimeReport& report) {
   Parts parts(200.0);
   parts.device.stalls_at = 20;
   parts.device.keeps_time = keeps_time;
@@ -448,7 +449,7 @@ std::vector<std::uint32_t> late_cycles(const Options& options, bool keeps_time, 
 
 TEST(Runtime, ReportsMissedCyclesWhereTheThreadIsRealTime) {
   for (const bool keeps_time : {false, true}) {
-    Report report;
+    RuntimeReport report;
     const auto late =
         late_cycles({.duration_s = 0.2, .tells_late_cycles = true}, keeps_time, report);
     EXPECT_GE(report.overruns, 4u);
@@ -460,14 +461,14 @@ TEST(Runtime, ReportsMissedCyclesWhereTheThreadIsRealTime) {
 }
 
 TEST(Runtime, DoesNotReportLateCyclesOfADeviceThatWaits) {
-  Report report;
+  RuntimeReport report;
   const auto late = late_cycles({.duration_s = 0.2}, false, report);
   EXPECT_GE(report.overruns, 4u);
   for (const std::uint32_t cycles : late) EXPECT_EQ(cycles, 0u);
 }
 
 TEST(Runtime, DoesNotReportLateCyclesOfAnOrdinaryThread) {
-  Report report;
+  RuntimeReport report;
   const auto late = late_cycles(
       {.duration_s = 0.2, .thread = {.priority = 0}, .tells_late_cycles = true}, false, report);
   EXPECT_EQ(report.thread.priority, 0);
@@ -480,7 +481,7 @@ TEST(Runtime, MeasuresWakeUpsAndStagesInRealTimeOnly) {
   for (const bool is_fast : {false, true}) {
     Parts parts;
     std::uint64_t seen = 0;
-    const Report report = run(parts, {.is_fast = is_fast, .duration_s = 0.05}, seen);
+    const RuntimeReport report = run(parts, {.is_fast = is_fast, .duration_s = 0.05}, seen);
     EXPECT_EQ(report.wake_up_us.count() > 40, !is_fast);
     const Histogram& solver = report.stage_us[static_cast<std::size_t>(Stage::kSolver)];
     EXPECT_EQ(solver.count() > 0, !is_fast);
@@ -504,17 +505,17 @@ TEST(Runtime, RunsOnTheRequestedProcessor) {
   const int cpu = first_allowed_processor();
   EXPECT_EQ(run(parts, {.duration_s = 0.01, .thread = {.cpu = cpu}}, seen).thread.cpu, cpu);
   Parts others;
-  const Report report = run(others, {.duration_s = 0.01, .thread = {.cpu = 1023}}, seen);
+  const RuntimeReport report = run(others, {.duration_s = 0.01, .thread = {.cpu = 1023}}, seen);
   EXPECT_EQ(report.thread.cpu, -1);
   EXPECT_NE(report.thread.cpu_error, 0);
 }
 
 TEST(Runtime, RefusesImpossibleOptions) {
-  EXPECT_THROW(check({.thread = {.priority = 100}}), SetupError);
-  EXPECT_THROW(check({.thread = {.cpu = -2}}), SetupError);
+  EXPECT_THROW(check_runtime_options({.thread = {.priority = 100}}), SetupError);
+  EXPECT_THROW(check_runtime_options({.thread = {.cpu = -2}}), SetupError);
   EXPECT_THROW(Parts(0.0), SetupError);
   EXPECT_THROW(Parts(20001.0), SetupError);
-  EXPECT_THROW(check({.duration_s = -1.0}), SetupError);
+  EXPECT_THROW(check_runtime_options({.duration_s = -1.0}), SetupError);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ struct Parts {
         rendering::unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
     twin.q_start =
         rendering::floating_at(rendering::handle_pose(model, Eigen::Vector2d::Zero(), kPosture));
-    controller::Config config;
+    controller::CycleConfig config;
     config.estimation.wrench.has_imu = false;
     cycle = std::make_unique<controller::Cycle>(config, model, twin);
   }

@@ -37,7 +37,8 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
   return load_recorded(std::move(sources), options);
 }
 
-recording::RecordingInfo recording_info(const config::Scenario& scenario, const Options& options) {
+recording::RecordingInfo recording_info(const config::Scenario& scenario,
+                                        const ScenarioOptions& options) {
   recording::RecordingInfo info;
   info.name = recording_name(options.scenario);
   info.gantry_joints = gantry_joints(scenario.device);

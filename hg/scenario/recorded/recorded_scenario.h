@@ -17,6 +17,7 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
 
 /// What a recording of `scenario`, loaded with `options`, says about its run: all but its folder
 /// and the version of the program.
-recording::RecordingInfo recording_info(const config::Scenario& scenario, const Options& options);
+recording::RecordingInfo recording_info(const config::Scenario& scenario,
+                                        const ScenarioOptions& options);
 
 }  // namespace hg::scenario

@@ -5,7 +5,7 @@
 namespace hg::scenario {
 
 udp::Description describe(const config::Scenario& scenario, bool is_lock_step) {
-  const config::Device& device = scenario.device;
+  const config::DeviceConfig& device = scenario.device;
   const bool has_drives = device.control.method == tracking::Method::kDrives;
   return {.device = device.name,
           .n_p = static_cast<std::uint32_t>(device.model.n_p),

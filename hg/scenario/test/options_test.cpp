@@ -10,7 +10,8 @@ namespace hg::scenario {
 namespace {
 
 TEST(Options, ARecordingKeepsThoseThatDetermineTheCycle) {
-  const Options options = {.scenario = "door", .rate_Hz = 500.0, .law = "paper", .bounds = "paper"};
+  const ScenarioOptions options = {
+      .scenario = "door", .rate_Hz = 500.0, .law = "paper", .bounds = "paper"};
   EXPECT_EQ(to_text(options), "--rate-hz 500\n--law paper\n--bounds paper\n");
   const config::Scenario recorded =
       load_recorded(load({.scenario = "door"}).sources, to_text(options));

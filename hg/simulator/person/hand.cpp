@@ -62,7 +62,7 @@ HandImpedance hand(HandPreset preset) noexcept {
   return hand;
 }
 
-void check(const HandImpedance& hand) {
+void check_hand_impedance(const HandImpedance& hand) {
   const auto require = [](bool ok, const char* rule) {
     if (!ok) throw SetupError(std::string("hand: ") + rule);
   };

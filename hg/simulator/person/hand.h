@@ -41,7 +41,7 @@ struct HandImpedance {
 HandImpedance hand(HandPreset preset) noexcept;
 
 /// Throws SetupError naming the field that is out of range.
-void check(const HandImpedance& hand);
+void check_hand_impedance(const HandImpedance& hand);
 
 /// Pose and twist of the handle.
 struct HandleMotion {

@@ -9,7 +9,7 @@
 
 namespace hg::person {
 
-Person::Person(const Config& config, const model::ChainModel& twin, int end_effector,
+Person::Person(const PersonConfig& config, const model::ChainModel& twin, int end_effector,
                const Pose& T_B_twin)
     : config_(config),
       twin_(twin),
@@ -18,7 +18,7 @@ Person::Person(const Config& config, const model::ChainModel& twin, int end_effe
       arm_(config.hand),
       tremor_(config.hand.tremor_rms, config.seed),
       walker_(config.script.walk) {
-  check(config_.hand);
+  check_hand_impedance(config_.hand);
   if (!(config_.script.grasp_s >= 0.0)) throw SetupError("grasp_s must not be negative");
 }
 

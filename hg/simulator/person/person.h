@@ -24,7 +24,7 @@ enum class PersonKind {
   kMouse,   ///< follows HandTarget only
 };
 
-struct Config {
+struct PersonConfig {
   PersonKind kind = PersonKind::kScript;
   HandImpedance hand;
   Script script;
@@ -34,7 +34,7 @@ struct Config {
 class Person {
  public:
   /// `twin` and its frame `end_effector` give the pose of kTwinJoints and kCylindrical channels.
-  Person(const Config& config, const model::ChainModel& twin, int end_effector,
+  Person(const PersonConfig& config, const model::ChainModel& twin, int end_effector,
          const Pose& T_B_twin);
 
   /// Wrench on the handle at time `t`, in s since the start of the run; the arm advances from call
@@ -57,7 +57,7 @@ class Person {
   Pose channel_pose() noexcept;
   void keep_score(double dt, const HandleMotion& handle) noexcept;
 
-  Config config_;
+  PersonConfig config_;
   model::ChainData twin_;
   int end_effector_;
   Pose T_B_twin_;

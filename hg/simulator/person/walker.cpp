@@ -59,7 +59,7 @@ bool has_room(const Walk& walk) noexcept {
   return walk.speed < kTurnSpeed * walk.circle_radius && body_radius(walk) > 0.0;
 }
 
-void check(const Walk& walk) {
+void check_walk(const Walk& walk) {
   const auto require = [](bool ok, const std::string& rule) {
     if (!ok) throw SetupError("walk: " + rule);
   };
@@ -74,7 +74,7 @@ void check(const Walk& walk) {
   }
 }
 
-Walker::Walker(Walk walk) : walk_(std::move(walk)) { check(walk_); }
+Walker::Walker(Walk walk) : walk_(std::move(walk)) { check_walk(walk_); }
 
 void Walker::start(const Eigen::Vector3d& p, double azimuth) noexcept {
   heading_ = azimuth - walk_.azimuth_from_heading;

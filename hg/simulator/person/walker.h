@@ -41,7 +41,7 @@ struct Walk {
 /// Whether the body has room inside the circle of its hand.
 bool has_room(const Walk& walk) noexcept;
 /// Throws SetupError naming the field that is out of range.
-void check(const Walk& walk);
+void check_walk(const Walk& walk);
 
 /// Measures of how well a path was followed.
 struct Score {

@@ -28,7 +28,7 @@ double stopped(const Interval& travel, double q, double dq, double ddq) noexcept
 
 Plant::Plant(const PlantConfig& config, const model::ChainModel& chain, int handle)
     : config_(config), chain_(chain), handle_(handle) {
-  check(config, chain);
+  check_plant_config(config, chain);
   n_p_ = static_cast<int>(config_.gantry.size());
   n_m_ = static_cast<int>(config_.manipulator.size());
   n_l_ = n_m_ + static_cast<int>(config_.flexible.size());

@@ -112,7 +112,7 @@ void check_end_stops(const PlantConfig& config, const model::ChainModel& chain) 
 
 }  // namespace
 
-void check(const PlantConfig& config, const model::ChainModel& chain) {
+void check_plant_config(const PlantConfig& config, const model::ChainModel& chain) {
   check_joints(config, chain);
   require_positive("step", config.step);
   require_not_negative("current_lag", config.current_lag);

@@ -84,6 +84,6 @@ struct PlantConfig {
 };
 
 /// Throws SetupError, `item: rule, got value`, unless a plant can be built from it.
-void check(const PlantConfig& config, const model::ChainModel& chain);
+void check_plant_config(const PlantConfig& config, const model::ChainModel& chain);
 
 }  // namespace hg::simulator

@@ -22,7 +22,7 @@ inline person::Person no_person() {
 /// Pulls towards HandTarget::p_B from the default grasp on.
 inline person::Person mouse() {
   const model::ChainModel body = model::ChainModel::free_body({}, {.gravity = false});
-  person::Config config;
+  person::PersonConfig config;
   config.kind = person::PersonKind::kMouse;
   config.hand.tremor_rms = 0.0;
   return {config, body, body.frame("handle"), {}};
@@ -40,12 +40,12 @@ inline SensedDevice reference_sensed() {
 }
 
 /// Drives that follow positions, sensors without errors.
-inline Config ideal_world() {
+inline SimulatorConfig ideal_world() {
   IdealPlantConfig plant;
   plant.q_m_start.resize(6);
   plant.q_m_start << 0.0, 1.5, -0.6, 1.3, 0.2, 0.4;
   plant.q_p_start = VectorP::Zero(2);
-  Config config;
+  SimulatorConfig config;
   config.plant = plant;
   config.sensed = reference_sensed();
   config.sensed.step = config.sensed.period;
@@ -53,8 +53,8 @@ inline Config ideal_world() {
 }
 
 /// Series elastic joints at home with four steps per period, sensors without errors.
-inline Config elastic_world() {
-  Config config;
+inline SimulatorConfig elastic_world() {
+  SimulatorConfig config;
   config.plant = reference_config();
   config.steps = 4;
   config.latency = 1e-3;
@@ -62,10 +62,12 @@ inline Config elastic_world() {
   return config;
 }
 
-inline IdealPlantConfig& ideal(Config& config) { return std::get<IdealPlantConfig>(config.plant); }
-inline PlantConfig& elastic(Config& config) { return std::get<PlantConfig>(config.plant); }
+inline IdealPlantConfig& ideal(SimulatorConfig& config) {
+  return std::get<IdealPlantConfig>(config.plant);
+}
+inline PlantConfig& elastic(SimulatorConfig& config) { return std::get<PlantConfig>(config.plant); }
 
-inline Simulation make(const Config& config, person::Person person = no_person()) {
+inline Simulation make(const SimulatorConfig& config, person::Person person = no_person()) {
   return Simulation(config, device_chain(), device_chain().frame("handle"), std::move(person));
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPeriod = 1e-3;  // s
 
 TEST(IdealSimulation, TheGantryWaitsForItsDeadTimeThenFollowsWithItsLag) {
-  Config world = ideal_world();
+  SimulatorConfig world = ideal_world();
   ideal(world).drive.ddq_max = 1e9;  // lag only
   Simulation device = make(world);
   CommandFrame command = hold(device);
@@ -33,7 +33,7 @@ TEST(IdealSimulation, TheGantryWaitsForItsDeadTimeThenFollowsWithItsLag) {
 }
 
 TEST(IdealSimulation, TheGantryKeepsItsAccelerationAndSpeedRating) {
-  Config world = ideal_world();
+  SimulatorConfig world = ideal_world();
   const DriveModel& drive = ideal(world).drive;
   Simulation device = make(world);
   CommandFrame command = hold(device);
@@ -63,7 +63,7 @@ TEST(IdealSimulation, TheSlipRingJointShowsItsAngleWithinOneTurn) {
 }
 
 TEST(IdealSimulation, WithoutPowerTheJointsStayAndTheGantryBrakes) {
-  Config world = ideal_world();
+  SimulatorConfig world = ideal_world();
   Simulation device = make(world);
   CommandFrame command = hold(device);
   command.dq_p[0] = 1.0;
@@ -85,7 +85,7 @@ TEST(IdealSimulation, HasNeitherMotorSideNorSpringTorques) {
 }
 
 TEST(IdealSimulation, TheSensorShowsTheHandsWrenchInItsOwnFrame) {
-  Config world = ideal_world();
+  SimulatorConfig world = ideal_world();
   world.sensed.T_H_S.p = {0.0, 0.0, -0.1};
   Simulation device = make(world, mouse());
   const Pose T_B_H = device.truth().T_B_H;
@@ -105,7 +105,7 @@ TEST(IdealSimulation, TheSensorShowsTheHandsWrenchInItsOwnFrame) {
 }
 
 TEST(Simulation, TheLatencyIsAtMostFifteenPeriods) {
-  Config world = elastic_world();
+  SimulatorConfig world = elastic_world();
   world.latency = 15e-3;
   EXPECT_NO_THROW(make(world));
   world.latency = 15.25e-3;
@@ -115,7 +115,7 @@ TEST(Simulation, TheLatencyIsAtMostFifteenPeriods) {
 // Steps of the plant until a torque command is felt by the motor, as whole periods show it: with a
 // latency in the middle of a period the motor has had the rest of the period to move.
 double speed_after_one_period(double latency, int periods) {
-  Config world = elastic_world();
+  SimulatorConfig world = elastic_world();
   world.latency = latency;
   elastic(world).current_lag = 0.0;
   for (ActuatorModel& actuator : elastic(world).actuators) {
@@ -150,7 +150,7 @@ TEST(Simulation, TheAnsweredSequenceShowsTheLatencyInPeriods) {
   for (const auto& [latency, periods] : std::vector<std::pair<double, std::uint64_t>>{
            {0.25e-3, 1}, {1e-3, 1}, {1.25e-3, 2}, {2e-3, 2}, {3e-3, 3}}) {
     SCOPED_TRACE(latency);
-    Config world = elastic_world();
+    SimulatorConfig world = elastic_world();
     world.latency = latency;
     Simulation device = make(world);
     for (int k = 0; k < 20; ++k) device.step(hold(device));
@@ -185,7 +185,7 @@ TEST(Simulation, BrakesHoldTheMotorsOfADisabledDeviceAgainstAnyHand) {
 }
 
 TEST(Simulation, WithoutNewCommandsTheDrivesSwitchThemselvesOff) {
-  Config world = elastic_world();
+  SimulatorConfig world = elastic_world();
   Simulation device = make(world);
   CommandFrame command = hold(device);
   command.enable = true;
@@ -215,7 +215,7 @@ TEST(Simulation, TheGantryOfADisabledDeviceBrakesOnAnyCommand) {
 }
 
 TEST(Simulation, TheSensorCarriesThePayloadWithItsWeightAndInertia) {
-  Config world = elastic_world();
+  SimulatorConfig world = elastic_world();
   world.sensed.payload.mass = 1.18;
   Simulation device = make(world);
   EXPECT_NEAR(device.sensors().w_S.head<3>().norm(), 1.18 * 9.81, 1e-6);
@@ -251,8 +251,8 @@ std::vector<double> numbers(const SensorFrame& frame) {
   return all;
 }
 
-Config noisy_world(std::uint64_t seed) {
-  Config world = elastic_world();
+SimulatorConfig noisy_world(std::uint64_t seed) {
+  SimulatorConfig world = elastic_world();
   world.sensors = SensorsConfig{.seed = seed};
   return world;
 }

@@ -50,7 +50,8 @@ nlohmann::json as_json(const studies::FreeTwin& body) {
   return {{"mass", body.mass}, {"damping", body.damping}};
 }
 
-Benchmark measure(const config::Scenario& scenario, const Options& options, const Told& told) {
+Benchmark measure(const config::Scenario& scenario, const HaptifyOptions& options,
+                  const Told& told) {
   Benchmark result = {.device = scenario.device.name};
   const Group group = {scenario, options, told, result};
   add_workspace(group);

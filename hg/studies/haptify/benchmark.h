@@ -11,7 +11,7 @@
 
 namespace hg::haptify {
 
-struct Options {
+struct HaptifyOptions {
   std::uint64_t seed = 1;  ///< seed of the first repetition; the others follow
   int repetitions = 5;
   bool is_quick = false;  ///< quick run: few samples, short runs
@@ -33,13 +33,14 @@ struct Benchmark {
 /// Runs the benchmark. `scenario`: a hand that leads a free body (models/scenarios/walk.yaml). The
 /// same scenario and options give the same numbers. Throws SetupError when the twin is not a free
 /// body.
-Benchmark measure(const config::Scenario& scenario, const Options& options, const Told& told);
+Benchmark measure(const config::Scenario& scenario, const HaptifyOptions& options,
+                  const Told& told);
 
 /// Measures what has a design goal with `options.repetitions` seeds, at three heights of the handle
 /// and, where a person holds it, in three hands: Table III is for the middle of the workspace, this
 /// for the worst case. `light` is `scenario` with the lightest body that the device can render: it
 /// is used for the forces of free space and of a surface without friction. Errors as measure().
 Benchmark measure_goals(const config::Scenario& scenario, const config::Scenario& light,
-                        const Options& options, const Told& told);
+                        const HaptifyOptions& options, const Told& told);
 
 }  // namespace hg::haptify

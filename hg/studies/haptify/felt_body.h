@@ -42,7 +42,7 @@ struct TwistConfig {
 
 struct Twist {
   /// Verdict; also kDiverges if a fault ended the run
-  studies::Verdict verdict = studies::Verdict::kDiverges;
+  studies::DecayClass verdict = studies::DecayClass::kDiverges;
   std::string failure;  ///< fault before the handle was twisted; empty = none
 };
 /// Twists the handle of a body with the same inertia about all axes, held by a hand, for a moment,

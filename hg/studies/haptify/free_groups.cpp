@@ -40,11 +40,11 @@ std::vector<double> numbers(const Eigen::Vector3d& vector) {
 
 void add_workspace(const Group& group) {
   const ShapeConfig config = {.postures = group.options.is_quick ? 4'000 : 60'000};
-  const config::Device& device = group.scenario.device;
+  const config::DeviceConfig& device = group.scenario.device;
   std::vector<Play> plays;
   for (const std::uint64_t seed : group.seeds()) {
     plays.push_back({{{"seed", seed}}, [&device, &config, seed, first = group.options.seed] {
-                       const checks::Workspace shape = measure_shape(device, config, seed);
+                       const checks::HandleWorkspace shape = measure_shape(device, config, seed);
                        json run = {{"volume", shape.volume},
                                    {"nominal_volume", shape.share_nominal * shape.box_volume},
                                    {"has_box", shape.has_box},

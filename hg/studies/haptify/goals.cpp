@@ -166,7 +166,7 @@ void add_presses(const Group& group) {
 }  // namespace
 
 Benchmark measure_goals(const config::Scenario& scenario, const config::Scenario& light,
-                        const Options& options, const Told& told) {
+                        const HaptifyOptions& options, const Told& told) {
   Benchmark result = {.device = scenario.device.name};
   const Group group = {scenario, options, told, result};
   const Group with_light_body = {light, options, told, result};

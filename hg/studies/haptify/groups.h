@@ -26,7 +26,7 @@ struct Play {
 
 struct Group {
   const config::Scenario& scenario;
-  const Options& options;
+  const HaptifyOptions& options;
   const Told& told;
   Benchmark& out;
 

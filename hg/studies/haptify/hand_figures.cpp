@@ -25,7 +25,7 @@ double after_kick(const config::Scenario& scenario, person::HandPreset hand, dou
   return kick(scenario, studies::StabilityConfig{}, person::hand(hand), mass, kDamping).last_speed;
 }
 
-studies::Verdict wall(config::Scenario scenario, double mass) {
+studies::DecayClass wall(config::Scenario scenario, double mass) {
   constexpr double kStiffness = 20e3, kWallDamping = 20.0;  // N/m, Ns/m
   studies::set_free_twin(scenario, {.mass = mass, .damping = kDamping});
   return knock(scenario, SurfaceConfig{}, kStiffness, kWallDamping).verdict;

@@ -22,7 +22,7 @@ struct HandFigures {
   double joint_error = 0.0;   ///< largest reference minus true link in free space, rad
   double light_normal = 0.0;  ///< speed of 0.3 kg in a normal hand, seconds after a kick, m/s
   double light_stiff = 0.0;   ///< speed of 0.4 kg in a stiff hand, likewise, m/s
-  std::array<studies::Verdict, 2>
+  std::array<studies::DecayClass, 2>
       wall{};  ///< wall of 20 kN/m against 6 kg and 3 kg, in a normal hand
 };
 

@@ -58,7 +58,7 @@ std::size_t contact_of(const Played& played, const ImpactConfig& config) {
 // From the contact to the deepest point.
 double braking_of(const DeviceModel& device, std::span<const Instant> braking) {
   const Instant& first = braking.front();
-  rendering::Motion motion = {first.q_p, first.dq_p, first.q_m, first.dq_m};
+  rendering::DeviceMotion motion = {first.q_p, first.dq_p, first.q_m, first.dq_m};
   for (const Instant& now : braking) motion.w_H += now.w_H / static_cast<double>(braking.size());
   return rendering::largest_acceleration(device, motion, -Eigen::Vector3d::Unit(kAhead));
 }

@@ -20,7 +20,7 @@ using Values = std::vector<double>;
 
 constexpr int kAxes = 3;
 
-ResponseConfig config_of(const Options& options, const Values& frequency_Hz) {
+ResponseConfig config_of(const HaptifyOptions& options, const Values& frequency_Hz) {
   ResponseConfig config;
   config.frequency_Hz = frequency_Hz;
   if (!options.is_quick) return config;

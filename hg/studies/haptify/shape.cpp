@@ -42,7 +42,7 @@ std::vector<std::pair<std::string, double>> binding_limits(const DeviceModel& mo
 
 // The posture of those drawn that brings the handle farthest along `axis`, `side` = -1 or 1; empty
 // when the limits permit none.
-Eigen::VectorXd farthest(const config::Device& device, const ShapeConfig& config,
+Eigen::VectorXd farthest(const config::DeviceConfig& device, const ShapeConfig& config,
                          std::uint64_t seed, int axis, double side) {
   checks::Random random(seed);
   const checks::JointRanges ranges = checks::joint_ranges(device);
@@ -65,8 +65,8 @@ Eigen::VectorXd farthest(const config::Device& device, const ShapeConfig& config
 
 }  // namespace
 
-checks::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
-                                std::uint64_t seed) {
+checks::HandleWorkspace measure_shape(const config::DeviceConfig& device, const ShapeConfig& config,
+                                      std::uint64_t seed) {
   checks::Random random(seed);
   checks::Survey survey;
   survey.options.seed = seed;
@@ -74,7 +74,7 @@ checks::Workspace measure_shape(const config::Device& device, const ShapeConfig&
   return checks::workspace(device, survey);
 }
 
-std::vector<View> workspace_views(const config::Device& device, const ShapeConfig& config,
+std::vector<View> workspace_views(const config::DeviceConfig& device, const ShapeConfig& config,
                                   std::uint64_t seed) {
   constexpr double kCell = 0.05;  // m
   checks::Random random(seed);
@@ -104,8 +104,8 @@ std::vector<View> workspace_views(const config::Device& device, const ShapeConfi
   return views;
 }
 
-std::vector<UnreachedSide> unreached_sides(const config::Device& device,
-                                           const checks::Workspace& shape,
+std::vector<UnreachedSide> unreached_sides(const config::DeviceConfig& device,
+                                           const checks::HandleWorkspace& shape,
                                            const ShapeConfig& config, std::uint64_t seed) {
   constexpr double kReached = 2e-3;  // m
   if (!shape.has_box) return {};

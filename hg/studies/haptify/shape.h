@@ -20,8 +20,8 @@ struct ShapeConfig {
 /// Measures the workspace. Joint limits, the distance to the singularity (virtual joints), travel
 /// of the gantry and walls (Cartesian limits of handle and elbow) all hold; the control loop does
 /// not run.
-checks::Workspace measure_shape(const config::Device& device, const ShapeConfig& config,
-                                std::uint64_t seed);
+checks::HandleWorkspace measure_shape(const config::DeviceConfig& device, const ShapeConfig& config,
+                                      std::uint64_t seed);
 
 /// A cloud of points seen along one axis: the number of points in each cell of a plane.
 struct View {
@@ -33,7 +33,7 @@ struct View {
 };
 
 /// The positions of the handle from above, from the front and from the side.
-std::vector<View> workspace_views(const config::Device& device, const ShapeConfig& config,
+std::vector<View> workspace_views(const config::DeviceConfig& device, const ShapeConfig& config,
                                   std::uint64_t seed);
 
 /// A side of the handle's box that the handle does not reach.
@@ -48,8 +48,8 @@ struct UnreachedSide {
 };
 
 /// Sides of the handle's box that the handle misses by more than 2 mm.
-std::vector<UnreachedSide> unreached_sides(const config::Device& device,
-                                           const checks::Workspace& shape,
+std::vector<UnreachedSide> unreached_sides(const config::DeviceConfig& device,
+                                           const checks::HandleWorkspace& shape,
                                            const ShapeConfig& config, std::uint64_t seed);
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(View, across, up, left, bottom, cell, rows, box)

@@ -215,7 +215,7 @@ Knock knock(const config::Scenario& scenario, const SurfaceConfig& config, doubl
     return {.failure =
                 played.failure.empty() ? "the hand did not touch the surface" : played.failure};
   }
-  if (!played.failure.empty()) return {.verdict = studies::Verdict::kDiverges};
+  if (!played.failure.empty()) return {.verdict = studies::DecayClass::kDiverges};
   return {.verdict = studies::judge_decay(speed, config.calm, knocked.device.model.rate_Hz)};
 }
 

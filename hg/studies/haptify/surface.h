@@ -76,7 +76,7 @@ Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
 
 struct Knock {
   /// Verdict; also kDiverges if a fault ended the run
-  studies::Verdict verdict = studies::Verdict::kDiverges;
+  studies::DecayClass verdict = studies::DecayClass::kDiverges;
   std::string failure;  ///< the hand did not reach the surface; empty = it did
 };
 /// A hand presses on the surface and gets a kick of 15 N for 10 ms; judges the decay along the

@@ -50,7 +50,7 @@ config::Scenario prepared(const config::Scenario& scenario, const SwingConfig& c
                  .limits = {.q_min = -kRange, .q_max = kRange},
                  .stiffness = stiffness,
                  .damping = config.damping}};
-  rendering::check(model);
+  rendering::check_twin_model(model);
   result.twin.name = "hinge";
   result.twin.T_B_root = T_B_hinge;
   result.limits = rendering::make_catalogue(result.device.model, model);

@@ -21,7 +21,7 @@ collision::Shape column_at(double x, double y) {
   return column;
 }
 
-void watch(config::Device& device) {
+void watch(config::DeviceConfig& device) {
   std::vector<Interval> range(device.model.gantry_range.begin(),
                               device.model.gantry_range.begin() + device.model.n_p);
   for (const auto& joint : device.model.joint_limits) range.push_back({joint.q_min, joint.q_max});
@@ -57,7 +57,7 @@ void set_restless_hand(unsigned seed, double duration_s, config::Scenario& scena
 // The smallest distance of all watched pairs, for the true posture.
 class TrueDistance {
  public:
-  explicit TrueDistance(const config::Device& device)
+  explicit TrueDistance(const config::DeviceConfig& device)
       : config_(device.collision), chain_(device.model.chain) {
     for (const collision::Pair& pair : config_.pairs.watched) {
       distances_.emplace_back(shape(pair.a), shape(pair.b));
@@ -80,7 +80,7 @@ class TrueDistance {
     return shape.frame < 0 ? Pose{} : chain_.pose(shape.frame);
   }
 
-  collision::Config config_;
+  collision::CollisionConfig config_;
   model::ChainData chain_;
   std::vector<collision::Distance> distances_;
 };

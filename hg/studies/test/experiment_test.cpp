@@ -98,7 +98,7 @@ TEST(SpringHand, HasTheDampingRatiosItIsGiven) {
 TEST(Kick, AHeavyDampedBodyInANormalHandIsStable) {
   const KickOutcome outcome =
       kick(walk_scenario(), {}, person::hand(person::HandPreset::kNormal), 6.0, 20.0);
-  EXPECT_EQ(outcome.verdict, Verdict::kStable);
+  EXPECT_EQ(outcome.verdict, DecayClass::kStable);
   EXPECT_EQ(outcome.fault, FaultCode::kNone);
   EXPECT_GT(outcome.last_speed, 0.0);
 }
@@ -159,8 +159,8 @@ TEST(StabilityMap, HasARowPerHandAndFindsTheSmallestMass) {
 TEST(StabilityMap, JsonHasEveryCell) {
   StabilityMap map;
   map.config.mass = {1, 2};
-  map.rows = {{"300 N/m", 4.0, {{Verdict::kDiverges}, {Verdict::kHunts, 0.01}}, 1.25},
-              {"stiff", 4.0, {{Verdict::kSustained}, {Verdict::kSustained}}, kInfinity}};
+  map.rows = {{"300 N/m", 4.0, {{DecayClass::kDiverges}, {DecayClass::kHunts, 0.01}}, 1.25},
+              {"stiff", 4.0, {{DecayClass::kSustained}, {DecayClass::kSustained}}, kInfinity}};
   const nlohmann::ordered_json json = to_json(map);
   EXPECT_EQ(json["rows"][0]["cells"][1]["verdict"], "hunts");
   EXPECT_EQ(json["rows"][0]["stable_from_kg"], 1.25);

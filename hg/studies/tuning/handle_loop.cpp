@@ -115,7 +115,7 @@ Dampers dampers_of(const Body& body) {
 // Everything that one period needs, column by column.
 class Period {
  public:
-  Period(const Device& device, const tracking::TruePlant& plant, const Body& body,
+  Period(const TunedDevice& device, const tracking::TruePlant& plant, const Body& body,
          const person::HandImpedance& hand, const VectorXd& q)
       : body_(body),
         dampers_(dampers_of(body)),
@@ -201,7 +201,7 @@ class Period {
     next.segment<6>(at.dtwin) += dt_ * ddE;
     const VectorXd ddq_r = to_joints_ * ddE;
     next.segment(at.ddq_last, n) = ddq_r;
-    tracking::State state = state_of(now);
+    tracking::ControlState state = state_of(now);
     const ReferenceState here = {.q_m = q_m_ + to_joints_ * now.segment<6>(at.twin),
                                  .dq_m = to_joints_ * now.segment<6>(at.dtwin),
                                  .ddq_m = ddq_r};
@@ -325,9 +325,9 @@ class Period {
     at_rest_ = command.tau_m;
   }
 
-  tracking::State state_of(const VectorXd& x) const {
+  tracking::ControlState state_of(const VectorXd& x) const {
     const Layout& at = layout_;
-    tracking::State state = started_;
+    tracking::ControlState state = started_;
     state.integral += x.segment(at.integral, at.n);
     state.tau_r += x.segment(at.tau_r, at.n);
     state.dtau_r = x.segment(at.dtau_r, at.n);
@@ -339,7 +339,7 @@ class Period {
 
   Body body_;
   Dampers dampers_;
-  tracking::Config config_;
+  tracking::ControlConfig config_;
   DeviceModel model_;
   tracking::TruePlant plant_;
   double dt_;
@@ -354,12 +354,12 @@ class Period {
   VectorXd K_, D_, q_m_, at_rest_;
   double wrench_pole_ = 0.0;
   RobotState robot_;
-  tracking::State started_;
+  tracking::ControlState started_;
 };
 
 }  // namespace
 
-HandleLoop linearise(const Device& device, const tracking::TruePlant& plant, const Body& body,
+HandleLoop linearise(const TunedDevice& device, const tracking::TruePlant& plant, const Body& body,
                      const person::HandImpedance& hand, const Noise& noise, const VectorXd& q) {
   // small against every limit of the controller, large against its rounding
   constexpr double kUnit = 1e-6, kTorque = 1e-3, kTorqueRate = 0.1;

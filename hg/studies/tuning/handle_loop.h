@@ -41,7 +41,7 @@ struct Noise {
 };
 
 /// Properties of the device that do not depend on the posture.
-struct Device {
+struct TunedDevice {
   tracking::Loop loop;
   WrenchPath wrench;
 };
@@ -65,7 +65,7 @@ struct HandleLoop {
 
 /// Linearises the loop in posture `q` (gantry first) with `hand` on the handle; `plant` holds
 /// deviations unknown to the controller.
-HandleLoop linearise(const Device& device, const tracking::TruePlant& plant, const Body& body,
+HandleLoop linearise(const TunedDevice& device, const tracking::TruePlant& plant, const Body& body,
                      const person::HandImpedance& hand, const Noise& noise,
                      const Eigen::VectorXd& q);
 

@@ -11,8 +11,8 @@ namespace hg::tuning {
 struct Knob {
   std::string_view section, key;   ///< section and key in device.yaml
   double least = 0.0, most = 0.0;  ///< range of the search
-  double (*get)(const Device&);
-  void (*set)(Device&, double);
+  double (*get)(const TunedDevice&);
+  void (*set)(TunedDevice&, double);
 };
 
 std::span<const Knob> knobs();
@@ -20,9 +20,9 @@ std::span<const Knob> knobs();
 /// One value per knob.
 using Values = Eigen::VectorXd;
 
-Values values_of(const Device& device);
+Values values_of(const TunedDevice& device);
 /// The device with these values; values outside the search range are clamped.
-Device with_values(Device device, const Values& values);
+TunedDevice with_values(TunedDevice device, const Values& values);
 
 /// Normalised values within the range of each knob, 0 to 1, logarithmic where the range is, and
 /// back.

@@ -107,10 +107,10 @@ const Deviation& Demands::deviation(const Case& one) const {
   return (one.grasp < 0 ? deviations_ : deviations_in_hand_)[one.deviation];
 }
 
-double Demands::radius(const Device& device, const Case& one) const {
+double Demands::radius(const TunedDevice& device, const Case& one) const {
   const Deviation& real = deviation(one);
   const Eigen::VectorXd& q = postures_[one.posture];
-  const tracking::Config& config = device.loop.config;
+  const tracking::ControlConfig& config = device.loop.config;
   const double scale = 1e-3 / device.loop.device.dt();
   if (one.grasp < 0) {
     return std::pow(tracking::spectral_radius(device.loop, q, config.loop.latency, real.plant),
@@ -119,14 +119,14 @@ double Demands::radius(const Device& device, const Case& one) const {
   const Grasp& grasp = grasps_[index(one.grasp)];
   Body body = is_friction(one) ? body_ : grasp.body;
   body.mass *= real.mass;
-  Device doubted = device;
+  TunedDevice doubted = device;
   if (is_friction(one)) doubted.loop.config.friction_share = real.fed;
   doubted.loop.config.flatness_Hz *= real.follower;
   return std::pow(hg::spectral_radius(linearise(doubted, real.plant, body, grasp.hand, {}, q).A),
                   scale);
 }
 
-double Demands::excess(const Device& device, const Case& one) const {
+double Demands::excess(const TunedDevice& device, const Case& one) const {
   const double in_hand = is_friction(one) ? kFrictionRadius : kHandRadius;
   return radius(device, one) - (one.grasp < 0 ? kArmRadius : in_hand);
 }

@@ -23,7 +23,7 @@ double with_three_digits(double value, double (*rounding)(double)) {
 }
 
 // As they will stand in a file, and within what the device takes.
-Values rounded(const Device& device, const Values& values) {
+Values rounded(const TunedDevice& device, const Values& values) {
   Values result = values.unaryExpr([](double x) { return with_three_digits(x, std::round); });
   const Values taken = values_of(with_values(device, result));
   for (Eigen::Index i = 0; i < result.size(); ++i) {
@@ -77,7 +77,7 @@ class Search {
   }
 
   // One per posture.
-  std::vector<Proof> proof_everywhere(const Device& device) {
+  std::vector<Proof> proof_everywhere(const TunedDevice& device) {
     std::vector<Proof> proofs(problem_.postures.size());
     studies::do_all(
         proofs.size(),
@@ -114,7 +114,7 @@ class Search {
 
   // Cost to minimise: distortion, plus penalties for violated limits.
   double cost(const Values& values, double limit) const {
-    const Device device = with_values(problem_.device, values);
+    const TunedDevice device = with_values(problem_.device, values);
     const Figures figures = figures_of(problem_, device);
     const double too_much = std::max(0.0, figures.vibration / limit - 1.0);
     double excess = 0.0;
@@ -159,7 +159,7 @@ Demands demands_of(const TuningProblem& problem) {
   return {problem.device.loop, problem.body, problem.postures};
 }
 
-Figures figures_of(const TuningProblem& problem, const Device& device) {
+Figures figures_of(const TuningProblem& problem, const TunedDevice& device) {
   Figures worst = {.transparency_Hz = kInfinity};
   const std::size_t count = std::min(problem.felt_postures, problem.postures.size());
   for (std::size_t i = 0; i < count; ++i) {

@@ -15,7 +15,7 @@ namespace hg::tuning {
 
 /// Tuning problem: properties of a device and design goals.
 struct TuningProblem {
-  Device device;
+  TunedDevice device;
   Noise noise;
   tracking::TruePlant plant;  ///< known plant, for which feel and vibration are computed
   Eigen::VectorXd friction;   ///< unmodelled friction, Nm
@@ -38,7 +38,7 @@ struct Figures {
   double friction_N = 0.0;
   double vibration = 0.0, centroid_Hz = 0.0;
 };
-Figures figures_of(const TuningProblem& problem, const Device& device);
+Figures figures_of(const TuningProblem& problem, const TunedDevice& device);
 
 struct Candidate {
   Values values;

@@ -17,7 +17,7 @@ double rounding(double step) { return step / std::sqrt(12.0); }
 
 }  // namespace
 
-Device device_of(const config::SimulatedDevice& device) {
+TunedDevice device_of(const config::SimulatedDevice& device) {
   const auto refuse = [&](const std::string& why) {
     throw SetupError(fmt::format(
         "{}: {}", device.sources.empty() ? device.name : device.sources.front().name, why));

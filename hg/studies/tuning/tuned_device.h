@@ -9,7 +9,7 @@ namespace hg::tuning {
 /// The loop of a device with elastic joints, with the delay of the wrench that its simulation has.
 /// Throws SetupError for a device that cannot be tuned: one whose drives follow positions, with
 /// fewer than six joints, without an accelerometer, or whose sensors have no noise.
-Device device_of(const config::SimulatedDevice& device);
+TunedDevice device_of(const config::SimulatedDevice& device);
 
 /// Sensor noise of the simulation.
 Noise noise_of(const config::SimulatedDevice& device);

@@ -146,7 +146,7 @@ int main(int argc, char** argv) {
   }
   try {
     const Door door;
-    hg::viewer_server::Options options;
+    hg::viewer_server::ServerOptions options;
     options.page = argv[1];
     if (argc > 4) options.port = static_cast<std::uint16_t>(std::atoi(argv[4]));
     hg::viewer_server::ViewerServer server(options, make_scene(argv[2], argv[3], door));

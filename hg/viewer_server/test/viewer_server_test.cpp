@@ -50,8 +50,8 @@ class ViewerServerTest : public ::testing::Test {
                                     folder_.path() / "page" / "link.txt");
   }
 
-  Options make_options() {
-    Options options;
+  ServerOptions make_options() {
+    ServerOptions options;
     options.page = folder_.path() / "page";
     options.update_rate_hz = 1e6;  // tests publish faster than pages are shown
     options.desk = &desk_;
@@ -567,7 +567,7 @@ TEST_F(ViewerServerTest, APageThatNeverReadsLosesFramesAndDelaysNoOther) {
 }
 
 TEST_F(ViewerServerTest, ATakenPortIsNamed) {
-  Options options = make_options();
+  ServerOptions options = make_options();
   options.port = port_;
   try {
     const ViewerServer second(options, make_scene());
@@ -580,7 +580,7 @@ TEST_F(ViewerServerTest, ATakenPortIsNamed) {
 }
 
 TEST_F(ViewerServerTest, SetUpErrorsNameTheItem) {
-  const auto message = [](const Options& options, const Scene& scene) -> std::string {
+  const auto message = [](const ServerOptions& options, const Scene& scene) -> std::string {
     try {
       const ViewerServer server(options, scene);
     } catch (const SetupError& error) {
@@ -588,7 +588,7 @@ TEST_F(ViewerServerTest, SetUpErrorsNameTheItem) {
     }
     return "no error";
   };
-  Options options = make_options();
+  ServerOptions options = make_options();
   options.page = folder_.path() / "nowhere";
   EXPECT_NE(message(options, make_scene()).find("index.html"), std::string::npos);
   Scene scene = make_scene();
@@ -613,7 +613,7 @@ TEST_F(ViewerServerTest, SetUpErrorsNameTheItem) {
 }
 
 TEST_F(ViewerServerTest, FramesAreThinnedToTheUpdateRate) {
-  Options options = make_options();
+  ServerOptions options = make_options();
   options.update_rate_hz = 1e-3;  // one frame, and the next after 1000 s
   ViewerServer server(options, make_scene());
   RawClient page(static_cast<std::uint16_t>(std::stoi(server.url().substr(17))));

@@ -37,8 +37,8 @@ inline constexpr std::string_view kCartesianUrdf = R"(<robot name="cartesian">
 </robot>)";
 
 /// The root link stands at T_B_root. Every acceleration rating is 10.
-inline config::Device cartesian_device(const Pose& T_B_root = {}) {
-  config::Device device = {
+inline config::DeviceConfig cartesian_device(const Pose& T_B_root = {}) {
+  config::DeviceConfig device = {
       .name = "cartesian",
       .model = {.chain = model::ChainModel::from_urdf_text(kCartesianUrdf, "cartesian.urdf",
                                                            {.T_B_root = T_B_root})}};

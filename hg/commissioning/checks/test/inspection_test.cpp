@@ -55,7 +55,7 @@ config::SourceReader reader_of(const std::string& yaml, const std::string& urdf_
 Findings device_findings(const Changed& change) {
   config::SourceReader reader =
       reader_of("models/haptic_giant/device.yaml", "models/haptic_giant/haptic_giant.urdf", change);
-  const config::Device device = config::load_device("f.yaml", reader);
+  const config::DeviceConfig device = config::load_device("f.yaml", reader);
   return inspect(device, survey(device, kFew));
 }
 

@@ -21,8 +21,8 @@ CartesianLimit box(const DeviceModel& model) {
 }
 
 TEST(Workspace, OfThreePrismaticAxesIsTheProductOfTheirRanges) {
-  const config::Device device = cartesian_device();
-  const Workspace space = workspace(device, survey(device, kFew));
+  const config::DeviceConfig device = cartesian_device();
+  const HandleWorkspace space = workspace(device, survey(device, kFew));
   EXPECT_NEAR(space.volume, 3.0 * 1.5 * 1.0, 1e-9);
   EXPECT_TRUE(space.bounds.isApprox(
       Eigen::AlignedBox3d(Eigen::Vector3d(-1, 0, 0), Eigen::Vector3d(2, 1.5, 1)), 1e-9));
@@ -30,9 +30,9 @@ TEST(Workspace, OfThreePrismaticAxesIsTheProductOfTheirRanges) {
 }
 
 TEST(Workspace, SharesOfABoxThatIsHalfOutOfReach) {
-  config::Device device = cartesian_device();
+  config::DeviceConfig device = cartesian_device();
   device.model.cartesian_limits.push_back(box(device.model));
-  const Workspace space = workspace(device, survey(device, kFew));
+  const HandleWorkspace space = workspace(device, survey(device, kFew));
   EXPECT_NEAR(space.box_volume, 4.0, 1e-12);
   EXPECT_NEAR(space.share_any, 0.5, 0.02);
   // the wrist turns about the handle: every position is reached in the nominal orientation
@@ -43,8 +43,8 @@ TEST(Workspace, SharesOfABoxThatIsHalfOutOfReach) {
 // At a fixed tilt the height follows from q4 alone: 0.42 m (cos 0.2 - cos 2.45) of the 0.95 m, and
 // near one side of the box the forearm keeps the elbow from following the hand.
 TEST(Workspace, OfTheHapticGiantInOneOrientationIsAPartOfItsBox) {
-  const config::Device device = config::load_device("models/haptic_giant/device.yaml");
-  const Workspace space = workspace(device, survey(device));
+  const config::DeviceConfig device = config::load_device("models/haptic_giant/device.yaml");
+  const HandleWorkspace space = workspace(device, survey(device));
   const double height = 0.42 * (std::cos(0.2) - std::cos(2.45)) / 0.95;
   EXPECT_GT(space.share_any, 0.97);
   EXPECT_LT(space.share_nominal, height);
@@ -68,7 +68,7 @@ TEST(Workspace, VoxelsAtTheEdgeOfABallCountHalf) {
 }
 
 TEST(Survey, SameSeedSameNumbersAndAnotherSeedNearlyTheSame) {
-  const config::Device device = cartesian_device();
+  const config::DeviceConfig device = cartesian_device();
   SurveyOptions other = kFew;
   other.seed = 4;
   const Survey first = survey(device, kFew), again = survey(device, kFew);
@@ -82,7 +82,7 @@ TEST(Survey, SameSeedSameNumbersAndAnotherSeedNearlyTheSame) {
 
 // f <= rating / 1 along each axis; pz carries 5 kg
 TEST(Datasheet, ForcesOfACartesianDeviceAreItsRatingsLessGravity) {
-  const config::Device device = cartesian_device();
+  const config::DeviceConfig device = cartesian_device();
   const Datasheet sheet = make_datasheet(device, survey(device, kFew));
   EXPECT_NEAR(sheet.force.median, std::min(80.0, 120.0 - 5.0 * 9.81), 1e-9);
   EXPECT_NEAR(sheet.force.smallest, sheet.force.median, 1e-9);
@@ -97,7 +97,7 @@ TEST(Datasheet, ForcesOfACartesianDeviceAreItsRatingsLessGravity) {
 TEST(Datasheet, DoesNotChangeWhenTheDeviceIsTurnedAboutTheVertical) {
   const Pose turned = {Eigen::Vector3d(0.3, -0.2, 0.5),
                        Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()).toRotationMatrix()};
-  const config::Device plain = cartesian_device(), moved = cartesian_device(turned);
+  const config::DeviceConfig plain = cartesian_device(), moved = cartesian_device(turned);
   const Datasheet a = make_datasheet(plain, survey(plain, kFew));
   const Datasheet b = make_datasheet(moved, survey(moved, kFew));
   EXPECT_NEAR(a.force.median, b.force.median, 1e-9);

@@ -20,7 +20,7 @@ const ChainPart kGate = {"models/examples/gate.urdf", "", ""};
 TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
   const TemporaryFolder folder;
   const auto file = folder.write("arm.yaml", device_yaml(kArm, folder.path()));
-  const config::Device device = config::load_device(file);
+  const config::DeviceConfig device = config::load_device(file);
   EXPECT_EQ(device.model.n_p, 0);
   EXPECT_EQ(device.model.n_m, 6);
   for (int i : {2, 4}) {  // elbow and wrist_bend are singular at 0
@@ -35,7 +35,7 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
 TEST(Scaffold, LeadingPrismaticJointsAreTheGantry) {
   const TemporaryFolder folder;
   const auto file = folder.write("giant.yaml", device_yaml(kGiant, folder.path()));
-  const config::Device device = config::load_device(file);
+  const config::DeviceConfig device = config::load_device(file);
   EXPECT_EQ(device.model.n_p, 2);
   ASSERT_EQ(device.model.virtual_joints.size(), 1u);  // q4 + q5, as [HG] VI-C3
   const VectorM& weights = device.model.virtual_joints[0].weights;

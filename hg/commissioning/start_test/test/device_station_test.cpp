@@ -46,7 +46,7 @@ TEST(DeviceStation, AnInterruptionEndsIt) {
 
 TEST(SetupOf, ABrakeHasToHoldTwiceTheFrictionOfItsJoint) {
   const Bench bench;
-  const config::Device& device = bench.scenario.device;
+  const config::DeviceConfig& device = bench.scenario.device;
   const auto setup = setup_of(device, true);
   ASSERT_EQ(setup.gantry.size(), 2U);
   ASSERT_EQ(setup.manipulator.size(), 6U);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::time_t kThen = 1'795'000'000;
 
-Result good() {
+StartTestResult good() {
   return {.device = "arm",
           .address = "there:1",
           .version = "1",
@@ -20,7 +20,7 @@ Result good() {
                     {.name = "brake m6", .outcome = Outcome::kUntested}}};
 }
 
-std::string objection(const Result& result, double later_h = 1.0) {
+std::string objection(const StartTestResult& result, double later_h = 1.0) {
   return check_validity(to_json(result),
                         {.device = "arm",
                          .address = "there:1",
@@ -35,7 +35,7 @@ TEST(StartTestResult, CountsForItsDeviceItsFilesAndADay) {
   EXPECT_EQ(objection(good(), 24.5), "it is 24.5 h old, and counts for 24 h");
   EXPECT_NE(objection(good(), -1.0).find("of the future"), std::string::npos);
 
-  Result other = good();
+  StartTestResult other = good();
   other.device = "leg";
   EXPECT_EQ(objection(other), "it is of another device");
   other = good();
@@ -76,7 +76,7 @@ TEST(StartTestResult, ThatIsDamagedDoesNotCount) {
 }
 
 TEST(StartTestResult, OfANameThatIsNoUtf8Counts) {
-  Result result = good();
+  StartTestResult result = good();
   result.device = "arm \xff";
   result.items[0].name = "brake \xff";
   EXPECT_EQ(objection(result), "it is of another device");

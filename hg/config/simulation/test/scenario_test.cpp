@@ -96,7 +96,7 @@ TEST(Device, KeepsHandAndElbowInTheBox) {
 }
 
 TEST(Device, HasItsFactsInItsModel) {
-  const Device& device = door().device;
+  const DeviceConfig& device = door().device;
   EXPECT_EQ(device.model.rate_Hz, 1000.0);
   EXPECT_EQ(device.model.drive.lag, 40e-3);
   EXPECT_EQ(device.prepositioning.k_ppu, 4.0);
@@ -113,7 +113,7 @@ TEST(Device, HasItsFactsInItsModel) {
 
 // what a program for the real machine loads
 TEST(Device, IsLoadedWithoutItsSimulation) {
-  const auto reads_simulation = [](const Device& device) {
+  const auto reads_simulation = [](const DeviceConfig& device) {
     return std::ranges::any_of(device.sources, [](const SourceText& source) {
       return source.name.ends_with("simulation.yaml");
     });

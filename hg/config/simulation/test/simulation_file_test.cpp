@@ -31,7 +31,7 @@ std::string urdf(const std::string& bend) {
   return text + joint("lift", "prismatic", "arm", "hand") + "</robot>";
 }
 
-Simulation load(const std::string& yaml, const SimulationTarget& device = kDevice) {
+SimulationConfig load(const std::string& yaml, const SimulationTarget& device = kDevice) {
   SourceReader reader({{"simulation.yaml", yaml},
                        {"base.yaml",
                         "seed: 5\ngear_ratio: {lift: 50}\nfactors: {mass: 2}\n"
@@ -53,7 +53,7 @@ std::string message(const std::string& yaml, const SimulationTarget& device = kD
 }
 
 TEST(SimulationFile, AnotherUrdfThanThatOfItsBaseHasItsOwnJoints) {
-  const Simulation simulation = load(
+  const SimulationConfig simulation = load(
       "base: plain.yaml\nurdf: bent.urdf\n"
       "flexible: {bend: {stiffness_Nm_per_rad: 10, damping_Nms_per_rad: 1}}\n");
   ASSERT_EQ(simulation.flexible.size(), 1u);
@@ -62,11 +62,12 @@ TEST(SimulationFile, AnotherUrdfThanThatOfItsBaseHasItsOwnJoints) {
 
 TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
   SourceReader disk;
-  const Simulation shipped = load_simulation("models/haptic_giant/simulation.yaml", disk,
-                                             {.gantry = {"ppu1", "ppu2"},
-                                              .manipulator = {"m1", "m2", "m3", "m4", "m5", "m6"},
-                                              .handle = "handle",
-                                              .chain = {}});
+  const SimulationConfig shipped =
+      load_simulation("models/haptic_giant/simulation.yaml", disk,
+                      {.gantry = {"ppu1", "ppu2"},
+                       .manipulator = {"m1", "m2", "m3", "m4", "m5", "m6"},
+                       .handle = "handle",
+                       .chain = {}});
   EXPECT_EQ(shipped.step_s, 0.25e-3);
   EXPECT_NEAR(1.0 / shipped.factors.stiffness, 1.1, 1e-3);  // [C] 0: the controller's model
   EXPECT_NEAR(1.0 / shipped.factors.friction, 0.75, 1e-3);
@@ -203,7 +204,7 @@ TEST(SimulationFile, IdealSensorsKeepWhatIsGiven) {
 }
 
 TEST(SimulationFile, TheRestReachesItsFields) {
-  const Simulation simulation = load(
+  const SimulationConfig simulation = load(
       "step_s: 0.0001\nseed: 77\ngear_ratio: {lift: 50}\n"
       "factors: {stiffness: 2, damping: 3, friction: 4, rotor_inertia: 5, mass: 6, payload: 7, "
       "latency: 8, current_lag: 9, gantry_lag: 10}\n"
@@ -253,7 +254,7 @@ TEST(SimulationFile, TheRestReachesItsFields) {
 }
 
 TEST(SimulationFile, AUrdfMayHaveFurtherJointsThatBend) {
-  const Simulation bent = load(
+  const SimulationConfig bent = load(
       "urdf: bent.urdf\nflexible: {bend: {stiffness_Nm_per_rad: 9000, damping_Nms_per_rad: 12}}\n"
       "sensors: {}\n");
   ASSERT_TRUE(bent.chain);
@@ -269,7 +270,7 @@ TEST(SimulationFile, AUrdfMayHaveFurtherJointsThatBend) {
 }
 
 TEST(SimulationFile, MissingKeysHaveTheValuesOfItsBase) {
-  const Simulation simulation = load(
+  const SimulationConfig simulation = load(
       "base: base.yaml\nfactors: {friction: 3}\nmotors: {ripple: 0}\n"
       "sensors: {torque_sensor: {offset: 0.2}}\n");
   EXPECT_EQ(simulation.seed, 5u);
@@ -285,7 +286,7 @@ TEST(SimulationFile, MissingKeysHaveTheValuesOfItsBase) {
 }
 
 TEST(SimulationFile, EffectsReachTheJointsInTheirUnits) {
-  const Simulation simulation = load(
+  const SimulationConfig simulation = load(
       "motors: {cogging: 0.01, cogging_per_turn: 24, ripple: 0.02, ripple_per_turn: 6}\n"
       "gears: {presliding_rad: 1e-4, presliding_damping_ratio: 0.5, presliding_elements: 2, "
       "backlash_rad: 3e-4, hysteresis: 0.03, hysteresis_rad: 2e-4}\n"
@@ -312,7 +313,7 @@ TEST(SimulationFile, EffectsReachTheJointsInTheirUnits) {
 }
 
 TEST(SimulationFile, WithoutThemThereAreNoEffects) {
-  const Simulation simulation = load("sensors: {}\n");
+  const SimulationConfig simulation = load("sensors: {}\n");
   const simulator::JointEffects effects =
       effects_of({.rotor_inertia = 2.0, .coulomb_friction = 4.0, .torque_max = 100.0},
                  simulation.motors, simulation.gears, 50.0);
@@ -329,7 +330,7 @@ TEST(SimulationFile, WithoutThemThereAreNoEffects) {
 TEST(SimulationFile, AStructureThatYieldsIsAPassiveJointOfItsFrequency) {
   SimulationTarget device = kDevice;
   device.urdf = "plain.urdf";
-  const Simulation yields = load(
+  const SimulationConfig yields = load(
       "factors: {mass: 2}\n"
       "structure: {slide: {frequency_Hz: 10, damping_ratio: 0.05}, "
       "turn: {frequency_Hz: 5, axis: [2, 0, 0]}, lift: {frequency_Hz: 0}}\nsensors: {}\n",

@@ -37,11 +37,11 @@ VectorM home() {
   return q;
 }
 
-Estimation make(const Config& config = {}) { return {config, device()}; }
+Estimation make(const EstimationConfig& config = {}) { return {config, device()}; }
 
 TEST(Estimation, CountsTheTurnsOfTheSlipRingJointInBothDirections) {
   Estimation estimation = make();
-  State state;
+  EstimationState state;
   for (const double direction : {1.0, -1.0}) {
     double angle = direction > 0 ? 0.0 : 6.0 * std::numbers::pi;
     for (int k = 0; k < 600; ++k) {
@@ -70,7 +70,7 @@ TEST(Estimation, GivesTheWrenchAtTheHandleInBaseCoordinates) {
   SensorFrame sensors = sensors_at(home());
   const Eigen::Matrix3d R_S_B = (R_B_H * turned.T_H_S.R).transpose();
   sensors.w_S << R_S_B * f_B, R_S_B * (n_B - (R_B_H * turned.T_H_S.p).cross(f_B));
-  State state;
+  EstimationState state;
   const RobotState robot = estimation.step(sensors, VectorP::Zero(2), VectorM::Zero(6), state);
   EXPECT_LT((robot.w_H.head<3>() - f_B).norm(), 1e-12);
   EXPECT_LT((robot.w_H.tail<3>() - n_B).norm(), 1e-12);
@@ -80,7 +80,7 @@ TEST(Estimation, GivesTheWrenchAtTheHandleInBaseCoordinates) {
 double worst_acceleration_error(double true_lag) {
   const double dt = device().dt();
   Estimation estimation = make();
-  State state;
+  EstimationState state;
   DriveModel drive = device().drive;
   drive.lag = true_lag;
   CommandDelay delay;
@@ -130,7 +130,7 @@ struct Swing {
 
 TEST(Estimation, FollowsBothSidesOfElasticJointsThroughTurns) {
   Estimation estimation = make();
-  State state;
+  EstimationState state;
   RobotState robot;
   const double dt = 1e-3;
   for (int k = 0; k < 8000; ++k) {
@@ -154,7 +154,7 @@ TEST(Estimation, FollowsBothSidesOfElasticJointsThroughTurns) {
 TEST(Estimation, TakesOffTheWeightByThePoseOfATurnedSensor) {
   DeviceModel turned = device();
   turned.T_H_S.R = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  Config config;
+  EstimationConfig config;
   config.wrench.payload = {.mass = 1.18, .com = {0.01, 0.02, 0.03}};
   config.wrench.has_imu = false;
   Estimation estimation(config, turned);
@@ -166,14 +166,14 @@ TEST(Estimation, TakesOffTheWeightByThePoseOfATurnedSensor) {
   SensorFrame sensors = sensors_at(home());
   sensors.w_S =
       payload_wrench(config.wrench.payload, 9.81 * R_B_S.row(2).transpose(), {0, 0, 0}, {0, 0, 0});
-  State state;
+  EstimationState state;
   const RobotState robot = estimation.step(sensors, VectorP::Zero(2), VectorM::Zero(6), state);
   EXPECT_LT(robot.w_H.norm(), 1e-12);
 }
 
 TEST(Estimation, BeginsAtRestWhereTheJointsAre) {
   Estimation estimation = make();
-  State state;
+  EstimationState state;
   const Swing now;
   const RobotState robot =
       estimation.step(now.sensors(), VectorP::Zero(2), VectorM::Zero(6), state);
@@ -185,7 +185,7 @@ TEST(Estimation, BeginsAtRestWhereTheJointsAre) {
 
 TEST(Estimation, TakesIdealJointsAsMeasured) {
   Estimation estimation = make();
-  State state;
+  EstimationState state;
   SensorFrame sensors = sensors_at(home());
   sensors.dq_m = VectorM::LinSpaced(6, -1.0, 1.0);
   for (int k = 0; k < 3; ++k) {
@@ -200,11 +200,11 @@ TEST(Estimation, TakesIdealJointsAsMeasured) {
 }
 
 TEST(Estimation, AllocatesNothing) {
-  Config config;
+  EstimationConfig config;
   config.wrench.payload.mass = 1.18;
   config.wrench.low_pass_Hz = 50.0;
   Estimation estimation = make(config);
-  State state;
+  EstimationState state;
   const SensorFrame sensors = Swing{}.sensors();
   const VectorP dq_p = VectorP::Zero(2);
   const VectorM ddq_m = VectorM::Zero(6);
@@ -216,17 +216,17 @@ TEST(Estimation, AllocatesNothing) {
 }
 
 TEST(Estimation, TaresOnlyAtRest) {
-  Config config;
+  EstimationConfig config;
   config.wrench.tare.is_needed = true;
   Estimation estimation = make(config);
-  State held;
+  EstimationState held;
   SensorFrame in_hand = sensors_at(home());
   in_hand.dead_man = true;
   estimation.tare(true, true, held);
   estimation.step(in_hand, VectorP::Zero(2), VectorM::Zero(6), held);
   EXPECT_EQ(held.wrench.tare.status, TareStatus::kRefusedHeld);
 
-  State state;
+  EstimationState state;
   EXPECT_FALSE(estimation.is_tared(state));
   estimation.tare(true, false, state);
   EXPECT_EQ(state.wrench.tare.status, TareStatus::kRefusedRunning);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDt = 1e-3;
 
-constexpr double kGain = Config{}.k_ppu;
+constexpr double kGain = PrepositioningConfig{}.k_ppu;
 
 const DeviceModel& device() {
   static const DeviceModel device = [] {
@@ -39,9 +39,9 @@ struct HeldHand {
   std::array<CommandDelay, 2> delay{};
   double worst_excess = 0.0;
 
-  Command run(const DeviceModel& device, double seconds) {
+  GantryCommand run(const DeviceModel& device, double seconds) {
     const Prepositioning gantry({}, device);
-    Command command;
+    GantryCommand command;
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       Vector6 q_m;
       EXPECT_EQ(model::haptic_giant::inverse(T_B_H, q, {}, q_m),
@@ -87,7 +87,7 @@ TEST(Prepositioning, StopsAtItsLimitsWhateverTheTarget) {
   DeviceModel narrow = device();
   narrow.gantry_range = {Interval{-0.05, 0.05}, Interval{-0.03, 0.03}};
   HeldHand hand{.drive = {}, .T_B_H = hand_at(0.5, -0.4)};
-  const Command last = hand.run(narrow, 4.0);
+  const GantryCommand last = hand.run(narrow, 4.0);
   EXPECT_LE(hand.worst_excess, 1e-6);
   EXPECT_NEAR(hand.q[0], 0.05, 1e-3);
   EXPECT_NEAR(hand.q[1], -0.03, 1e-3);
@@ -121,7 +121,7 @@ TEST(Prepositioning, StopsBeforeItCarriesAFrameOverItsLimit) {
     const VectorP dq = in(left, left);
     for (const double v : {dq[0] - kTakenBack, -dq[1] - kTakenBack}) {
       EXPECT_GT(v, 0.1);
-      constexpr double kBraking = Config{}.ddq_max;
+      constexpr double kBraking = PrepositioningConfig{}.ddq_max;
       const double tau = device().drive.dead_time + device().drive.lag + kDt;
       EXPECT_LE(v * v / (2.0 * kBraking) + v * tau, left + 1e-12) << left;
     }
@@ -139,7 +139,7 @@ TEST(Prepositioning, TheAimOfTheLawIsTheRule) {
   robot.q_p = Eigen::Vector2d(0.1, -0.2);
   robot.dq_p = Eigen::Vector2d(0.03, -0.02);
   robot.ddq_p = Eigen::Vector2d(0.5, 0.2);
-  const Command command = gantry.step(robot, Eigen::Vector2d(0.12, -0.21), false);
+  const GantryCommand command = gantry.step(robot, Eigen::Vector2d(0.12, -0.21), false);
   const GantryTask task = gantry.accelerations(command, robot, VectorP(0));
   const VectorP dq = gantry.velocity_for(task.ddq, command, robot);
   EXPECT_LT((dq - command.dq).cwiseAbs().maxCoeff(), 1e-12);
@@ -161,7 +161,7 @@ struct LedGantry {
 
   // for one period, towards `q_target`; `choose` is the law
   void step(const VectorP& q_target, const auto& choose) {
-    const Command command = rule.step(robot, q_target, false);
+    const GantryCommand command = rule.step(robot, q_target, false);
     last = choose(rule.accelerations(command, robot, last));
     const VectorP dq = rule.velocity_for(last, command, robot);
     for (int i = 0; i < 2; ++i) {

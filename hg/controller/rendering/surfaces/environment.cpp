@@ -53,14 +53,14 @@ bool is_beside(const Surface& surface, const Vector3d& point, const Facing& behi
 
 }  // namespace
 
-void check(const std::vector<Surface>& surfaces) {
+void check_surfaces(const std::vector<Surface>& surfaces) {
   if (surfaces.size() > kMaxSurfaces) {
     throw SetupError("surfaces: at most " + std::to_string(kMaxSurfaces) + ", got " +
                      std::to_string(surfaces.size()));
   }
   std::size_t triangles = 0;
   for (const Surface& surface : surfaces) {
-    check(surface);
+    check_surface(surface);
     const Mesh* mesh = std::get_if<Mesh>(&surface.shape);
     if (mesh != nullptr && surface.contact == Contact::kStop) triangles += mesh->triangles().size();
   }
@@ -71,7 +71,7 @@ void check(const std::vector<Surface>& surfaces) {
 }
 
 Environment::Environment(std::vector<Surface> surfaces, double period, const Interval& mass)
-    : surfaces_((check(surfaces), std::move(surfaces))), mass_(mass), period_(period) {
+    : surfaces_((check_surfaces(surfaces), std::move(surfaces))), mass_(mass), period_(period) {
   has_stops_ = std::ranges::any_of(
       surfaces_, [](const Surface& surface) { return surface.contact == Contact::kStop; });
 }
@@ -83,7 +83,7 @@ double Environment::damping_of(const Surface& surface, double mass_scale) const 
 }
 
 ContactReport Environment::step(const Vector3d& position, const Vector3d& velocity,
-                                const Vector3d& push, State& state,
+                                const Vector3d& push, EnvironmentState& state,
                                 double mass_scale) const noexcept {
   const Vector3d handle = position + 0.5 * period_ * velocity;
   ContactReport contact;
@@ -111,7 +111,7 @@ ContactReport Environment::step(const Vector3d& position, const Vector3d& veloci
 // at rest, and does not throw it back.
 void Environment::catch_it(const Spread& spread, double mass_scale, const Vector3d& velocity,
                            const Vector3d& push, ContactReport& contact,
-                           State& state) const noexcept {
+                           EnvironmentState& state) const noexcept {
   const double speed = -velocity.dot(spread.normal);
   if (speed < kImpact) return;
   const double most =
@@ -125,7 +125,7 @@ void Environment::catch_it(const Spread& spread, double mass_scale, const Vector
 }
 
 void Environment::give_way(const ContactReport& contact, double missing, const Vector3d& velocity,
-                           State& state) const noexcept {
+                           EnvironmentState& state) const noexcept {
   const double force = contact.force.norm();
   if (contact.surface < 0 || force == 0.0) return;
   const double given = std::max(0.0, force - missing);

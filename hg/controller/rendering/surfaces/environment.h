@@ -40,10 +40,10 @@ inline constexpr double kStopping = 15e-3;  ///< time constant of stopping an im
 inline constexpr double kImpact = 0.02;     ///< lowest speed of an impact, m/s
 
 /// Throws SetupError naming the first invalid surface.
-void check(const std::vector<Surface>& surfaces);
+void check_surfaces(const std::vector<Surface>& surfaces);
 
 /// State of the rendering: part of the copyable state of a cycle.
-struct State {
+struct EnvironmentState {
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();
   bool is_started = false;  ///< false: the proxy starts where the handle is
   // where the device cannot push as hard as the surface should
@@ -54,7 +54,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const State& state) {
+void hashed(auto& hash, const EnvironmentState& state) {
   const auto& [proxy, is_started, dent, taken, stiffness, pressed] = state;
   hash.mix(proxy, is_started, dent, taken);
 }
@@ -64,7 +64,7 @@ class Environment {
   Environment() = default;  ///< no surfaces
   /// `period` of the steps, s; `mass` (kg) of the body that meets the surfaces, the lightest and
   /// heaviest, for the damping of surfaces without a damping of their own. Throws SetupError as
-  /// check().
+  /// check_surfaces().
   Environment(std::vector<Surface> surfaces, double period, const Interval& mass);
 
   const std::vector<Surface>& surfaces() const noexcept { return surfaces_; }
@@ -83,14 +83,14 @@ class Environment {
   /// a solid is free until it has left it. `mass_scale`: present mass of the body over its mass at
   /// set-up.
   ContactReport step(const Eigen::Vector3d& position, const Eigen::Vector3d& velocity,
-                     const Eigen::Vector3d& push, State& state,
+                     const Eigen::Vector3d& push, EnvironmentState& state,
                      double mass_scale = 1.0) const noexcept;
 
   /// Call after step(): of the force `contact` the device lacks `missing` (N, magnitude). The
   /// surface yields until its spring pushes no harder than the device, so that it never returns
   /// more energy than it has absorbed. It recovers slowly, using the absorbed energy.
   void give_way(const ContactReport& contact, double missing, const Eigen::Vector3d& velocity,
-                State& state) const noexcept;
+                EnvironmentState& state) const noexcept;
 
  private:
   struct Found {
@@ -106,7 +106,8 @@ class Environment {
   double damping_of(const Surface& surface, double mass_scale) const noexcept;
 
   void catch_it(const Spread& spread, double mass_scale, const Eigen::Vector3d& velocity,
-                const Eigen::Vector3d& push, ContactReport& contact, State& state) const noexcept;
+                const Eigen::Vector3d& push, ContactReport& contact,
+                EnvironmentState& state) const noexcept;
 
   std::vector<Surface> surfaces_;
   Interval mass_;  ///< mass of the body, kg

@@ -25,7 +25,7 @@ double critical_damping(double stiffness, const Interval& mass, double period) n
   return std::min(2.0 * std::sqrt(stiffness * (mass.ub + kArmMass)), mass.lb / period);
 }
 
-void check(const Surface& surface) {
+void check_surface(const Surface& surface) {
   require(surface, "stiffness", kStiffness, surface.stiffness);
   if (surface.damping) require(surface, "damping", kDamping, *surface.damping);
   require(surface, "friction", kFriction, surface.friction);

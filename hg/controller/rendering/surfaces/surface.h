@@ -1,6 +1,6 @@
 /// A virtual surface: shape and pose of a solid, and its haptic properties.
 ///
-/// Set-up data in SI units; check() throws SetupError.
+/// Set-up data in SI units; check_surface() throws SetupError.
 #pragma once
 
 #include <optional>
@@ -60,6 +60,6 @@ inline constexpr Interval kSize = {1e-3, 100.0};  ///< m, for edges, radii and l
 double critical_damping(double stiffness, const Interval& mass, double period) noexcept;
 
 /// Throws SetupError "surface NAME: rule, got value".
-void check(const Surface& surface);
+void check_surface(const Surface& surface);
 
 }  // namespace hg::surfaces

@@ -17,7 +17,7 @@ namespace {
 
 struct Braking : testing::Test {
   DeviceModel device = unlimited_device();
-  Motion motion = {kGantryAtHome, VectorP::Zero(2), kPosture, VectorM::Zero(6)};
+  DeviceMotion motion = {kGantryAtHome, VectorP::Zero(2), kPosture, VectorM::Zero(6)};
 
   Braking() {
     const auto motors = reference_actuators();

@@ -7,8 +7,8 @@
 namespace hg::rendering {
 namespace {
 
-Options with_bounds(Law law, Bounds bounds) {
-  Options options = without_synchronisation();
+RenderingOptions with_bounds(Law law, Bounds bounds) {
+  RenderingOptions options = without_synchronisation();
   options.law = law;
   options.bounds = bounds;
   return options;
@@ -63,7 +63,9 @@ TEST(MovingLimit, WaitsForAJointThatAConditionSlowsDown) {
 
 class LimitsOfEveryVariant : public testing::TestWithParam<std::tuple<Law, Bounds>> {
  public:
-  static Options options() { return with_bounds(std::get<0>(GetParam()), std::get<1>(GetParam())); }
+  static RenderingOptions options() {
+    return with_bounds(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  }
 };
 
 INSTANTIATE_TEST_SUITE_P(All, LimitsOfEveryVariant,
@@ -197,7 +199,7 @@ TEST(LargeTwin, OfThirtyJointsWithLimitsStaysSolvedInsideAndAttached) {
     twin.dofs[i].damping = 0.5;
   }
   Rendering rendering(device, twin, {});
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   int most_at_limits = 0;
   for (int k = 0; k < 1200; ++k) {
     const double t = kDt * k;

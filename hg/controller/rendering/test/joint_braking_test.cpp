@@ -292,9 +292,9 @@ class Thrown {
     device.has_torque_limits = true;
   }
   /// The rows of one cycle.
-  Tasks tasks(const Options& options) const {
+  Tasks tasks(const RenderingOptions& options) const {
     model::ChainData device_chain(device.chain), twin_chain(twin.chain);
-    State state = Rendering(device, twin, options).start(kPosture);
+    RenderingState state = Rendering(device, twin, options).start(kPosture);
     state.reference.dq_m.setConstant(kSpeed);
     Eigen::VectorXd q(8), dq(8);
     q << kGantryAtHome, kPosture;
@@ -375,7 +375,7 @@ TEST(BrakingTogether, BeginsEarlierWhereMotorsAreWeakerThanRatings) {
 TEST(BrakingTogether, EqualsBrakingAloneWithoutMotorModel) {
   Thrown thrown;
   thrown.device.has_torque_limits = false;
-  const Options together = {.braking = Braking::kTogether};
+  const RenderingOptions together = {.braking = Braking::kTogether};
   EXPECT_FALSE(brakes_together(thrown.device, together));
   expect_same_bounds(thrown.tasks(together), thrown.tasks({}));
 }

@@ -18,15 +18,15 @@ namespace {
 const VectorM kPosture = posture({0.3, 1.5, -0.6, 1.3, 0.2, 2.1});
 const Eigen::Vector2d kGantryAtHome = Eigen::Vector2d::Zero();
 
-Options with(Law law, Bounds bounds) {
-  Options options = without_synchronisation();
+RenderingOptions with(Law law, Bounds bounds) {
+  RenderingOptions options = without_synchronisation();
   options.law = law;
   options.bounds = bounds;
   return options;
 }
 
 // Steps law paper on the same state until the active limits are those of the cycle before.
-LawResult settled(Rendering& rendering, State state, const RobotState& robot) {
+LawResult settled(Rendering& rendering, RenderingState state, const RobotState& robot) {
   LawResult result;
   for (int k = 0; k < 10; ++k) {
     const TouchedEnds before = state.touched;
@@ -72,7 +72,8 @@ TwinModel random_twin(Random& random) {
 }
 
 // Puts one limit where device or twin are; its lower or its upper end.
-void add_one_limit(Random& random, const State& state, DeviceModel& device, TwinModel& twin) {
+void add_one_limit(Random& random, const RenderingState& state, DeviceModel& device,
+                   TwinModel& twin) {
   limits::JointLimits limits{-20.0, 20.0, 5.0, 100.0};
   const auto end_at = [&](double q) { (random.number() > 0 ? limits.q_max : limits.q_min) = q; };
   const int kind = random.below(4);
@@ -116,7 +117,7 @@ TEST(Laws, AgreeWhileAtMostOneLimitActs) {
     const VectorM q_m =
         posture({3 * random.number(), 1.5 + 0.8 * random.number(), random.number(),
                  1.3 + 0.6 * random.number(), 0.2 + 0.3 * random.number(), random.number()});
-    State state;
+    RenderingState state;
     state.reference.q_m = q_m;
     state.twin.q_a = twin.q_start;
     add_one_limit(random, state, device, twin);
@@ -176,9 +177,9 @@ TEST(Laws, DifferWithTwoCoupledLimits) {
   TwinModel twin = two_coupled_joints();
   for (TwinDof& dof : twin.dofs) dof.limits.dq_max = 1.0;
   for (const Law law : {Law::kGauss, Law::kPaper}) {
-    const Options options = with(law, Bounds::kRecoverable);
+    const RenderingOptions options = with(law, Bounds::kRecoverable);
     Rendering rendering(unlimited_device(), twin, options);
-    State state = rendering.start(kPosture);
+    RenderingState state = rendering.start(kPosture);
     state.twin.dq_a << 1.0 + 1.0e-3, 1.0 + 0.9e-3;
     int changes = 0;
     for (int cycle = 0; cycle < 12; ++cycle) {
@@ -232,7 +233,9 @@ struct Crowded {
 
 class EveryVariant : public testing::TestWithParam<std::tuple<Law, Bounds>> {
  protected:
-  Options options() const { return with(std::get<0>(GetParam()), std::get<1>(GetParam())); }
+  RenderingOptions options() const {
+    return with(std::get<0>(GetParam()), std::get<1>(GetParam()));
+  }
 };
 
 INSTANTIATE_TEST_SUITE_P(, EveryVariant,
@@ -249,7 +252,7 @@ TEST_P(EveryVariant, ClosesTheBudgetWithoutAllocation) {
   Random random(kSeed);
   const Crowded crowded;
   Rendering rendering(crowded.device, crowded.twin, options());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   std::uint64_t allocations = 0;
   for (int k = 0; k < 200; ++k) {
     state.twin.q_a[0] = k % 2 == 0 ? 0.0 : 0.4;
@@ -273,7 +276,7 @@ TEST_P(EveryVariant, ClosesTheBudgetWithoutAllocation) {
 // Plays a door on its own, with a torque on the hinge.
 class Door {
  public:
-  Door(const Options& options, double friction, bool has_bolt)
+  Door(const RenderingOptions& options, double friction, bool has_bolt)
       : rendering_(unlimited_device(), twin(friction, has_bolt), options),
         state_(rendering_.start(kPosture)) {}
 
@@ -295,7 +298,7 @@ class Door {
   double hinge_speed() const { return state_.twin.dq_a[0]; }
   double inertia() const { return rendering_.twin_chain().M()(0, 0); }
   const LimitReport& limit() const { return result.limits[6]; }
-  State& state() { return state_; }
+  RenderingState& state() { return state_; }
 
   LawResult result;
 
@@ -316,7 +319,7 @@ class Door {
   }
 
   Rendering rendering_;
-  State state_;
+  RenderingState state_;
 };
 
 TEST_P(EveryVariant, FrictionHoldsUpToItsTorqueAndSlipsBeyond) {
@@ -377,7 +380,7 @@ TEST(PaperBounds, ShowTheRatingThatActs) {
   TwinModel twin = unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
   device.joint_limits[5] = {-10.0, 10.0, 2.0, 1.0};
   Rendering rendering(device, twin, with(Law::kGauss, Bounds::kPaper));
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 30, -20, 10, 2, 1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -399,7 +402,7 @@ TEST(PaperBounds, ALockBrakesWithTheRatingOfItsJoint) {
   twin.dofs[0].limits = {0.0, 1.0, 1.2, 6.0};
   twin.locks = {{.name = "bolt", .dof = 0, .position = 0.0, .engaged_while = {}}};
   Rendering rendering(unlimited_device(), twin, with(Law::kPaper, Bounds::kPaper));
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   state.twin.dq_a[0] = -0.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
   LawResult result;
@@ -451,7 +454,7 @@ TEST(PaperBounds, ALockThatEngagesInMotionStopsTheJointWhereItIs) {
 TEST(Laws, RefuseWhatTheyCannotRender) {
   const TwinModel twin =
       unlimited_twin(model::ChainModel::free_body({}, {.gravity = false}), "handle");
-  Options options;
+  RenderingOptions options;
   options.bounds = Bounds::kPaper;
   options.T_C = 0.5 * unlimited_device().dt();
   EXPECT_THROW(Rendering(unlimited_device(), twin, options), SetupError);

@@ -60,7 +60,7 @@ TEST(ReachedTorque, FromBeyondABoundComesBackToIt) {
 // A free body in the hand of a device with motors; a person pulls.
 struct Pulled {
   Rendering rendering;
-  State state;
+  RenderingState state;
   LawResult result;
   VectorM dq_m;  // joint speeds in the last step
 
@@ -80,7 +80,7 @@ struct Pulled {
     return twin;
   }
   explicit Pulled(bool knows_motors)
-      : rendering(device(knows_motors), body(device(false)), Options{}),
+      : rendering(device(knows_motors), body(device(false)), RenderingOptions{}),
         state(rendering.start(kPosture)) {}
 
   void pull(const Vector6& w) {

@@ -31,7 +31,7 @@ inline double budget_gap(const LawResult& result, const Eigen::MatrixXd& M) {
 // A twin on its own: the device has no limits and no synchronisation.
 struct Playing {
   Rendering rendering;
-  State state;
+  RenderingState state;
   RobotState robot;
   LawResult result;
   double worst_gap = 0.0;
@@ -39,7 +39,8 @@ struct Playing {
   VectorA last_ddq;
   int changes = 0;  // of limits that act
 
-  explicit Playing(const TwinModel& twin, const Options& options = without_synchronisation())
+  explicit Playing(const TwinModel& twin,
+                   const RenderingOptions& options = without_synchronisation())
       : rendering(unlimited_device(), twin, options), state(rendering.start(kPosture)) {}
 
   void step(const Vector6& w) {

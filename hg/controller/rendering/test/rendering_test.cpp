@@ -30,7 +30,7 @@ TEST(Rendering, GoldenCaseOfTheHandbookJoint6AtItsUpperLimit) {
   DeviceModel device = unlimited_device();
   device.joint_limits[5].q_max = 2.1;
   Rendering rendering(device, golden_twin(), without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -47,7 +47,7 @@ TEST(Rendering, GoldenCaseOfTheHandbookJoint6AtItsUpperLimit) {
 
 TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonsLaw) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -62,10 +62,10 @@ TEST(Rendering, WithoutLimitsTheTwinMovesAsNewtonsLaw) {
 TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
   DeviceModel device = unlimited_device();
   device.joint_limits[5].q_max = 2.1;
-  Options options = without_synchronisation();
+  RenderingOptions options = without_synchronisation();
   options.slow_solve = 1;
   Rendering rendering(device, golden_twin(), options);
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 3, -2, 1, 0.2, 0.1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -101,11 +101,11 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
   const VectorP aim = Eigen::Vector2d(0.2, -0.1);
   GantryTask task = {Eigen::Vector2d(-0.5, -0.5), Eigen::Vector2d(0.5, 0.5), aim,
                      Eigen::Vector2d::Zero()};
-  Options options = without_synchronisation();
+  RenderingOptions options = without_synchronisation();
   options.gantry = Gantry::kLaw;
   const auto play = [&](const GantryTask& gantry, VectorP& ddq_p) {
     Rendering rendering(device, golden_twin(), options);
-    State state = rendering.start(kPosture);
+    RenderingState state = rendering.start(kPosture);
     const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
     LawResult result;
     EXPECT_EQ(rendering.step({.robot = robot, .gantry = gantry}, state, result),
@@ -130,7 +130,7 @@ TEST(Rendering, TheGantryHelpsWhereALimitActsAndFollowsItsAimElsewhere) {
 
   task = {aim, aim, aim, Eigen::Vector2d(0.3, 0.3)};  // it does more than commanded
   Rendering rendering(device, golden_twin(), options);
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);
   LawResult result;
   rendering.step({.robot = robot, .gantry = task}, state, result);
@@ -169,7 +169,7 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
 
 TEST(Rendering, AnOrdinarySolveIsNotKeptUnlessRequested) {
   Rendering rendering(unlimited_device(), golden_twin(), without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
   LawResult result;
   rendering.keep_problem(0);  // nothing has been solved
@@ -224,7 +224,7 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
       if (where < -0.4) limits.q_min = q[i];
     }
     Rendering rendering(device, golden_twin(), without_synchronisation());
-    State state = rendering.start(q);
+    RenderingState state = rendering.start(q);
     Vector6 w;
     for (double& value : w) value = 20 * uniform(random);
     const RobotState robot = robot_with(kGantryAtHome, q, w);
@@ -281,7 +281,7 @@ TEST(Rendering, TheBudgetClosesAndTheBearingsCarryTheRest) {
     TwinModel twin = door_with_closer();
     twin.dofs[0].friction = 0.5;
     Rendering rendering(device, twin, without_synchronisation());
-    State state = rendering.start(kPosture);
+    RenderingState state = rendering.start(kPosture);
     state.twin.q_a[0] = std::max(0.0, uniform(random));
     state.twin.q_a[1] = std::max(0.0, 0.8 * uniform(random));
     state.twin.dq_a[0] = uniform(random) * (state.twin.q_a[0] > 0.0);
@@ -307,7 +307,7 @@ TEST(Rendering, AtAHeldLimitTheOtherJointsMoveLikeTheReducedModel) {
   twin.q_start << 0.2, 0.3, 0.9, 1.0;
   twin.dofs[3].limits = {0.0, 1.0, 3.0, 20.0};  // bucket, at its upper end
   Rendering rendering(unlimited_device(), twin, without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   state.twin.dq_a << 0.3, -0.2, 0.4, 0.0;
   Vector6 w;
   w << 5, 3, 4, 2, 6, -1;
@@ -336,7 +336,7 @@ LawResult pushed_along_x(const DeviceModel& device, double force, double ddq_p) 
   TwinModel twin = golden_twin();
   twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
   Rendering rendering(device, twin, {});
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w = Vector6::Zero();
   w[0] = force;
   RobotState robot = robot_with(kGantryAtHome, kPosture, w);
@@ -383,7 +383,7 @@ TEST(Rendering, AGantryThatDragsJointsFromTheirLimitsBlocksTheDevice) {
     device.joint_limits[static_cast<std::size_t>(i)] = {kPosture[i], kPosture[i], 1.0, 10.0};
   }
   Rendering rendering(device, door_with_closer(), without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
   LawResult result;
   rendering.step({.robot = robot}, state, result);
@@ -403,7 +403,7 @@ TEST(Rendering, TheHandFollowsTheTwinAndTheErrorDecays) {
   start.R = start.R * Eigen::AngleAxisd(2e-3, Eigen::Vector3d::UnitY()).toRotationMatrix();
   twin.q_start = floating_at(start);
   Rendering rendering(device, twin, {});
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   LawResult result;
   for (int k = 0; k < 1000; ++k) {
     const RobotState robot = robot_with(kGantryAtHome, state.reference.q_m, Vector6::Zero());
@@ -431,7 +431,7 @@ TEST(Rendering, AStepMakesNoAllocation) {
   twin.locks = {door_lock()};
   twin.dofs[1].friction = 0.3;
   Rendering rendering(device, twin, without_synchronisation());
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   Vector6 w;
   w << 30, -20, 10, 2, 1, 1.5;
   const RobotState robot = robot_with(kGantryAtHome, kPosture, w);

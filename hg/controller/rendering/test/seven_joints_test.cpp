@@ -105,7 +105,7 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
       if (where < -0.3) limits.q_min = q[i];
     }
     Rendering rendering(device, trial % 2 == 0 ? free_body() : door(), without_synchronisation());
-    State state = rendering.start(q);
+    RenderingState state = rendering.start(q);
     Vector6 w;
     for (double& value : w) value = 20 * uniform(random);
     const RobotState robot = robot_at(q, w);
@@ -160,7 +160,7 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
 }
 
 // Plays one second without a wrench; the handle has to stay.
-void play_at_rest(Rendering& rendering, State& state, double seconds) {
+void play_at_rest(Rendering& rendering, RenderingState& state, double seconds) {
   const Pose start = pose_of(rendering.device(), state.reference.q_m);
   state.twin.q_a = floating_at(start);
   for (int k = 0; k < static_cast<int>(1000 * seconds); ++k) {
@@ -179,7 +179,7 @@ TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
   for (int k = 0; k < 400; ++k) goal += 1e-3 * idle_motion(device, goal);
   device.posture = goal;
   Rendering rendering(device, free_body(), {});
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   const double before = (goal - kPosture).norm();
   play_at_rest(rendering, state, 3.0);
   EXPECT_GT(before, 0.1);
@@ -194,7 +194,7 @@ TEST(SevenJoints, WithoutAGoalIdleMotionComesToRest) {
       device.posture = VectorM::Constant(7, std::numeric_limits<double>::quiet_NaN());
     }
     Rendering rendering(device, free_body(), {});
-    State state = rendering.start(kPosture);
+    RenderingState state = rendering.start(kPosture);
     state.reference.dq_m = 0.3 * idle_motion(device, kPosture);
     play_at_rest(rendering, state, 2.0);
     EXPECT_LT(state.reference.dq_m.norm(), 1e-5);
@@ -203,7 +203,7 @@ TEST(SevenJoints, WithoutAGoalIdleMotionComesToRest) {
 }
 
 TEST(SevenJoints, LawPaperRequiresSix) {
-  Options options;
+  RenderingOptions options;
   options.law = Law::kPaper;
   try {
     Rendering(seven_joint_device(), free_body(), options);

@@ -30,7 +30,7 @@ DeviceModel device_with(double ddq_max) {
 // A free body at kStart that moves or is pushed.
 struct Thrown {
   Rendering rendering;
-  State state;
+  RenderingState state;
   LawResult result;
   double inside = 0.0;  // deepest so far, m
   Surface solid;        // of the same size, which has an inside
@@ -41,7 +41,7 @@ struct Thrown {
     twin.q_start = floating_at({kStart, Eigen::Matrix3d::Identity()});
     return twin;
   }
-  explicit Thrown(const Surface& met, const Options& options = without_synchronisation(),
+  explicit Thrown(const Surface& met, const RenderingOptions& options = without_synchronisation(),
                   double ddq_max = 3.0)
       : rendering(device_with(ddq_max), body(), options,
                   surfaces::Environment({met}, kDt, {kMass, kMass})),
@@ -182,7 +182,7 @@ TEST(StopSurface, LetsSlideAlongAMeshOverItsEdges) {
 
 TEST(StopSurface, NeedsALawThatSupportsIt) {
   const Surface surface = stop(surfaces::Plane{}, kStart - Vector3d::UnitZ());
-  Options paper = without_synchronisation();
+  RenderingOptions paper = without_synchronisation();
   paper.bounds = Bounds::kPaper;
   EXPECT_EQ(message_of([&] { Thrown(surface, paper); }),
             "surfaces with 'contact: stop' need law gauss with bounds recoverable");

@@ -16,7 +16,7 @@ constexpr double kStiffness = 4000.0;
 // A free body above a floor at z = 0.
 struct Falling {
   Rendering rendering;
-  State state;
+  RenderingState state;
   LawResult result;
 
   static TwinModel body() {
@@ -72,7 +72,7 @@ TEST(TwinOnASurface, CarriesATwinThatHasWeight) {
                       surfaces::Environment(
                           {{.name = "floor", .shape = surfaces::Plane{}, .stiffness = kStiffness}},
                           kDt, {kMass, kMass}));
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   for (int k = 0; k < 3000; ++k) {
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
     const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
@@ -94,7 +94,7 @@ TEST(TwinOnASurface, IsCaughtWithTheMassThatItHasNow) {
         surfaces::Environment(
             {{.name = "floor", .shape = surfaces::Plane{}, .stiffness = kStiffness}}, kDt,
             {mass, mass}));
-    State state = rendering.start(kPosture);
+    RenderingState state = rendering.start(kPosture);
     state.inner.parameters.now.loads.mass = state.inner.parameters.target.loads.mass = scale;
     state.twin.dq_a[2] = -0.3;
     for (int k = 0; k < 60; ++k) {
@@ -130,7 +130,7 @@ std::pair<double, double> fall(double ddq_max) {
       surfaces::Environment(
           {{.name = "floor", .shape = surfaces::Plane{}, .stiffness = 2e4, .damping = 0.0}}, kDt,
           {kMass, kMass}));
-  State state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kPosture);
   state.twin.dq_a[2] = -0.5;
   double depth = 0.0, back = 0.0;
   for (int k = 0; k < 1000; ++k) {

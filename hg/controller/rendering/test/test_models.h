@@ -67,8 +67,8 @@ inline ConfigurationA floating_at(const Pose& pose) {
 }
 
 /// Without synchronisation: the twin need not be where the handle is.
-inline Options without_synchronisation() {
-  Options options;
+inline RenderingOptions without_synchronisation() {
+  RenderingOptions options;
   options.kP_tran = options.kD_tran = options.kP_rot = options.kD_rot = 0.0;
   return options;
 }

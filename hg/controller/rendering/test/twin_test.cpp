@@ -210,7 +210,7 @@ TEST(Changes, AreRefusedWhereTheyMakeNoSense) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   TwinModel twin = door();
   Playing playing(twin);
-  const State before = playing.state;
+  const RenderingState before = playing.state;
   const ParameterChange bad[] = {
       {Parameter::kStiffness, -1, 1.0},      {Parameter::kStiffness, 2, 1.0},
       {Parameter::kStiffness, 0, -1.0},      {Parameter::kStiffness, 0, nan},
@@ -315,7 +315,7 @@ TEST(Changes, ArePartOfTheStateSoThatASnapshotContinuesAlike) {
   ASSERT_EQ(door.change(Parameter::kStiffness, 0, 40.0), ChangeStatus::kTaken);
   ASSERT_EQ(door.change(Parameter::kUpperLimit, 0, 0.7), ChangeStatus::kTaken);
   door.hold(50);  // under way
-  const State snapshot = door.state;
+  const RenderingState snapshot = door.state;
   door.hold(200);
   const ConfigurationA reached = door.state.twin.q_a;
   HeldDoor other;
@@ -350,7 +350,7 @@ void expect_newton(const TwinModel& twin, double tolerance) {
     Playing playing(twin);
     for (double& value : playing.state.twin.q_a) value += 0.5 * uniform(random);
     for (double& value : playing.state.twin.dq_a) value = 0.3 * uniform(random);
-    const State before = playing.state;
+    const RenderingState before = playing.state;
     Vector6 w;
     for (double& value : w) value = 10.0 * uniform(random);
     ASSERT_NO_FATAL_FAILURE(playing.step(w));

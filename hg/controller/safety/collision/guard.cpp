@@ -14,7 +14,8 @@ constexpr double kAhead = 20.0;     // cycles: bounds that may be used up this s
 constexpr double kClose = 0.05;     // m: smaller bounds are recomputed in every cycle
 constexpr int kHalvings = 16;       // largest number of pending intervals of a path
 
-void check(const Config& config, const Braking& braking, const model::ChainModel& chain) {
+void check_collision(const CollisionConfig& config, const Braking& braking,
+                     const model::ChainModel& chain) {
   const auto require = [](bool holds, const char* rule) {
     if (!holds) throw SetupError(std::string("collision: ") + rule);
   };
@@ -87,10 +88,10 @@ Braking braking_of(const DeviceModel& device, double gantry) {
   return braking;
 }
 
-Guard::Guard(const Config& config, const Braking& braking, const model::ChainModel& chain)
+Guard::Guard(const CollisionConfig& config, const Braking& braking, const model::ChainModel& chain)
     : config_(config), braking_(braking) {
   if (config_.pairs.watched.empty()) return;
-  check(config_, braking_, chain);
+  check_collision(config_, braking_, chain);
   if (config_.pairs.watched.size() > kMaxPairs) {
     throw SetupError("collision: " + std::to_string(config_.pairs.watched.size()) +
                      " pairs of shapes may touch, at most " + std::to_string(kMaxPairs) +
@@ -103,7 +104,7 @@ Guard::Guard(const Config& config, const Braking& braking, const model::ChainMod
   chain_.emplace(chain);
 }
 
-std::vector<std::string> pair_names(const Config& config) {
+std::vector<std::string> pair_names(const CollisionConfig& config) {
   std::vector<std::string> names;
   for (const Pair& pair : config.pairs.watched) {
     names.push_back(config.shapes[static_cast<std::size_t>(pair.a)].name + " - " +
@@ -127,7 +128,7 @@ double Guard::distance(int pair, const Path& path, double time) noexcept {
 
 // Depth first from the start of the path; `ends` holds the ends of pending intervals.
 void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
-                     State& state) noexcept {
+                     CollisionState& state) noexcept {
   struct Place {
     double time, distance;
   };
@@ -167,7 +168,7 @@ void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
 }
 
 // Reduces each bound by the change of the path since the last cycle.
-void Guard::fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept {
+void Guard::fade(const VectorPM& q, const VectorPM& stop, CollisionState& state) noexcept {
   const VectorPM change = (q - state.q).cwiseAbs().cwiseMax((stop - state.stop).cwiseAbs());
   for (std::size_t i = 0; i < config_.pairs.watched.size(); ++i) {
     fading_[i] = config_.pairs.watched[i].lever.dot(change);
@@ -176,7 +177,7 @@ void Guard::fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept
 }
 
 Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
-                       State& state) noexcept {
+                       CollisionState& state) noexcept {
   Prediction prediction;
   const auto count = static_cast<int>(config_.pairs.watched.size());
   if (count == 0) return prediction;

@@ -38,14 +38,14 @@ inline constexpr int kMaxDistances = 24;  ///< Largest number of distances compu
 inline constexpr double kFarEnough = 0.02;
 
 /// Set-up data.
-struct Config {
+struct CollisionConfig {
   std::vector<Shape> shapes;    ///< Collision shapes; empty: nothing is watched
   Pairs pairs;                  ///< Pairs found by choose_pairs()
   double safe_distance = 0.03;  ///< Safe distance, [HANDBOOK] 6.4, m
 };
 
 /// Names like "link1 - forearm", one per watched pair.
-std::vector<std::string> pair_names(const Config& config);
+std::vector<std::string> pair_names(const CollisionConfig& config);
 
 /// How the joints brake, gantry first.
 struct Braking {
@@ -57,7 +57,7 @@ struct Braking {
 /// decelerations, of a gantry axis `gantry` (m/s^2 or rad/s^2).
 Braking braking_of(const DeviceModel& device, double gantry);
 
-struct State {
+struct CollisionState {
   int count = 0;                            ///< Number of watched pairs; 0 = not started
   VectorPM q, stop;                         ///< Joint and stopping positions of the last cycle
   std::array<double, kMaxPairs> left{};     ///< Lower bound on the distance minus `allowed`, m
@@ -65,7 +65,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const State& state) {
+void hashed(auto& hash, const CollisionState& state) {
   const auto& [count, q, stop, left, allowed] = state;
   hash.mix(count, q, stop);
   for (std::size_t i = 0; i < index(count); ++i) hash.mix(left[i], allowed[i]);
@@ -82,21 +82,23 @@ class Guard {
  public:
   Guard() = default;
   /// Throws SetupError when too many pairs would have to be watched.
-  Guard(const Config& config, const Braking& braking, const model::ChainModel& chain);
+  Guard(const CollisionConfig& config, const Braking& braking, const model::ChainModel& chain);
 
   /// Predicts braking from `q` and `dq`. `is_moving` = the device may move autonomously. As long as
   /// it may not, pairs nearer than the safe distance are accepted as they are; afterwards they must
   /// not come 5 mm nearer.
-  Prediction step(const VectorPM& q, const VectorPM& dq, bool is_moving, State& state) noexcept;
+  Prediction step(const VectorPM& q, const VectorPM& dq, bool is_moving,
+                  CollisionState& state) noexcept;
 
  private:
   struct Path;  // braking path
 
   double distance(int pair, const Path& path, double time) noexcept;
-  void evaluate(int pair, const Path& path, bool is_moving, int& budget, State& state) noexcept;
-  void fade(const VectorPM& q, const VectorPM& stop, State& state) noexcept;
+  void evaluate(int pair, const Path& path, bool is_moving, int& budget,
+                CollisionState& state) noexcept;
+  void fade(const VectorPM& q, const VectorPM& stop, CollisionState& state) noexcept;
 
-  Config config_;
+  CollisionConfig config_;
   Braking braking_;
   std::vector<Distance> distances_;
   std::optional<model::ChainData> chain_;   // empty without shapes

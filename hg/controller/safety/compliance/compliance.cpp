@@ -24,7 +24,7 @@ double least_threshold(const VectorM& torque_max, int joint) noexcept {
   return std::max(kLeast * torque_max[joint], kLeastOfArm * torque_max.maxCoeff());
 }
 
-void start(const Input& input, State& state) noexcept {
+void start(const ComplianceInput& input, ComplianceState& state) noexcept {
   const auto n = input.torque.size();
   state.torque = state.variance = state.load = VectorM::Zero(n);
   state.away = VectorP(0);
@@ -33,7 +33,7 @@ void start(const Input& input, State& state) noexcept {
 
 // Learns the noise from torques far below a contact. Noise raises a threshold to at most twice the
 // minimum.
-void learn(const VectorM& torque_max, double dt, State& state) noexcept {
+void learn(const VectorM& torque_max, double dt, ComplianceState& state) noexcept {
   for (int i = 0; i < state.torque.size(); ++i) {
     const double most = least_threshold(torque_max, i) / kDeviations;
     double& variance = state.variance[i];
@@ -43,7 +43,7 @@ void learn(const VectorM& torque_max, double dt, State& state) noexcept {
 }
 
 // Wrench w with J^T w = torque of the manipulator's part of J.
-Vector6 wrench_of(const Input& input, const VectorM& torque) noexcept {
+Vector6 wrench_of(const ComplianceInput& input, const VectorM& torque) noexcept {
   const auto J = input.J.rightCols(torque.size());
   Eigen::Matrix<double, 6, 6> normal = J.lazyProduct(J.transpose());
   normal.diagonal().array() += kDamping * kDamping;
@@ -55,7 +55,7 @@ Vector6 wrench_of(const Input& input, const VectorM& torque) noexcept {
 }
 
 // Torques beyond the thresholds, continuous where a contact begins and ends.
-VectorM beyond(const VectorM& torque_max, const State& state) noexcept {
+VectorM beyond(const VectorM& torque_max, const ComplianceState& state) noexcept {
   VectorM torque = state.torque;
   for (int i = 0; i < torque.size(); ++i) {
     const double most = threshold(torque_max, state, i);
@@ -74,12 +74,13 @@ VectorM peak_torques(const DeviceModel& device) {
   return torque;
 }
 
-double threshold(const VectorM& torque_max, const State& state, int joint) noexcept {
+double threshold(const VectorM& torque_max, const ComplianceState& state, int joint) noexcept {
   const double noise = kDeviations * std::sqrt(state.variance[joint]);
   return least_threshold(torque_max, joint) + noise + kModelError * state.load[joint];
 }
 
-TouchReport step(const VectorM& torque_max, double dt, const Input& input, State& state) noexcept {
+TouchReport react_to_contact(const VectorM& torque_max, double dt, const ComplianceInput& input,
+                             ComplianceState& state) noexcept {
   if (!state.is_started) start(input, state);
   TouchReport report;
   state.torque += dt / kFilter_s * (input.torque - state.torque);

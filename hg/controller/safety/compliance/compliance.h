@@ -22,7 +22,7 @@
 namespace hg::compliance {
 
 /// Set-up data.
-struct Config {
+struct ComplianceConfig {
   bool is_on = false;
 };
 
@@ -32,7 +32,7 @@ inline constexpr double kMomentMax = 30.0;   // Nm
 inline constexpr double kGantrySpeed = 0.3;  // m/s or rad/s, away from the contact
 
 /// Part of the copyable state of a cycle.
-struct State {
+struct ComplianceState {
   bool is_started = false;
   VectorM dq;        ///< Joint speeds in the last sample, rad/s
   VectorM torque;    ///< Joint torques of the contact, low-passed, Nm
@@ -44,7 +44,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const State& state) {
+void hashed(auto& hash, const ComplianceState& state) {
   const auto& [is_started, dq, torque, variance, load, is_reported, quiet_s, away] = state;
   hash.mix(std::uint64_t{is_started} | std::uint64_t{is_reported} << 1U, dq, torque, variance, load,
            quiet_s, away);
@@ -56,7 +56,7 @@ using JacobianIn = Eigen::Ref<const Eigen::Matrix<double, 6, Eigen::Dynamic>>;
 VectorM peak_torques(const DeviceModel& device);
 
 /// One sample.
-struct Input {
+struct ComplianceInput {
   VectorM torque;  ///< Joint torques explained by neither motion nor user, Nm
   VectorM load;    ///< Model torques that move and hold the joints, Nm
   JacobianIn J;    ///< Jacobian of the handle; gantry joints first
@@ -65,9 +65,10 @@ struct Input {
 
 /// Advances by one sample of `dt` (s); call once per cycle with the drives on. `torque_max`: peak
 /// torque of each joint, Nm.
-TouchReport step(const VectorM& torque_max, double dt, const Input& input, State& state) noexcept;
+TouchReport react_to_contact(const VectorM& torque_max, double dt, const ComplianceInput& input,
+                             ComplianceState& state) noexcept;
 
 /// Torque from which a joint reports a contact, Nm.
-double threshold(const VectorM& torque_max, const State& state, int joint) noexcept;
+double threshold(const VectorM& torque_max, const ComplianceState& state, int joint) noexcept;
 
 }  // namespace hg::compliance

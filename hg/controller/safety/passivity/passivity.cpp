@@ -33,7 +33,7 @@ double share_of_Hz(double dt, double frequency) noexcept {
 }
 
 // Mean square of the force that may be a person's tremor.
-double tremor_part(double dt, const Eigen::Vector3d& f, State& s) noexcept {
+double tremor_part(double dt, const Eigen::Vector3d& f, PassivityState& s) noexcept {
   const double k = std::numbers::pi * kTremor_Hz * dt;
   const double scale = 1.0 / (1.0 + k + k * k);
   const Eigen::Vector3d band =
@@ -47,8 +47,8 @@ double tremor_part(double dt, const Eigen::Vector3d& f, State& s) noexcept {
 }
 
 // Index of oscillation; 1 = detected.
-double look_for_oscillation(const Config& config, double dt, const Input& input,
-                            State& s) noexcept {
+double look_for_oscillation(const PassivityConfig& config, double dt, const PassivityInput& input,
+                            PassivityState& s) noexcept {
   if (!s.is_started) {
     s.x1 = s.x2 = s.x3 = s.in1 = s.in2 = input.f;
     s.since_pushed_s = kAfterPush;
@@ -71,8 +71,8 @@ double look_for_oscillation(const Config& config, double dt, const Input& input,
   return std::max(s.oscillates_s / config.trip_time, counts ? high / kViolent : 0.0);
 }
 
-void add_impedance(const Config& config, double dt, const Input& input, bool is_detected,
-                   State& s) noexcept {
+void add_impedance(const PassivityConfig& config, double dt, const PassivityInput& input,
+                   bool is_detected, PassivityState& s) noexcept {
   s.hold_s = is_detected ? kHold : std::max(0.0, s.hold_s - dt);
   const bool is_full = s.added.damping >= 0.99 * config.damping;
   s.restless_s = is_detected && is_full ? s.restless_s + dt : 0.0;
@@ -92,7 +92,8 @@ void add_impedance(const Config& config, double dt, const Input& input, bool is_
 
 }  // namespace
 
-PassivityReport step(const Config& config, double dt, const Input& input, State& state) noexcept {
+PassivityReport observe_energy(const PassivityConfig& config, double dt,
+                               const PassivityInput& input, PassivityState& state) noexcept {
   if (config.reaction == Reaction::kOff) return {};
   if (!state.is_started) state.tank = config.tank_start;
   PassivityReport report;
@@ -115,7 +116,8 @@ PassivityReport step(const Config& config, double dt, const Input& input, State&
   return report;
 }
 
-Fault check(const Config& config, const PassivityReport& report, const State& state) noexcept {
+Fault passivity_fault(const PassivityConfig& config, const PassivityReport& report,
+                      const PassivityState& state) noexcept {
   if (config.reaction != Reaction::kAct) return {};
   if (state.restless_s > kPatience) {
     return {.code = FaultCode::kOscillation, .value = report.oscillation, .limit = 1.0};

@@ -37,7 +37,7 @@ enum class Reaction : std::uint8_t {
 };
 
 /// Set-up data.
-struct Config {
+struct PassivityConfig {
   Reaction reaction = Reaction::kObserve;
   double trip_time = 0.25;  ///< Duration of oscillation until it is detected, s
   double damping = 25.0;    ///< Damping added on detection, Ns/m; [C] 7
@@ -48,7 +48,7 @@ struct Config {
 };
 
 /// Inputs of one cycle of the rendering.
-struct Input {
+struct PassivityInput {
   Eigen::Vector3d f = Eigen::Vector3d::Zero();  ///< Force of the user on the handle, N
   double power_measured = 0.0;  ///< Wrench of the user times measured twist of the handle, W
   double power_rendered = 0.0;  ///< Wrench of the user times twist of the twin's end effector, W
@@ -70,7 +70,7 @@ void hashed(auto& hash, const AddedImpedance& added) {
   hash.mix(damping, inertia);
 }
 
-struct State {
+struct PassivityState {
   bool is_started = false;
   Eigen::Vector3d x1 = Eigen::Vector3d::Zero(), x2 = Eigen::Vector3d::Zero(),
                   x3 = Eigen::Vector3d::Zero();
@@ -89,7 +89,7 @@ struct State {
 };
 
 /// Words of the state hash, in its order.
-void hashed(auto& hash, const State& state) {
+void hashed(auto& hash, const PassivityState& state) {
   const auto& [is_started, x1, x2, x3, high, low, in1, in2, tremor1, tremor2, tremor, turns,
                oscillates_s, since_pushed_s, hold_s, restless_s, tank, energy, added] = state;
   hash.mix(is_started, x1, x2, x3, high, low, oscillates_s, since_pushed_s, hold_s, restless_s,
@@ -98,10 +98,12 @@ void hashed(auto& hash, const State& state) {
 
 /// Advances by one cycle of `dt` (s) and returns its report; `state.added` applies to the twin in
 /// the next one.
-PassivityReport step(const Config& config, double dt, const Input& input, State& state) noexcept;
+PassivityReport observe_energy(const PassivityConfig& config, double dt,
+                               const PassivityInput& input, PassivityState& state) noexcept;
 
 /// kOscillation when the oscillation has lasted 3 s at full damping, kEnergy when the tank has run
 /// empty, else kNone; only with Reaction::kAct.
-Fault check(const Config& config, const PassivityReport& report, const State& state) noexcept;
+Fault passivity_fault(const PassivityConfig& config, const PassivityReport& report,
+                      const PassivityState& state) noexcept;
 
 }  // namespace hg::passivity

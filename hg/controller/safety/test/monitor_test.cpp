@@ -172,8 +172,8 @@ struct Bench {
   MonitorState state;
   SensorFrame sensors = good_sensors();
   Results results;
-  Watched watched = {.state = State::kByHand, .dq_p_command = VectorP::Zero(2)};
-  Verdict verdict;
+  Watched watched = {.state = SafetyState::kByHand, .dq_p_command = VectorP::Zero(2)};
+  MonitorResult verdict;
   int cycles = 0;
   double torque = 0.0;  ///< of joint 0
 
@@ -185,9 +185,9 @@ struct Bench {
     results.robot.q_m = results.robot.dq_m = VectorM::Zero(6);
     results.robot.q_p = results.robot.dq_p = VectorP::Zero(2);
     results.reference = {VectorM::Zero(6), VectorM::Zero(6), VectorM::Zero(6)};
-    watched.state = State::kReady;
+    watched.state = SafetyState::kReady;
     step();
-    watched.state = State::kByHand;
+    watched.state = SafetyState::kByHand;
     run(3);
     EXPECT_EQ(verdict.fault.code, FaultCode::kNone);
     EXPECT_EQ(verdict.warning.code, FaultCode::kNone);
@@ -444,7 +444,7 @@ TEST(Monitor, AReferenceThatHasToComeBackAgainAndAgainIsLostToo) {
 
 TEST(Monitor, PositionsReachedWithoutPowerAllowOnlyMovesBack) {
   Bench bench;
-  bench.watched.state = State::kFault;
+  bench.watched.state = SafetyState::kFault;
   bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = 2.5;
   bench.results.robot.dq_m[1] = 5.0;
   bench.results.robot.q_p[0] = 1.6;
@@ -453,7 +453,7 @@ TEST(Monitor, PositionsReachedWithoutPowerAllowOnlyMovesBack) {
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
   bench.results.robot.dq_m[1] = bench.results.robot.dq_p[1] = 0.0;
   bench.step();
-  bench.watched.state = State::kByHand;
+  bench.watched.state = SafetyState::kByHand;
   bench.run(200);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
   bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = 2.3;
@@ -513,10 +513,10 @@ TEST(Monitor, BelowALimitItMayOnlyMoveBackToo) {
   const auto put = [&](double q) {
     bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = q;
   };
-  bench.watched.state = State::kReady;
+  bench.watched.state = SafetyState::kReady;
   put(-2.5);
   bench.step();
-  bench.watched.state = State::kByHand;
+  bench.watched.state = SafetyState::kByHand;
   put(-2.3);
   bench.run(2);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
@@ -530,7 +530,7 @@ TEST(Monitor, TheSafeSpeedAppliesOnlyWhileTheHandleIsNotHeld) {
   bench.results.v_H = {0.2, 0.16, 0.0};
   bench.run(10);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
-  bench.watched.state = State::kAutonomous;
+  bench.watched.state = SafetyState::kAutonomous;
   EXPECT_EQ(bench.until_fault(FaultCode::kSafeSpeedExceeded, [] {}), 3);
   bench.results.v_H.setZero();
   bench.step();
@@ -584,7 +584,7 @@ TEST(Monitor, AMotorThatGivesNoTorqueIsNoticedBeforeItHasMovedFar) {
 TEST(Monitor, WhatBrakingDoesNotExplainStopsNothing) {
   Bench bench;
   bench.watched.unexplained = VectorM::Constant(6, 50.0);
-  bench.watched.state = State::kToReady;
+  bench.watched.state = SafetyState::kToReady;
   bench.run(200);
   EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone);
 }
@@ -625,7 +625,7 @@ struct BrakingBench : Bench {
   BrakingBench() {
     results.reference.dq_m[2] = results.robot.dq_m[2] = reference;
     results.robot.dq_p[1] = state.dq_p_model[1] = reference;
-    watched.state = State::kToFault;
+    watched.state = SafetyState::kToFault;
   }
   // one period; the axes are faster than their ramps by so much
   void brake(double joint_excess, double gantry_excess) {
@@ -678,7 +678,7 @@ TEST(Monitor, AnAxisThatDoesNotBrakeAsCommandedGetsItsBrakes) {
 
 TEST(Monitor, AStopThatGoesTooFarEndsEvenOnItsRamp) {
   Bench bench;
-  bench.watched.state = State::kToArmed;
+  bench.watched.state = SafetyState::kToArmed;
   // the reference runs on, and the joint follows it
   bench.results.reference.dq_m[0] = bench.results.robot.dq_m[0] = 0.5;
   const auto keep_moving = [&] {

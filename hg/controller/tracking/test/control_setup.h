@@ -31,7 +31,7 @@ inline DeviceModel device_with(std::vector<ActuatorModel> actuators, double rate
 }
 
 /// A control with the facts about the device that the tests change.
-struct ControlledArm : Config {
+struct ControlledArm : ControlConfig {
   std::vector<ActuatorModel> actuators;
   double rate_Hz = 1000.0;
 };
@@ -105,7 +105,7 @@ inline SensorFrame answered(std::uint64_t sequence, std::uint64_t periods_ago) {
 /// Of everything that a controller does in a period, ten times.
 inline std::uint64_t allocations_of_steps(const ControlledArm& config) {
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   const RobotState robot = following(reference, VectorM::Zero(6));
   CommandFrame command;

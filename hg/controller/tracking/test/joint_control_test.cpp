@@ -18,7 +18,7 @@ struct Answer {
   TrackingReport report;
 };
 
-Answer answer(JointControl& control, State& state, const ReferenceState& reference,
+Answer answer(JointControl& control, ControlState& state, const ReferenceState& reference,
               const RobotState& robot) {
   Answer result;
   control.step(reference, reference, robot, state, result.command, result.report);
@@ -28,7 +28,7 @@ Answer answer(JointControl& control, State& state, const ReferenceState& referen
 Answer first_answer(const ControlledArm& config, const ReferenceState& reference,
                     const RobotState& robot) {
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   return answer(control, state, reference, robot);
 }
 
@@ -87,7 +87,7 @@ TEST_P(BothMethods, UnexplainedTorqueIsReportedAsAMovingMean) {
   RobotState robot = following(reference, weight);
   robot.tau_m = weight + joints(0.0, 0.0, -3.0, 5.0, 0.0, 0.0);
   JointControl control = control_of(reference_config(GetParam()));
-  State state = control.start();
+  ControlState state = control.start();
   TrackingReport report;
   for (int k = 0; k <= 100; ++k) report = answer(control, state, reference, robot).report;
   EXPECT_NEAR(report.torque_unexplained[3], 5.0 * (1.0 - std::exp(-1.0)), 0.05);
@@ -99,7 +99,7 @@ TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
   // a force of the user that grows with 100 N/s: theta_r' = tau_r' / K
   ControlledArm config = frictionless_config(GetParam());
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   for (int k = 0; k < 300; ++k) {
@@ -116,7 +116,7 @@ TEST_P(BothMethods, OnTheWayTheSpringsAreTwistedAheadOfTheTorqueTheyWillCarry) {
 // The torques fed forward for a wrench of the user that grows with 100 `direction` per second.
 VectorM fed_for_growing(const ControlledArm& config, const Vector6& direction) {
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   for (int k = 0; k < 300; ++k) {
@@ -144,7 +144,7 @@ TEST(ModalControl, AForceThatWasThereBeforeIsNotLed) {
   ControlledArm config = frictionless_config();
   config.wrench_lead = 4e-3;
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   robot.w_H[1] = 50.0;
@@ -172,7 +172,7 @@ TEST(ModalControl, StiffModesGetTheWrenchWithoutLead) {
 // rms of the feedforward of a joint whose reference shakes with 60 Hz and 10 rad/s^2
 double fed_for_shaking(const ControlledArm& config, int joint) {
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   ReferenceState reference = at_rest(home());
   const RobotState robot = following(reference, VectorM::Zero(6));
   double sum = 0.0;
@@ -221,7 +221,7 @@ TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
 TEST(ModalControl, TheIntegralStopsAtItsBound) {
   const ControlledArm config = reference_config();
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   robot.q_m[5] -= 2e-3;  // far from saturation, and stays like that
@@ -231,7 +231,7 @@ TEST(ModalControl, TheIntegralStopsAtItsBound) {
 
 TEST(ModalControl, TheIntegralWaitsWhileAMotorIsSaturated) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   robot.q_m.array() -= 0.5;
@@ -246,7 +246,7 @@ TEST(ModalControl, TheIntegralWaitsWhileAMotorIsSaturated) {
 TEST(ModalControl, AFullIntegralSaturatesNoMotorAndUnwinds) {
   const ControlledArm config = reference_config();
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   answer(control, state, reference, robot);
@@ -263,7 +263,7 @@ TEST(ModalControl, EvenASaturatedIntegralUnwinds) {
   ControlledArm config = reference_config();
   config.integral_max = 1.0;
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   answer(control, state, reference, robot);
@@ -277,7 +277,7 @@ TEST(ModalControl, EvenASaturatedIntegralUnwinds) {
 
 TEST(ModalControl, AConstantErrorOfALinkIsAnsweredMoreAndMore) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
   robot.q_m[3] -= 1e-4;
@@ -311,9 +311,9 @@ TEST_P(BothMethods, FrictionIsFedForwardWithTheDirectionOfTheReference) {
 }
 
 // m4 slides, and the spring transmits less than the reference needs: the controller has to push.
-State after_sliding(double speed, double motor_speed, double behind, int periods) {
+ControlState after_sliding(double speed, double motor_speed, double behind, int periods) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   ReferenceState reference = at_rest(home());
   reference.dq_m[3] = speed;
   for (int k = 0; k < periods; ++k) {
@@ -329,10 +329,10 @@ State after_sliding(double speed, double motor_speed, double behind, int periods
 TEST(ModalControl, FrictionIsLearntWhileTheJointSlides) {
   constexpr double kStart = 0.8;
   for (const double way : {-1.0, 1.0}) {
-    const State more = after_sliding(0.2 * way, 0.2 * way, 1e-4 * way, 200);
+    const ControlState more = after_sliding(0.2 * way, 0.2 * way, 1e-4 * way, 200);
     EXPECT_GT(more.friction[3], kStart + 0.01);
     EXPECT_EQ(more.friction[0], kStart);  // stands
-    const State less = after_sliding(0.2 * way, 0.2 * way, -1e-4 * way, 200);
+    const ControlState less = after_sliding(0.2 * way, 0.2 * way, -1e-4 * way, 200);
     EXPECT_LT(less.friction[3], kStart - 0.01);
     // it does not slide: what the feedback adds is no friction
     EXPECT_EQ(after_sliding(0.2 * way, 0.0, 1e-4 * way, 200).friction[3], kStart);
@@ -353,7 +353,7 @@ TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
     reference.dq_m[joint] = 0.2;
     RobotState robot = following(reference, joints(0.0, 0.0, 0.0, 30.67587, 2.12877, 0.0));
     JointControl control = control_of(config);
-    State level = control.start(), behind = control.start();
+    ControlState level = control.start(), behind = control.start();
     const VectorM without = answer(control, level, reference, robot).command.tau_m;
     robot.theta_m[joint] -= 1e-4;
     robot.q_m[joint] -= 1e-4;
@@ -368,7 +368,7 @@ TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
 }
 
 TEST(ModalControl, NoFrictionIsLearntWhileAMotorIsSaturated) {
-  const State once = after_sliding(0.2, 0.2, 0.3, 1);
+  const ControlState once = after_sliding(0.2, 0.2, 0.3, 1);
   ASSERT_TRUE(once.is_saturated);
   EXPECT_EQ(after_sliding(0.2, 0.2, 0.3, 100).friction, once.friction);
 }
@@ -377,7 +377,7 @@ TEST(ModalControl, NoFrictionIsLearntWhileAMotorIsSaturated) {
 TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
   const ControlledArm config = frictionless_config(GetParam());
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   model::ChainData chain(arm());
@@ -398,17 +398,17 @@ TEST_P(BothMethods, ALoadBeyondWhatIsFedForwardSettlesAtTheBound) {
 TEST(JointControl, AFeedforwardFilterBeyondItsBoundIsRefused) {
   ControlledArm config = frictionless_config();
   config.rate_Hz = 204.0;
-  EXPECT_NO_THROW(check(config, config.rate_Hz));
+  EXPECT_NO_THROW(check_control_config(config, config.rate_Hz));
   config.rate_Hz = 203.0;
-  EXPECT_THROW(check(config, config.rate_Hz), SetupError);
+  EXPECT_THROW(check_control_config(config, config.rate_Hz), SetupError);
   EXPECT_THROW(control_of(config), SetupError);
   config.method = Method::kDrives;
-  EXPECT_NO_THROW(check(config, config.rate_Hz));
+  EXPECT_NO_THROW(check_control_config(config, config.rate_Hz));
 
   config = frictionless_config();
   config.flatness_Hz = 0.99 * largest_flatness_Hz(1000.0);
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   answer(control, state, reference, robot);
@@ -425,7 +425,7 @@ TEST(Latency, IsMeasuredFromTheAnsweredCommandWhileTheDrivesAreOff) {
   for (const std::uint64_t periods : {1u, 2u, 3u}) {
     SCOPED_TRACE(periods);
     JointControl control = control_of(reference_config());
-    State state = control.start();
+    ControlState state = control.start();
     const ReferenceState reference = at_rest(home());
     CommandFrame command;
     for (std::uint64_t k = 10; k < 510; ++k) {
@@ -444,7 +444,7 @@ TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
   ControlledArm config = reference_config();
   config.loop.latency = 2e-3;
   JointControl control = control_of(config);
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   CommandFrame command;
   SensorFrame silent;
@@ -459,7 +459,7 @@ TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
 
 TEST(Latency, ChangesNothingWhileTheDrivesAreOn) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   answer(control, state, reference, following(reference, VectorM::Zero(6)));
   const double w0 = state.poles.w0;
@@ -470,7 +470,7 @@ TEST(Latency, ChangesNothingWhileTheDrivesAreOn) {
 
 TEST(JointControl, ARestResetsIt) {
   JointControl control = control_of(reference_config());
-  State state = control.start();
+  ControlState state = control.start();
   const ReferenceState reference = at_rest(home());
   RobotState robot = following(reference, VectorM::Zero(6));
   const Answer first = answer(control, state, reference, robot);

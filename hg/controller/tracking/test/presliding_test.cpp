@@ -33,8 +33,8 @@ ControlledArm config_with(const ActuatorModel& actuator) {
 // Torques that are fed forward for friction while the reference of one joint is at `theta`, one
 // after the other; the robot follows.
 std::vector<double> fed_forward(const ControlledArm& config, const std::vector<double>& theta,
-                                State* last = nullptr) {
-  const auto torques = [&](const ControlledArm& one, State& state) {
+                                ControlState* last = nullptr) {
+  const auto torques = [&](const ControlledArm& one, ControlState& state) {
     JointControl control = control_of(one);
     std::vector<double> result;
     for (const double angle : theta) {
@@ -49,7 +49,7 @@ std::vector<double> fed_forward(const ControlledArm& config, const std::vector<d
     return result;
   };
   const ControlledArm smooth = config_with(frictionless_config().actuators[kJoint]);
-  State state = control_of(config).start(), plain = control_of(smooth).start();
+  ControlState state = control_of(config).start(), plain = control_of(smooth).start();
   std::vector<double> friction = torques(config, state);
   const std::vector<double> rest = torques(smooth, plain);
   for (std::size_t k = 0; k < friction.size(); ++k) friction[k] -= rest[k];
@@ -118,7 +118,7 @@ TEST(Presliding, NothingIsLearntBeforeAllElementsSlip) {
   const VectorM weight = chain.c().tail(6);
   const auto learnt_after = [&](double way) {
     JointControl control = control_of(config);
-    State state = control.start();
+    ControlState state = control.start();
     for (const double angle : {0.0, way}) {
       ReferenceState reference = at_rest(home());
       reference.q_m[kJoint] += angle;
@@ -137,7 +137,7 @@ TEST(Presliding, NothingIsLearntBeforeAllElementsSlip) {
 
 TEST(Presliding, IsResetByARest) {
   const ControlledArm config = config_with(soft(2));
-  State state;
+  ControlState state;
   fed_forward(config, {0.0, 5.0 * kWay}, &state);
   JointControl control = control_of(config);
   CommandFrame command;

@@ -17,7 +17,7 @@ Datagram sensors_datagram() {
   return datagram;
 }
 
-Verdict verdict_of(std::span<const std::byte> bytes) {
+DatagramCheck verdict_of(std::span<const std::byte> bytes) {
   Header header;
   return read_header(bytes, header);
 }
@@ -62,7 +62,7 @@ TEST(Codec, EveryMessageComesBackBitForBit) {
     SensorFrame sensors_back;
     CommandFrame command_back;
     encode({}, sensors, datagram);
-    ASSERT_EQ(verdict_of(datagram.view()), Verdict::kGood);
+    ASSERT_EQ(verdict_of(datagram.view()), DatagramCheck::kGood);
     ASSERT_TRUE(decode(datagram.view(), sensors_back));
     EXPECT_TRUE(same_bits(sensors, sensors_back));
     EXPECT_EQ(sensors_back.q_m, sensors.q_m);
@@ -109,11 +109,12 @@ TEST(Codec, TheHandshakeComesBack) {
   EXPECT_TRUE(hello.expected.is_lock_step);
   EXPECT_EQ(hello.client.view(), "a client");
   encode({},
-         Welcome{77, Refusal::kBusy, true, description, 0.05, "a server", std::string(300, 'x')},
+         Welcome{77, ConnectionRefusal::kBusy, true, description, 0.05, "a server",
+                 std::string(300, 'x')},
          datagram);
   Welcome welcome;
   ASSERT_TRUE(decode(datagram.view(), welcome));
-  EXPECT_EQ(welcome.refusal, Refusal::kBusy);
+  EXPECT_EQ(welcome.refusal, ConnectionRefusal::kBusy);
   EXPECT_TRUE(welcome.is_simulated);
   EXPECT_EQ(welcome.actual.rate_Hz, 2000.0);
   EXPECT_EQ(welcome.command_timeout_s, 0.05);
@@ -125,34 +126,35 @@ TEST(ReadHeader, EveryFlippedBitIsSeen) {
   for (std::size_t bit = 0; bit < 8 * whole.size; ++bit) {
     Datagram flipped = whole;
     flipped.bytes[bit / 8] ^= std::byte{1} << bit % 8;
-    ASSERT_NE(verdict_of(flipped.view()), Verdict::kGood) << "bit " << bit;
+    ASSERT_NE(verdict_of(flipped.view()), DatagramCheck::kGood) << "bit " << bit;
   }
 }
 
 TEST(ReadHeader, EveryShorterOrLongerDatagramIsTruncated) {
   const Datagram whole = sensors_datagram();
   for (std::size_t size = 0; size < whole.size; ++size) {
-    ASSERT_EQ(verdict_of(whole.view().first(size)), Verdict::kTruncated) << size;
+    ASSERT_EQ(verdict_of(whole.view().first(size)), DatagramCheck::kTruncated) << size;
   }
   Datagram longer = whole;
   longer.size += 8;
-  EXPECT_EQ(verdict_of(longer.view()), Verdict::kTruncated);
+  EXPECT_EQ(verdict_of(longer.view()), DatagramCheck::kTruncated);
 }
 
 TEST(ReadHeader, ReportsWhatIsWrong) {
   const Datagram whole = sensors_datagram();
   Header header;
-  EXPECT_EQ(read_header(whole.view(), header), Verdict::kGood);
+  EXPECT_EQ(read_header(whole.view(), header), DatagramCheck::kGood);
   EXPECT_EQ(header.session, 7U);
   EXPECT_EQ(header.number, 3U);
   EXPECT_EQ(header.time_ns, 5U);
-  EXPECT_EQ(verdict_of(with(whole, 0, std::uint8_t{0x49}).view()), Verdict::kForeign);
-  EXPECT_EQ(verdict_of(with(whole, 4, std::uint16_t{kVersion + 1}).view()), Verdict::kWrongVersion);
-  EXPECT_EQ(verdict_of(with(whole, 6, std::uint16_t{99}).view()), Verdict::kForeign);
-  EXPECT_EQ(verdict_of(with(whole, 6, std::uint16_t{5}).view()), Verdict::kTruncated);
+  EXPECT_EQ(verdict_of(with(whole, 0, std::uint8_t{0x49}).view()), DatagramCheck::kForeign);
+  EXPECT_EQ(verdict_of(with(whole, 4, std::uint16_t{kVersion + 1}).view()),
+            DatagramCheck::kWrongVersion);
+  EXPECT_EQ(verdict_of(with(whole, 6, std::uint16_t{99}).view()), DatagramCheck::kForeign);
+  EXPECT_EQ(verdict_of(with(whole, 6, std::uint16_t{5}).view()), DatagramCheck::kTruncated);
   Datagram corrupted = whole;
   corrupted.bytes[100] ^= std::byte{4};
-  EXPECT_EQ(verdict_of(corrupted.view()), Verdict::kCorrupted);
+  EXPECT_EQ(verdict_of(corrupted.view()), DatagramCheck::kCorrupted);
 }
 
 TEST(Decode, RefusesImpossibleCountsTruthValuesAndRoomInUse) {
@@ -174,7 +176,7 @@ TEST(Decode, RandomBytesDoNoHarm) {
   for (int i = 0; i < 20000; ++i) {
     for (std::byte& b : bytes) b = static_cast<std::byte>(random());
     const std::size_t size = random() % bytes.size();
-    ASSERT_NE(verdict_of({bytes.data(), size}), Verdict::kGood);
+    ASSERT_NE(verdict_of({bytes.data(), size}), DatagramCheck::kGood);
     // as if header and checksum had been right
     SensorFrame sensors;
     CommandFrame command;

@@ -267,7 +267,7 @@ TEST(Connection, AnotherVersionIsNamedOnBothSides) {
   while (!old.receive(datagram, from)) old.wait(now_ns() + 1'000'000'000);
   Welcome welcome;
   ASSERT_TRUE(decode(datagram.view(), welcome));
-  EXPECT_EQ(welcome.refusal, Refusal::kProtocol);
+  EXPECT_EQ(welcome.refusal, ConnectionRefusal::kProtocol);
   EXPECT_EQ(welcome.reason.view(), "protocol: version 2, expected 9");
 }
 

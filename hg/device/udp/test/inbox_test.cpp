@@ -11,7 +11,7 @@ namespace hg::udp {
 namespace {
 
 bool take(Inbox& inbox, std::uint64_t number, std::uint32_t session = 7) {
-  return inbox.accept(Verdict::kGood, {.session = session, .number = number});
+  return inbox.accept(DatagramCheck::kGood, {.session = session, .number = number});
 }
 
 TEST(Inbox, TakesEachNumberOnceAndCountsTheMissing) {
@@ -33,10 +33,10 @@ TEST(Inbox, TakesEachNumberOnceAndCountsTheMissing) {
 TEST(Inbox, RefusesAndCountsWhatIsNotOfThisSession) {
   Inbox inbox(7);
   EXPECT_FALSE(take(inbox, 1, 8));
-  EXPECT_FALSE(inbox.accept(Verdict::kCorrupted, {.session = 7, .number = 2}));
-  EXPECT_FALSE(inbox.accept(Verdict::kTruncated, {}));
-  EXPECT_FALSE(inbox.accept(Verdict::kForeign, {}));
-  EXPECT_FALSE(inbox.accept(Verdict::kWrongVersion, {.session = 7, .number = 3}));
+  EXPECT_FALSE(inbox.accept(DatagramCheck::kCorrupted, {.session = 7, .number = 2}));
+  EXPECT_FALSE(inbox.accept(DatagramCheck::kTruncated, {}));
+  EXPECT_FALSE(inbox.accept(DatagramCheck::kForeign, {}));
+  EXPECT_FALSE(inbox.accept(DatagramCheck::kWrongVersion, {.session = 7, .number = 3}));
   const LinkCounts counts = inbox.counts();
   EXPECT_EQ(counts.wrong_session, 1U);
   EXPECT_EQ(counts.corrupted, 1U);

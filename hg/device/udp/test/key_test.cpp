@@ -65,20 +65,20 @@ TEST(Key, ADatagramWithAnyOtherByteIsForgedOrCorrupted) {
   Datagram datagram;
   encode({.session = 7, .number = 3}, Goodbye{.reason = "done"}, datagram, key);
   Header header;
-  EXPECT_EQ(read_header(datagram.view(), header, key), Verdict::kGood);
-  EXPECT_EQ(read_header(datagram.view(), header, key_of('l')), Verdict::kForged);
-  EXPECT_EQ(read_header(datagram.view(), header), Verdict::kForged);
+  EXPECT_EQ(read_header(datagram.view(), header, key), DatagramCheck::kGood);
+  EXPECT_EQ(read_header(datagram.view(), header, key_of('l')), DatagramCheck::kForged);
+  EXPECT_EQ(read_header(datagram.view(), header), DatagramCheck::kForged);
   for (std::size_t i = 16; i + 4 < datagram.size; ++i) {  // behind what says its size
     Datagram changed = datagram;
     changed.bytes[i] ^= std::byte{1};
-    EXPECT_EQ(read_header(changed.view(), header, key), Verdict::kCorrupted);
+    EXPECT_EQ(read_header(changed.view(), header, key), DatagramCheck::kCorrupted);
     const std::uint32_t crc = checksum(changed.view().first(changed.size - 4));
     std::memcpy(changed.bytes.data() + changed.size - 4, &crc, sizeof crc);
-    EXPECT_EQ(read_header(changed.view(), header, key), Verdict::kForged) << "byte " << i;
+    EXPECT_EQ(read_header(changed.view(), header, key), DatagramCheck::kForged) << "byte " << i;
   }
   encode({.session = 7, .number = 3}, Goodbye{.reason = "done"}, datagram);
-  EXPECT_EQ(read_header(datagram.view(), header), Verdict::kGood);
-  EXPECT_EQ(read_header(datagram.view(), header, key), Verdict::kForged);
+  EXPECT_EQ(read_header(datagram.view(), header), DatagramCheck::kGood);
+  EXPECT_EQ(read_header(datagram.view(), header, key), DatagramCheck::kForged);
 }
 
 TEST(Key, AFileThatIsNoGoodKeyIsRefused) {

@@ -133,7 +133,7 @@ class Script {
     do {
       socket_.wait(now_ns() + 1'000'000'000);
     } while (!socket_.receive(datagram, client_) ||
-             read_header(datagram.view(), header) != Verdict::kGood ||
+             read_header(datagram.view(), header) != DatagramCheck::kGood ||
              header.type != static_cast<std::uint16_t>(type));
     return header;
   }
@@ -186,7 +186,8 @@ class Voice {
     Message message;
     Header header;
     Peer from;
-    while (!socket_.receive(in_, from) || read_header(in_.view(), header, key_) != Verdict::kGood ||
+    while (!socket_.receive(in_, from) ||
+           read_header(in_.view(), header, key_) != DatagramCheck::kGood ||
            header.type != static_cast<std::uint16_t>(kTypeOf<Message>) ||
            !decode(in_.view(), message)) {
       socket_.wait(now_ns() + 1'000'000'000);
@@ -206,7 +207,7 @@ class Voice {
         again = now_ns() + 20'000'000;
       }
       while (socket_.receive(in_, from)) {
-        const bool is_good = read_header(in_.view(), header, key_) == Verdict::kGood;
+        const bool is_good = read_header(in_.view(), header, key_) == DatagramCheck::kGood;
         if (is_good && header.type == static_cast<std::uint16_t>(MessageType::kSensors))
           return true;
       }

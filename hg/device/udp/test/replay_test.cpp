@@ -33,13 +33,14 @@ TEST(Replay, ACapturedSessionIsUnderstood) {
   std::uint64_t next = 0;
   for (const auto& bytes : read_capture(kSession)) {
     Header header;
-    ASSERT_EQ(read_header(bytes, header), Verdict::kGood);
+    ASSERT_EQ(read_header(bytes, header), DatagramCheck::kGood);
     const auto type = static_cast<MessageType>(header.type);
     ++counts[type];
     if (type == MessageType::kWelcome) {
       const auto welcome = fields_of<Welcome>(bytes, header);
       agreed = welcome.actual;
-      EXPECT_EQ(welcome.refusal, counts[type] == 1 ? Refusal::kMismatch : Refusal::kNone);
+      EXPECT_EQ(welcome.refusal,
+                counts[type] == 1 ? ConnectionRefusal::kMismatch : ConnectionRefusal::kNone);
       EXPECT_TRUE(welcome.server.view().starts_with("hapticgiant simulate"));
     } else if (type == MessageType::kSensors) {
       const auto sensors = fields_of<SensorFrame>(bytes, header);

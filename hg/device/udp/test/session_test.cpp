@@ -101,7 +101,8 @@ TEST(Session, NothingThatIsSentFromElsewhereCounts) {
   }
   other.send(Goodbye{}, {.session = other.session, .number = 60});
   voice.await<SensorFrame>();
-  EXPECT_EQ(other.hello(false).refusal, Refusal::kBusy);  // so that all before has been read
+  EXPECT_EQ(other.hello(false).refusal,
+            ConnectionRefusal::kBusy);  // so that all before has been read
   voice.send(Goodbye{.reason = "of the client"});
   serving.await_sessions(1);
   const SessionReport& report = serving.reports[0];
@@ -131,7 +132,7 @@ TEST(Session, HalfAHandshakeBlocksNoOtherClient) {
   std::vector<std::unique_ptr<Voice>> silent;
   for (std::uint64_t i = 0; i < 40; ++i) {
     silent.push_back(std::make_unique<Voice>(serving.address(), i));
-    EXPECT_EQ(silent.back()->hello(true).refusal, Refusal::kNone);
+    EXPECT_EQ(silent.back()->hello(true).refusal, ConnectionRefusal::kNone);
   }
   RemoteDevice there(serving.address(), client(true));
   SensorFrame sensors;
@@ -147,12 +148,12 @@ TEST(Session, AFloodOfHellosAfterTheWelcomeBlocksNoOtherClient) {
     for (const bool is_replay : {false, true}) {
       Serving serving(true, kLong, 0, key);
       Voice client(serving.address(), 1'000, key);
-      EXPECT_EQ(client.hello(true, "the client").refusal, Refusal::kNone);
+      EXPECT_EQ(client.hello(true, "the client").refusal, ConnectionRefusal::kNone);
       std::vector<std::unique_ptr<Voice>> flood;
       for (std::uint64_t i = 0; i < 100; ++i) {
         flood.push_back(
             std::make_unique<Voice>(serving.address(), is_replay ? 1'000 : 2'000 + i, key));
-        EXPECT_EQ(flood.back()->hello(true).refusal, Refusal::kNone);
+        EXPECT_EQ(flood.back()->hello(true).refusal, ConnectionRefusal::kNone);
       }
       EXPECT_TRUE(client.begins());
       client.send(Goodbye{});
@@ -179,7 +180,7 @@ TEST(Session, NothingBeginsWithoutAHello) {
   voice.session = 0;  // of no session
   voice.send(Ready{});
   voice.send(command_for(0));
-  EXPECT_EQ(voice.hello(false).refusal, Refusal::kNone);  // not busy
+  EXPECT_EQ(voice.hello(false).refusal, ConnectionRefusal::kNone);  // not busy
   voice.send(Goodbye{});
   serving.stop();
   EXPECT_TRUE(serving.reports.empty());
@@ -194,13 +195,13 @@ TEST(Session, AReadyOfAnEndedSessionBeginsNothing) {
   old.send(Goodbye{});
   serving.await_sessions(1);
   old.send(Ready{});
-  EXPECT_EQ(young.hello(false, "young").refusal, Refusal::kNone);
+  EXPECT_EQ(young.hello(false, "young").refusal, ConnectionRefusal::kNone);
   old.send(Ready{});  // nor does it stand for the one of the next client
-  EXPECT_EQ(third.hello(false).refusal, Refusal::kNone);  // not even half a session
+  EXPECT_EQ(third.hello(false).refusal, ConnectionRefusal::kNone);  // not even half a session
   young.send(Ready{});
   young.await<SensorFrame>();
   EXPECT_EQ(third.await<Goodbye>().reason.view(), "young has the device");
-  EXPECT_EQ(third.hello(false).refusal, Refusal::kBusy);
+  EXPECT_EQ(third.hello(false).refusal, ConnectionRefusal::kBusy);
   young.send(Goodbye{});
   serving.await_sessions(2);
   serving.stop();
@@ -225,9 +226,10 @@ TEST(Session, WordsFromTheNetworkCannotCommandATerminal) {
     server.await(MessageType::kHello);
     Hello hello;
     (void)decode(server.datagram.view(), hello);
-    server.send(
-        Welcome{.nonce = hello.nonce, .refusal = Refusal::kMismatch, .reason = "no\x1B]0;title"},
-        {});
+    server.send(Welcome{.nonce = hello.nonce,
+                        .refusal = ConnectionRefusal::kMismatch,
+                        .reason = "no\x1B]0;title"},
+                {});
   });
   const std::string message =
       message_of([&] { RemoteDevice there(server.address(), client(true)); });

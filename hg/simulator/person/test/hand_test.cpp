@@ -47,7 +47,7 @@ TEST(Hand, HasTheValuesOfTheHandbook) {
   EXPECT_EQ(stiff.grip_damping, 40);
   EXPECT_EQ(stiff.angular_stiffness, Vector3d(4, 6, 8));
   for (const HandImpedance& h : {relaxed, normal, stiff}) {
-    EXPECT_NO_THROW(check(h));
+    EXPECT_NO_THROW(check_hand_impedance(h));
     EXPECT_GE(h.tremor_rms, 0.02);
     EXPECT_LE(h.tremor_rms, 0.05);
     EXPECT_EQ(h.force_max, 60);
@@ -275,7 +275,7 @@ TEST(Hand, RefusesWhatNoHandHas) {
   const auto refuses = [](auto corrupt) {
     HandImpedance hand;
     corrupt(hand);
-    EXPECT_THROW(check(hand), SetupError);
+    EXPECT_THROW(check_hand_impedance(hand), SetupError);
   };
   refuses([](HandImpedance& h) { h.stiffness.x() = -1.0; });
   refuses([](HandImpedance& h) { h.damping.y() = -1.0; });

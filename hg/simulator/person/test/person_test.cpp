@@ -16,14 +16,14 @@ constexpr double kGrasp = 0.7;
 
 model::ChainModel free_body() { return model::ChainModel::free_body({}, {.gravity = false}); }
 
-Person make(const Config& config) {
+Person make(const PersonConfig& config) {
   const model::ChainModel chain = free_body();
   return Person(config, chain, chain.frame("handle"), {});
 }
 
 // holds the origin at pitch 1.4, without tremor
-Config scripted() {
-  Config config;
+PersonConfig scripted() {
+  PersonConfig config;
   config.hand.tremor_rms = 0.0;
   config.script.start[4] = 1.4;
   config.script.start[kGripChannel] = 1.0;
@@ -70,7 +70,7 @@ TEST(Person, TakesAMovingHandleWithoutAJerk) {
 }
 
 TEST(Person, PlaysTheScriptFromTheGraspOn) {
-  Config config = scripted();
+  PersonConfig config = scripted();
   config.script.grasp_s = 1.5;
   config.script.start[kGripChannel] = 0.0;
   config.script.segments = {{1.0, 1.0, kWrenchChannel, Blend::kTo, 8.0}};
@@ -90,7 +90,7 @@ TEST(Person, PullsTheHandleToItsGoalThroughArmAndGrip) {
 }
 
 TEST(Person, FollowsAMovingGoalWithoutDragging) {
-  Config config = scripted();
+  PersonConfig config = scripted();
   config.hand.stiffness.setZero();
   config.hand.damping = {20, 20, 20};
   config.script.segments = {{0.0, 2.0, 0, Blend::kTo, 1.0}};
@@ -101,7 +101,7 @@ TEST(Person, FollowsAMovingGoalWithoutDragging) {
 }
 
 TEST(Person, ReleasedItOnlyPushesAsTheScriptSays) {
-  Config config = scripted();
+  PersonConfig config = scripted();
   config.hand.tremor_rms = 0.05;
   config.script.start[kGripChannel] = 0.0;
   config.script.start[kWrenchChannel + 2] = 5.0;  // along z of H
@@ -114,7 +114,7 @@ TEST(Person, ReleasedItOnlyPushesAsTheScriptSays) {
 }
 
 TEST(Person, HalfAGripIsHalfAHand) {
-  Config config = scripted();
+  PersonConfig config = scripted();
   Person whole = make(config);
   config.script.start[kGripChannel] = 0.5;
   Person half = make(config);
@@ -153,7 +153,7 @@ TEST(Person, AMouseThatTurnsHoldsTheOrientationToo) {
 }
 
 TEST(Person, BackFromTheMouseTheScriptDoesNotCatchUpAtOnce) {
-  Config config = scripted();
+  PersonConfig config = scripted();
   config.hand.stiffness.setZero();  // damper only
   config.script.segments = {{1.0, 1.0, 0, Blend::kTo, 1.0}};
   Person person = make(config);
@@ -166,7 +166,7 @@ TEST(Person, BackFromTheMouseTheScriptDoesNotCatchUpAtOnce) {
 }
 
 TEST(Person, AMouseThatLetsGoLetsGoAtOnceAndTakesHoldGently) {
-  Config config = scripted();
+  PersonConfig config = scripted();
   config.kind = PersonKind::kMouse;
   Person person = make(config);
   HandTarget target;
@@ -182,7 +182,7 @@ TEST(Person, AMouseThatLetsGoLetsGoAtOnceAndTakesHoldGently) {
 }
 
 TEST(Person, WithoutAPersonNothingPushesUntilATargetComes) {
-  Config config = scripted();
+  PersonConfig config = scripted();
   config.kind = PersonKind::kNone;
   Person person = make(config);
   HandleMotion handle{start_pose()};
@@ -194,8 +194,8 @@ TEST(Person, WithoutAPersonNothingPushesUntilATargetComes) {
   EXPECT_GT(hold(person, handle, 2.0, 4.0, target).norm(), 10.0);
 }
 
-Config walking() {
-  Config config = scripted();
+PersonConfig walking() {
+  PersonConfig config = scripted();
   config.script.walk.kind = WalkKind::kCheckpoints;
   config.script.walk.speed = 0.5;
   config.script.walk.vertical_bob = config.script.walk.lateral_bob = 0.0;
@@ -247,7 +247,7 @@ TEST(Person, WalksFromCheckpointToCheckpointAndKeepsTheScore) {
 }
 
 TEST(Person, WalkingItTurnsTheHandleAndKeepsItsHeight) {
-  Config config = walking();
+  PersonConfig config = walking();
   config.script.start[2] = -0.75;
   config.script.walk.checkpoints = {{{0.0, 0.0}, 1.5}};  // turn on the spot
   Person person = make(config);
@@ -259,7 +259,7 @@ TEST(Person, WalkingItTurnsTheHandleAndKeepsItsHeight) {
 }
 
 TEST(Person, TheSameCallsGiveTheSameBitsWithoutAllocating) {
-  Config config = walking();
+  PersonConfig config = walking();
   config.hand.tremor_rms = 0.05;
   Person person = make(config);
   Person copy = person;
@@ -282,7 +282,7 @@ TEST(Person, TheSameCallsGiveTheSameBitsWithoutAllocating) {
 }
 
 TEST(Person, RefusesANegativeStiffnessAndATimeBeforeTheStart) {
-  Config config = scripted();
+  PersonConfig config = scripted();
   config.hand.stiffness.x() = -1.0;
   EXPECT_THROW(make(config), SetupError);
   config = scripted();

@@ -16,7 +16,7 @@
 namespace hg::haptify {
 namespace {
 
-using studies::Verdict;
+using studies::DecayClass;
 
 const config::Scenario& walk() {
   static const config::Scenario scenario = config::load_scenario("models/scenarios/walk.yaml");
@@ -99,8 +99,8 @@ TEST(Pull, FeelsTheBodyUntilTheDeviceGivesNoMore) {
 
 TEST(Twist, CalmsDownUnlessTheBodyIsTooLight) {
   const person::HandImpedance hand = person::hand(person::HandPreset::kNormal);
-  EXPECT_EQ(twist(walk(), {}, hand, 0.08).verdict, Verdict::kStable);
-  EXPECT_NE(twist(walk(), {}, hand, 0.0005).verdict, Verdict::kStable);
+  EXPECT_EQ(twist(walk(), {}, hand, 0.08).verdict, DecayClass::kStable);
+  EXPECT_NE(twist(walk(), {}, hand, 0.0005).verdict, DecayClass::kStable);
 }
 
 TEST(OscillationOf, FindsFrequencyDampingAndAmplitude) {

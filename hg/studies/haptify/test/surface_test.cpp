@@ -14,7 +14,7 @@
 namespace hg::haptify {
 namespace {
 
-using studies::Verdict;
+using studies::DecayClass;
 
 const config::Scenario& walk() {
   static const config::Scenario scenario = config::load_scenario("models/scenarios/walk.yaml");
@@ -60,10 +60,10 @@ TEST(Slide, IsTheBodysOwnForce) {
 
 TEST(Knock, CalmsDownOnAMildSurfaceAndNotOnAStiffOneUnderALightBody) {
   const SurfaceConfig config;
-  EXPECT_EQ(knock(walk(), config, 1000.0, 20.0).verdict, Verdict::kStable);
+  EXPECT_EQ(knock(walk(), config, 1000.0, 20.0).verdict, DecayClass::kStable);
   config::Scenario light = walk();
   studies::set_free_twin(light, {.mass = 2.0, .damping = 2.0});
-  EXPECT_NE(knock(light, config, 50'000.0, 0.0).verdict, Verdict::kStable);
+  EXPECT_NE(knock(light, config, 50'000.0, 0.0).verdict, DecayClass::kStable);
 }
 
 TEST(FreeSpace, IsTheSameWithTheSameSeedOnly) {
@@ -102,7 +102,7 @@ TEST(Exploration, GoesAnotherWayWithAnotherSeed) {
 // The highest posture has m4 and q4+q5 at their limits; m1 to m3 turn about vertical axes.
 TEST(UnreachedSides, NamesTheLimitsThatEndTheWay) {
   const ShapeConfig config;  // many: the highest of few has other joints in the middle by chance
-  const checks::Workspace shape = measure_shape(walk().device, config, 1);
+  const checks::HandleWorkspace shape = measure_shape(walk().device, config, 1);
   EXPECT_LT(shape.volume, shape.box_volume);
   EXPECT_GT(shape.volume, 0.97 * shape.box_volume);
   const std::vector<UnreachedSide> sides = unreached_sides(walk().device, shape, config, 1);

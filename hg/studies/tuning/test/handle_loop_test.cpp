@@ -105,9 +105,9 @@ TEST(HandleLoop, IsStableWhereTheSimulationIs) {
 
 TEST(HandleLoop, ALateWrenchIsFeltLaterAndLessClearly) {
   const config::Scenario scenario = walk();
-  Device late = device_of(scenario.device);
+  TunedDevice late = device_of(scenario.device);
   late.wrench.delay_s += 3e-3;
-  const auto felt = [&](const Device& device) {
+  const auto felt = [&](const TunedDevice& device) {
     return feel(linearise(device, simulated(scenario.device), {}, person::HandImpedance{},
                           noise_of(scenario.device), posture_of(scenario)),
                 {}, unexpected_friction(scenario.device));

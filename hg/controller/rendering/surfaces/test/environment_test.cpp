@@ -53,7 +53,7 @@ TEST(Damping, BrakesOnlyTheWayInGrowsWithTheSpringAndNeverPulls) {
   surface.damping = 100;
   Led led({surface});
   const auto force = [&](double depth, double v) {
-    State state;
+    EnvironmentState state;
     led.environment.step({0, 0, 0.1}, Vector3d::Zero(), kNoPush, state);
     const Vector3d p(0, 0, -depth - 0.5 * kDt * v);  // in the middle of the sample at `depth`
     return led.environment.step(p, {0, 0, v}, kNoPush, state).force.z();
@@ -73,7 +73,7 @@ TEST(Damping, OfASurfaceWithoutAValueCatchesEveryBody) {
                      std::to_string(speed) + " m/s");
         const Surface floor = {.name = "floor", .shape = Plane{}, .stiffness = stiffness};
         const Environment environment({floor}, kDt, {mass, mass});
-        State state;
+        EnvironmentState state;
         const Vector3d push(0, 0, -10.0);
         Vector3d p(0, 0, 1e-3), v(0, 0, -speed);
         double back = 0.0, late = 0.0;
@@ -98,7 +98,7 @@ TEST(Damping, OfASurfaceWithoutAValueCatchesEveryBody) {
 TEST(Damping, OfASurfaceWithoutAValueFollowsTheMassOfTheBody) {
   const Surface floor = {.name = "floor", .shape = Plane{}, .stiffness = 2e4};
   const Environment set_up({floor}, kDt, {6.0, 6.0}), grown({floor}, kDt, {2.0, 2.0});
-  State of_set_up, of_grown;
+  EnvironmentState of_set_up, of_grown;
   for (const double z : {1e-3, -0.2e-3, -0.5e-3, -0.8e-3}) {
     const Vector3d p(0, 0, z), v(0, 0, -0.3);
     const Vector3d force = set_up.step(p, v, kNoPush, of_set_up).force;

@@ -92,7 +92,7 @@ inline double depth_in(const Surface& surface, const Vector3d& p_B, const Vector
 /// A handle that is led along a way.
 struct Led {
   Environment environment;
-  State state;
+  EnvironmentState state;
 
   explicit Led(std::vector<Surface> surfaces)
       : environment(std::move(surfaces), kDt, {kBody, kBody}) {}

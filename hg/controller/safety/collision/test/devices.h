@@ -12,7 +12,7 @@ namespace hg::collision {
 
 struct TestDevice {
   model::ChainModel chain;
-  Config config;
+  CollisionConfig config;
   Braking braking;
   std::vector<std::string> links_without;
   std::vector<Interval> range;

@@ -58,7 +58,7 @@ class Judge {
     return frame < 0 ? Pose{} : chain_.pose(frame);
   }
 
-  Config config_;
+  CollisionConfig config_;
   Braking braking_;
   model::ChainData chain_;
   Pairs pairs_;
@@ -128,7 +128,7 @@ TEST(Guard, ReportsFreeOnlyWhereBrakingStaysFree) {
   int needless = 0;
   for (int n = 0; n < 400; ++n) {
     wanderer.jump();
-    State state;
+    CollisionState state;
     const bool must_brake = guard.step(wanderer.q, wanderer.dq, true, state).must_brake;
     double smallest = kInfinity;
     for (std::size_t pair = 0; pair < device.config.pairs.watched.size(); ++pair) {
@@ -154,7 +154,7 @@ TEST(Guard, RemembersBoundsThatHold) {
   const unsigned seed = 12;
   SCOPED_TRACE("seed " + std::to_string(seed));
   Wanderer wanderer(device, seed);
-  State state;
+  CollisionState state;
   long distances = 0;
   int worst = 0;
   constexpr int kCycles = 20000;
@@ -183,7 +183,7 @@ TEST(Guard, BrakesInTimeWhenAJointGoesForACollision) {
   Guard guard(device.config, device.braking, device.chain);
   Judge judge(device);
   for (const double speed : {0.1, 0.5, 1.0, 2.0}) {
-    State state;
+    CollisionState state;
     VectorPM q = VectorPM::Zero(8);
     q << 0.0, 0.0, 0.0, 1.2, -0.7, 1.2, 0.3, 0.0;
     VectorPM dq = VectorPM::Zero(8);
@@ -207,14 +207,14 @@ TEST(Guard, BrakesInTimeWhenAJointGoesForACollision) {
 TEST(Guard, LetsADeviceLeaveAPlaceThatIsTooNear) {
   const TestDevice device = device_of(folding_urdf());
   Guard guard(device.config, device.braking, device.chain);
-  State state;
+  CollisionState state;
   VectorPM q = VectorPM::Zero(8);
   q << 0.0, 0.0, 0.0, 2.94, -0.7, 1.2, 0.3, 0.0;  // drop tube 15 mm from the first link
   VectorPM dq = VectorPM::Zero(8);
   EXPECT_FALSE(guard.step(q, dq, false, state).must_brake);
   EXPECT_FALSE(guard.step(q, dq, true, state).must_brake);
 
-  State away = state;
+  CollisionState away = state;
   dq[3] = -0.2;
   EXPECT_FALSE(guard.step(q, dq, true, away).must_brake);
   for (int n = 0; n < 3000; ++n) {
@@ -238,10 +238,10 @@ TEST(Guard, GivesTheSameBitsFromTheSameState) {
   Guard guard(device.config, device.braking, device.chain);
   Guard other(device.config, device.braking, device.chain);
   Wanderer wanderer(device, 13);
-  State state;
+  CollisionState state;
   for (int n = 0; n < 3000; ++n) {
     wanderer.move();
-    State copy = state;
+    CollisionState copy = state;
     const Prediction a = guard.step(wanderer.q, wanderer.dq, true, state);
     const Prediction b = other.step(wanderer.q, wanderer.dq, true, copy);
     ASSERT_EQ(a.report.distance, b.report.distance);
@@ -254,7 +254,7 @@ TEST(Guard, AllocatesNothing) {
   const TestDevice device = device_of(folding_urdf());
   Guard guard(device.config, device.braking, device.chain);
   Wanderer wanderer(device, 14);
-  State state;
+  CollisionState state;
   const AllocationCounter allocations;
   for (int n = 0; n < 2000; ++n) {
     wanderer.move();

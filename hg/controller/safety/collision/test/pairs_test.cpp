@@ -13,7 +13,7 @@
 namespace hg::collision {
 namespace {
 
-std::string name(const Config& config, int a, int b) {
+std::string name(const CollisionConfig& config, int a, int b) {
   return config.shapes[static_cast<std::size_t>(a)].name + " - " +
          config.shapes[static_cast<std::size_t>(b)].name;
 }

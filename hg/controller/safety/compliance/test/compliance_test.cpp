@@ -28,16 +28,17 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian() {
   return J;
 }
 
-TouchReport felt(const VectorM& torque, State& state, const VectorM& load = joints(0.0, 0.0)) {
+TouchReport felt(const VectorM& torque, ComplianceState& state,
+                 const VectorM& load = joints(0.0, 0.0)) {
   const Eigen::Matrix<double, 6, Eigen::Dynamic> J = jacobian();
-  return step(peaks(), kDt, {.torque = torque, .load = load, .J = J, .n_p = 1}, state);
+  return react_to_contact(peaks(), kDt, {.torque = torque, .load = load, .J = J, .n_p = 1}, state);
 }
 
 TEST(Compliance, NoiseIsNoContactWhateverItsSize) {
   for (const double sigma : {0.1, 1.0, 2.0}) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal(0.0, sigma);
-    State state;
+    ComplianceState state;
     double largest = 0.0;
     for (int k = 0; k < 100000; ++k) {
       largest = std::max(largest, felt(joints(normal(random), normal(random)), state).share);
@@ -48,7 +49,7 @@ TEST(Compliance, NoiseIsNoContactWhateverItsSize) {
 }
 
 TEST(Compliance, APushIsReportedWithinMillisecondsAndAtItsJoint) {
-  State state;
+  ComplianceState state;
   for (int k = 0; k < 1000; ++k) felt(joints(0.0, 0.0), state);
   int cycles = 0;
   while (!felt(joints(12.0, 0.0), state).is_reported) ASSERT_LT(++cycles, 3);
@@ -59,7 +60,7 @@ TEST(Compliance, APushIsReportedWithinMillisecondsAndAtItsJoint) {
 }
 
 TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
-  State quiet, noisy;
+  ComplianceState quiet, noisy;
   std::mt19937 random(2);
   std::normal_distribution<double> normal(0.0, 3.0);
   for (int k = 0; k < 5000; ++k) {
@@ -69,7 +70,7 @@ TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
   EXPECT_GT(threshold(peaks(), noisy, 0), 1.5 * threshold(peaks(), quiet, 0));
   // a person who leans harder and harder is detected at twice the least threshold at the latest
   const double least = threshold(peaks(), quiet, 0);
-  State leaned_on;
+  ComplianceState leaned_on;
   double push = 0.0;
   while (!felt(joints(push, 0.0), leaned_on).is_reported) {
     ASSERT_LT(push, 2.1 * least);
@@ -78,13 +79,13 @@ TEST(Compliance, AThresholdFollowsTheNoiseButNoSlowPush) {
 }
 
 TEST(Compliance, WhatMovesTheJointsRaisesTheThreshold) {
-  State state;
+  ComplianceState state;
   for (int k = 0; k < 100; ++k) felt(joints(10.0, 0.0), state, joints(90.0, 0.0));
   EXPECT_FALSE(state.is_reported);
 }
 
 TEST(Compliance, TheWrenchDoesTheSameToTheJointsAndTheGantryLeaves) {
-  State state;
+  ComplianceState state;
   const VectorM torque = joints(-20.0, -25.0);
   TouchReport report;
   for (int k = 0; k < 100; ++k) report = felt(torque, state);
@@ -99,7 +100,7 @@ TEST(Compliance, TheWrenchDoesTheSameToTheJointsAndTheGantryLeaves) {
 }
 
 TEST(Compliance, TheWrenchIsBounded) {
-  State state;
+  ComplianceState state;
   TouchReport report;
   for (int k = 0; k < 100; ++k) report = felt(joints(4000.0, -900.0), state);
   EXPECT_LE(report.wrench.head<3>().norm(), kForceMax * (1.0 + 1e-12));
@@ -107,7 +108,7 @@ TEST(Compliance, TheWrenchIsBounded) {
 }
 
 TEST(Compliance, AContactEnds) {
-  State state;
+  ComplianceState state;
   for (int k = 0; k < 10; ++k) felt(joints(50.0, 0.0), state);
   EXPECT_TRUE(state.is_reported);
   for (int k = 0; k < 100; ++k) felt(joints(0.0, 0.0), state);
@@ -116,13 +117,14 @@ TEST(Compliance, AContactEnds) {
 }
 
 TEST(Compliance, DoesNotAllocate) {
-  State state;
+  ComplianceState state;
   const Eigen::Matrix<double, 6, Eigen::Dynamic> J = jacobian();
   const VectorM limits = peaks();
   const AllocationCounter allocations;
   for (int k = 0; k < 100; ++k) {
-    step(limits, kDt, {.torque = joints(50.0, 1.0), .load = joints(1.0, 1.0), .J = J, .n_p = 1},
-         state);
+    react_to_contact(limits, kDt,
+                     {.torque = joints(50.0, 1.0), .load = joints(1.0, 1.0), .J = J, .n_p = 1},
+                     state);
   }
   EXPECT_EQ(allocations.count(), 0U);
 }

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kDt = 1e-3;
 
-Input with_force(double amplitude, double frequency_Hz, double t) {
-  Input input;
+PassivityInput with_force(double amplitude, double frequency_Hz, double t) {
+  PassivityInput input;
   input.f = Eigen::Vector3d(0.6, 0.0, 0.8) * amplitude *
             std::sin(2.0 * std::numbers::pi * frequency_Hz * t);
   input.mass = 2.0;
@@ -23,12 +23,12 @@ Input with_force(double amplitude, double frequency_Hz, double t) {
 
 // seconds until it is detected; infinity: not within 5 s
 double time_to_trip(double amplitude, double frequency_Hz, double pull = 0.0) {
-  const Config config = {.reaction = Reaction::kAct};
-  State state;
+  const PassivityConfig config = {.reaction = Reaction::kAct};
+  PassivityState state;
   for (int n = 0; n < 5000; ++n) {
-    Input input = with_force(amplitude, frequency_Hz, kDt * n);
+    PassivityInput input = with_force(amplitude, frequency_Hz, kDt * n);
     input.f.x() += pull;
-    if (step(config, kDt, input, state).oscillation >= 1.0) return kDt * n;
+    if (observe_energy(config, kDt, input, state).oscillation >= 1.0) return kDt * n;
   }
   return kInfinity;
 }
@@ -54,13 +54,13 @@ TEST(Passivity, LeavesAShakingHandAlone) {
 
 // The hand starts and stops hard: much force, of which nothing swings.
 TEST(Passivity, LeavesHardStartsAndStopsAlone) {
-  const Config config = {.reaction = Reaction::kAct};
-  State state;
+  const PassivityConfig config = {.reaction = Reaction::kAct};
+  PassivityState state;
   for (int n = 0; n < 4000; ++n) {
     const int phase = n % 1000;
-    Input input;
+    PassivityInput input;
     input.f.x() = phase < 150 ? 60.0 : (phase > 500 && phase < 650 ? -60.0 : 0.0);
-    EXPECT_LT(step(config, kDt, input, state).oscillation, 1.0) << n;
+    EXPECT_LT(observe_energy(config, kDt, input, state).oscillation, 1.0) << n;
   }
 }
 
@@ -72,40 +72,40 @@ TEST(Passivity, LeavesSlowAndGentleForcesAlone) {
 }
 
 TEST(Passivity, DoesNotCountImpacts) {
-  const Config config = {.reaction = Reaction::kAct};
-  State state;
+  const PassivityConfig config = {.reaction = Reaction::kAct};
+  PassivityState state;
   for (int n = 0; n < 3000; ++n) {
     // every 0.4 s, and rings down
     const double since = kDt * (n % 400);
-    Input input = with_force(30.0 * std::exp(-since / 0.05), 12.0, since);
+    PassivityInput input = with_force(30.0 * std::exp(-since / 0.05), 12.0, since);
     input.is_pushed_back = since < 0.05;
-    EXPECT_LT(step(config, kDt, input, state).oscillation, 1.0);
+    EXPECT_LT(observe_energy(config, kDt, input, state).oscillation, 1.0);
   }
 }
 
 TEST(Passivity, CountsShakingAgainstASurfaceLater) {
-  const Config config = {.reaction = Reaction::kAct};
-  State state;
+  const PassivityConfig config = {.reaction = Reaction::kAct};
+  PassivityState state;
   double at_s = kInfinity;
   for (int n = 0; n < 3000 && at_s == kInfinity; ++n) {
-    Input input = with_force(20.0, 6.0, kDt * n);
+    PassivityInput input = with_force(20.0, 6.0, kDt * n);
     input.is_pushed_back = true;
-    if (step(config, kDt, input, state).oscillation >= 1.0) at_s = kDt * n;
+    if (observe_energy(config, kDt, input, state).oscillation >= 1.0) at_s = kDt * n;
   }
   EXPECT_GT(at_s, 0.5);
   EXPECT_LT(at_s, 0.9);
 }
 
 TEST(Passivity, AddsDampingAtOnceAndRemovesItSlowly) {
-  const Config config = {.reaction = Reaction::kAct};
-  State state;
-  for (int n = 0; n < 1000; ++n) step(config, kDt, with_force(20.0, 6.0, kDt * n), state);
+  const PassivityConfig config = {.reaction = Reaction::kAct};
+  PassivityState state;
+  for (int n = 0; n < 1000; ++n) observe_energy(config, kDt, with_force(20.0, 6.0, kDt * n), state);
   EXPECT_NEAR(state.added.damping, 25.0, 0.1);
   EXPECT_NEAR(2.0 * state.added.inertia, 3.0, 0.01);
   double damped_s = 0.0;
   AddedImpedance before = state.added;
   for (int n = 0; n < 6000; ++n) {
-    step(config, kDt, with_force(0.0, 6.0, 0.0), state);
+    observe_energy(config, kDt, with_force(0.0, 6.0, 0.0), state);
     if (state.added.damping >= 24.0) damped_s += kDt;
     EXPECT_LE(before.damping - state.added.damping, 0.026);
     before = state.added;
@@ -117,40 +117,42 @@ TEST(Passivity, AddsDampingAtOnceAndRemovesItSlowly) {
 }
 
 TEST(Passivity, ObservesWithoutActing) {
-  Config config;
+  PassivityConfig config;
   config.reaction = Reaction::kObserve;
-  State state;
+  PassivityState state;
   double index = 0.0;
   for (int n = 0; n < 1000; ++n) {
-    index = std::max(index, step(config, kDt, with_force(20.0, 6.0, kDt * n), state).oscillation);
+    index = std::max(
+        index, observe_energy(config, kDt, with_force(20.0, 6.0, kDt * n), state).oscillation);
   }
   EXPECT_GE(index, 1.0);
   EXPECT_EQ(state.added.damping, 0.0);
-  EXPECT_EQ(check(config, {.tank = -1.0}, state).code, FaultCode::kNone);
+  EXPECT_EQ(passivity_fault(config, {.tank = -1.0}, state).code, FaultCode::kNone);
 }
 
 TEST(Passivity, StopsShakingThatAddedDampingDoesNotEnd) {
-  const Config config = {.reaction = Reaction::kAct};
-  State state;
+  const PassivityConfig config = {.reaction = Reaction::kAct};
+  PassivityState state;
   double stopped_s = kInfinity;
   for (int n = 0; n < 6000 && stopped_s == kInfinity; ++n) {
-    const PassivityReport report = step(config, kDt, with_force(20.0, 6.0, kDt * n), state);
-    if (check(config, report, state).code == FaultCode::kOscillation) stopped_s = kDt * n;
+    const PassivityReport report =
+        observe_energy(config, kDt, with_force(20.0, 6.0, kDt * n), state);
+    if (passivity_fault(config, report, state).code == FaultCode::kOscillation) stopped_s = kDt * n;
   }
   EXPECT_GT(stopped_s, 3.0);
   EXPECT_LT(stopped_s, 3.8);
 }
 
 TEST(Passivity, StopsWhatGivesMoreEnergyThanItsTankHolds) {
-  const Config config = {.reaction = Reaction::kAct};
-  State state;
+  const PassivityConfig config = {.reaction = Reaction::kAct};
+  PassivityState state;
   Fault fault;
   double given = 0.0;
   while (fault.code == FaultCode::kNone && given < 1000.0) {
     const PassivityReport report =
-        step(config, kDt, {.power_measured = 0.0, .power_rendered = 50.0}, state);
+        observe_energy(config, kDt, {.power_measured = 0.0, .power_rendered = 50.0}, state);
     given += kDt * 50.0;
-    fault = check(config, report, state);
+    fault = passivity_fault(config, report, state);
   }
   EXPECT_EQ(fault.code, FaultCode::kEnergy);
   EXPECT_NEAR(given, config.tank_start, 0.1);
@@ -163,8 +165,8 @@ TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
-    const Config config = {.reaction = Reaction::kAct};
-    State state;
+    const PassivityConfig config = {.reaction = Reaction::kAct};
+    PassivityState state;
     const double mass = 0.3 + 0.2 * seed;
     double v = 0.0, v_late = 0.0, taken = 0.0, push = 0.0;
     for (int n = 0; n < 20000; ++n) {
@@ -178,14 +180,14 @@ TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
       v = (v_before * (M / kDt - 0.5 * damping) + push) / (M / kDt + 0.5 * damping);
       const double mean = 0.5 * (v + v_before);
       v_late += 0.2 * (mean - v_late);
-      Input input = {.f = {push, 0.0, 0.0},
-                     .power_measured = push * v_late,
-                     .power_rendered = push * mean,
-                     .dissipation = damping * mean * mean,
-                     .mass = mass,
-                     .speed = std::abs(v)};
+      PassivityInput input = {.f = {push, 0.0, 0.0},
+                              .power_measured = push * v_late,
+                              .power_rendered = push * mean,
+                              .dissipation = damping * mean * mean,
+                              .mass = mass,
+                              .speed = std::abs(v)};
       taken += kDt * push * v_late;
-      step(config, kDt, input, state);
+      observe_energy(config, kDt, input, state);
       EXPECT_LE(0.5 * mass * (state.added.inertia - before.inertia),
                 before.damping * kDt + state.added.damping * kDt + 1e-12);
       if (state.tank < 0.0) break;  // the device is stopped
@@ -196,10 +198,10 @@ TEST(Passivity, PortTakesWhatIsStoredLessTheTank) {
 }
 
 TEST(Passivity, AllocatesNothing) {
-  const Config config = {.reaction = Reaction::kAct};
-  State state;
+  const PassivityConfig config = {.reaction = Reaction::kAct};
+  PassivityState state;
   const AllocationCounter allocations;
-  for (int n = 0; n < 1000; ++n) step(config, kDt, with_force(20.0, 6.0, kDt * n), state);
+  for (int n = 0; n < 1000; ++n) observe_energy(config, kDt, with_force(20.0, 6.0, kDt * n), state);
   EXPECT_EQ(allocations.count(), 0U);
 }
 
