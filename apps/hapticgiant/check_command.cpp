@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "apps/hapticgiant/check_report.h"
 #include "apps/hapticgiant/output_file.h"

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // on a terminal in place; elsewhere one line per measurement
-void tell(const std::string& what, std::size_t done, std::size_t total) {
+void show_progress(const std::string& what, std::size_t done, std::size_t total) {
   const bool is_terminal = isatty(STDERR_FILENO) != 0;
   if (is_terminal) {
     draw_error(done < total ? fmt::format("{}: {} of {}", what, done, total) : "");
@@ -53,13 +53,13 @@ haptify::Benchmark measure_goals(const HaptifyArguments& arguments) {
       scenario::load({.scenario = "walk",
                       .twin = arguments.twin.empty() ? "light" : arguments.twin,
                       .simulation = arguments.simulation});
-  return haptify::measure_goals(scenario, light, arguments.options, tell);
+  return haptify::measure_goals(scenario, light, arguments.options, show_progress);
 }
 
 haptify::Benchmark measure_all(const HaptifyArguments& arguments) {
   const config::Scenario scenario = scenario::load(
       {.scenario = "walk", .twin = arguments.twin, .simulation = arguments.simulation});
-  return haptify::measure(scenario, arguments.options, tell);
+  return haptify::measure(scenario, arguments.options, show_progress);
 }
 
 nlohmann::ordered_json results_json(const HaptifyArguments& arguments,

@@ -62,7 +62,7 @@ struct Observers {
 };
 
 // reports and records an intervention in the run
-void tell(Observers& observers, double time_s, std::string_view name, std::string_view what) {
+void notify(Observers& observers, double time_s, std::string_view name, std::string_view what) {
   observers.status_line.print(fmt::format("{:8.3f} s  {:<18} {}", time_s, name, what));
   observers.recording.event(time_s, name, what);
   if (observers.page != nullptr) observers.page->announce(time_s, name, what);
@@ -71,7 +71,7 @@ void tell(Observers& observers, double time_s, std::string_view name, std::strin
 // callback for changes by pages, at the time of `sample`
 page::RunPage::Note note(Observers& observers, const Sample& sample) {
   return [&observers, &sample](std::string_view name, const std::string& text) {
-    tell(observers, sample.record.time_s, name, text);
+    notify(observers, sample.record.time_s, name, text);
   };
 }
 
@@ -87,12 +87,12 @@ void observe(Observers& observers, const Sample& sample) {
     observers.fault_figures = analysis::figures_of(fault, observers.names, sample.sensors);
   }
   for (const analysis::News& news : observers.news.observe(sample)) {
-    tell(observers, sample.record.time_s, news.name, news.text);
+    notify(observers, sample.record.time_s, news.name, news.text);
   }
   observers.recording.push(sample);
   if (const auto event = observers.detector.observe(sample.record)) {
     observers.summary.add(*event);
-    tell(observers, event->time_s, event->name, event->what);
+    notify(observers, event->time_s, event->name, event->what);
   }
   if (observers.page != nullptr) observers.page->observe(sample, note(observers, sample));
 }
@@ -114,7 +114,7 @@ void tell_problems(Observers& observers, const std::string& text) {
 void check_recording(Observers& observers, double time_s) {
   const std::string why = observers.recording.news();
   if (!why.empty()) {
-    tell(observers, time_s, "recording", "has ended early, the run goes on: " + why);
+    notify(observers, time_s, "recording", "has ended early, the run goes on: " + why);
   }
 }
 
@@ -160,7 +160,7 @@ runtime::RuntimeOptions runtime_options(const PreparedRun& run, bool goes_on,
     options.slow_cycle_us = kSlowCycle * 1e6 / run.scenario.device.model.rate_Hz;
   options.thread = {.priority = arguments.priority, .cpu = arguments.cpu};
   // a simulated device waits for its controller: late cycles do no harm
-  options.tells_late_cycles = !arguments.device_address.empty();
+  options.reports_late_cycles = !arguments.device_address.empty();
   options.duration_s = arguments.duration_s.value_or(goes_on ? 0.0 : options.duration_s);
   if (page != nullptr) options.desk = &page->desk();
   options.stays_in_fault = options.stays_in_fault || page != nullptr;
@@ -280,8 +280,8 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   }
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
   if (run.is_machine) {
-    tell(observers, 0.0, "start test", run.start_test);
-    tell(observers, 0.0, "posture", run.posture);
+    notify(observers, 0.0, "start test", run.start_test);
+    notify(observers, 0.0, "posture", run.posture);
   } else if (run.remote != nullptr) {
     print_out("note        the device says that it is a simulation: no start test is required\n");
   }

@@ -238,7 +238,7 @@ void settle_law(DeviceConfig& device) {
 void check_rate(const DeviceConfig& device, double rate_Hz) {
   DeviceModel model = device.model;
   model.rate_Hz = rate_Hz;
-  check(model);
+  check_device_model(model);
   tracking::check_control_config(device.control, rate_Hz);
 }
 

@@ -113,7 +113,7 @@ class Cycle {
   const DeviceModel& device() const noexcept { return rendering_.device(); }
 
   /// Time of the next step, s; that of its record. The clock of all that is planned for a run.
-  double time_s() const noexcept { return static_cast<double>(state_.cycle) * device_.dt(); }
+  double time_s() const noexcept { return static_cast<double>(state_.cycle) * device().dt(); }
 
   /// Installs a callback per stage; the default probe does nothing.
   void watch(const StageProbe& probe) noexcept;

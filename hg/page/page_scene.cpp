@@ -226,16 +226,16 @@ std::vector<viewer_server::Setting> page_settings(const std::vector<config::Form
 
 viewer_server::SafetyView safety_view(const Sample& sample, const analysis::Names& names) {
   const CycleRecord& record = sample.record;
-  const auto told = [&](const Fault& fault) -> std::string {
+  const auto text_of = [&](const Fault& fault) -> std::string {
     if (fault.code == FaultCode::kNone) return {};
     const std::string figures = analysis::figures_of(fault, names, sample.sensors);
     return fmt::format("{} {}{}", static_cast<int>(fault.code), safety::rule_of(fault.code).meaning,
                        figures.empty() ? "" : " (" + figures + ")");
   };
   const bool is_stopped = record.fault.code != FaultCode::kNone;
-  return {.cause = told(record.fault),
+  return {.cause = text_of(record.fault),
           .release = is_stopped ? std::string(safety::rule_of(record.fault.code).release) : "",
-          .warning = told(record.warning),
+          .warning = text_of(record.warning),
           .panel = sample.operator_input.panel};
 }
 

@@ -131,7 +131,7 @@ bool Runtime::stop_is_requested() const noexcept {
 
 Schedule Runtime::new_schedule() const noexcept {
   return Schedule(now_ns(), std::llround(1e9 / (cycle_.device().rate_Hz * speed_)),
-                  report_.told_late_cycles ? 0 : Schedule::kMostToMakeUp);
+                  report_.reported_late_cycles ? 0 : Schedule::kMostToMakeUp);
 }
 
 // Waits until the next cycle is due. Cycles skipped by a pause are not late.
@@ -159,7 +159,7 @@ void Runtime::count_late(std::uint32_t cycles) noexcept {
   report_.overruns += cycles;
   overruns_in_a_row_ = cycles == 0 ? 0 : overruns_in_a_row_ + cycles;
   report_.most_overruns_in_a_row = std::max(report_.most_overruns_in_a_row, overruns_in_a_row_);
-  session_.input().late_cycles = report_.told_late_cycles ? cycles : 0;
+  session_.input().late_cycles = report_.reported_late_cycles ? cycles : 0;
 }
 
 void Runtime::hand_out(const Sample& sample) noexcept {
@@ -183,7 +183,7 @@ void Runtime::release(CommandFrame& command) noexcept {
 void Runtime::prepare_thread() noexcept {
   if (options_.is_fast) return;
   report_.thread = become_real_time(options_.thread);
-  report_.told_late_cycles = options_.tells_late_cycles && report_.thread.priority > 0;
+  report_.reported_late_cycles = options_.reports_late_cycles && report_.thread.priority > 0;
   cycle_.watch({.ended = &Runtime::stage_ended, .listener = this});
 }
 

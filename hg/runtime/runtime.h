@@ -55,7 +55,7 @@ struct RuntimeOptions {
   /// true: late cycles are reported to the cycle, so that too many stop the device, and none is
   /// made up for; for a device that does not wait for its controller. Only with a real-time thread;
   /// otherwise late cycles are only counted.
-  bool tells_late_cycles = false;
+  bool reports_late_cycles = false;
 };
 
 /// Throws SetupError naming the option that is out of range.
@@ -70,7 +70,7 @@ struct RuntimeReport {
   std::uint64_t allocations = 0;  ///< Heap allocations inside the loop
   long page_faults = 0;           ///< Page faults inside the loop
   ThreadReport thread;            ///< Real-time properties of the thread, in real time
-  bool told_late_cycles = false;  ///< Late cycles were reported to the cycle
+  bool reported_late_cycles = false;  ///< Late cycles were reported to the cycle
   bool stop_timed_out = false;    ///< Still moving when only the brakes were left to stop it
   Histogram wake_up_us;           ///< Wake-up delay after a cycle was due, in real time
   std::array<Histogram, kStageCount> stage_us;  ///< Durations of the cycle's stages, in real time

@@ -25,7 +25,7 @@ analysis::Timing timing_of(const runtime::RuntimeOptions& options,
                              .page_faults = report.page_faults,
                              .overruns = report.overruns,
                              .most_overruns_in_a_row = report.most_overruns_in_a_row,
-                             .overruns_stop = report.told_late_cycles,
+                             .overruns_stop = report.reported_late_cycles,
                              .wake_up_us = report.wake_up_us};
   for (int i = 0; i < kStageCount; ++i) {
     const Histogram& times = report.stage_us[index(i)];

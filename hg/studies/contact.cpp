@@ -122,7 +122,7 @@ ContactRun play(const config::Scenario& walk, const ContactConfig& config) {
     if (force > 0.0) run.contact += dt;
     if (since < config.settled) run.impulse += dt * force;
     if (since >= config.settled) run.settled_force = std::max(run.settled_force, force);
-    if (record.touch.is_reported && run.told < 0.0) run.told = since;
+    if (record.touch.is_reported && run.reported < 0.0) run.reported = since;
     if (record.mode != Mode::kRunning && run.stopped < 0.0) run.stopped = since;
     if (record.fault.code != FaultCode::kNone) run.fault = record.fault.code;
   }
@@ -139,7 +139,7 @@ void take_worse(const ContactRun& run, ContactRun& worst) {
   worst.impulse = std::max(worst.impulse, run.impulse);
   worst.contact = std::max(worst.contact, run.contact);
   worst.compression = std::max(worst.compression, run.compression);
-  worst.told = std::max(worst.told, run.told);
+  worst.reported = std::max(worst.reported, run.reported);
   worst.stopped = std::max(worst.stopped, run.stopped);
   if (run.fault != FaultCode::kNone) worst.fault = run.fault;
 }
@@ -161,7 +161,7 @@ nlohmann::ordered_json json_of(const ContactRun& run) {
                                  {"impulse_Ns", run.impulse},
                                  {"contact_s", run.contact},
                                  {"max_compression_m", run.compression}};
-  if (run.told >= 0.0) json["told_s"] = run.told;
+  if (run.reported >= 0.0) json["reported_s"] = run.reported;
   if (run.stopped >= 0.0) json["stopped_s"] = run.stopped;
   if (run.fault != FaultCode::kNone) json["fault"] = to_string(run.fault);
   return json;

@@ -66,7 +66,7 @@ struct FaultCase {
   /// all travel from there on; as a share of its stopping distance.
   double travel_share = 0.0;
   double energy = 0.0;           ///< energy given to the person from the stop on, J
-  bool is_told_to_fall = false;  ///< rule 323 has reported that a brake does not hold
+  bool has_reported_slip = false;  ///< rule 323 has reported that a brake does not hold
   bool is_complete = true;       ///< the recording has every cycle exactly once, in order
 };
 

@@ -19,7 +19,7 @@ bool has_fallen(const FaultCase& result) {
     return injection.kind->part == faults::Part::kBrake &&
            injection.kind->effect == faults::Effect::kDropped;
   };
-  return result.is_told_to_fall && result.travel_share > 1.0 &&
+  return result.has_reported_slip && result.travel_share > 1.0 &&
          (is_weak(result.injection) || (result.other && is_weak(*result.other)));
 }
 
@@ -64,7 +64,7 @@ ordered_json json_of(const Campaign& campaign, const FaultCase& result) {
   entry["worst_distance_m"] = result.worst_distance;
   entry["travel_share"] = result.travel_share;
   entry["energy_J"] = result.energy;
-  if (result.is_told_to_fall) entry["brake_slips"] = true;
+  if (result.has_reported_slip) entry["brake_slips"] = true;
   if (result.other) entry["and"] = fault_text(*result.other);
   entry["recording_complete"] = result.is_complete;
   entry["has_fallen"] = has_fallen(result);

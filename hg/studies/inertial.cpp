@@ -69,6 +69,7 @@ class Judge {
  public:
   Judge(const config::DeviceConfig& device, const UnitSet& units)
       : model_(device.model),
+        chain_(model_.chain),
         dt_(device.model.dt()),
         root_(frames_of(device, units.links).front()) {}
 
@@ -162,6 +163,7 @@ class Judge {
   }
 
   DeviceModel model_;
+  model::ChainData chain_;
   double dt_;
   int root_;
   Moment before_, last_;

@@ -159,7 +159,7 @@ StabilityMap make_stability_map(const config::Scenario& scenario, const Stabilit
   const auto hand_of = [&](std::size_t row) -> const person::HandImpedance& {
     return hands[row % hands.size()].hand;
   };
-  const auto told = [&](std::size_t before) {
+  const auto progress_from = [&](std::size_t before) {
     return [&progress, before, total](std::size_t done, std::size_t) {
       if (progress) progress(before + done, total);
     };
@@ -171,7 +171,7 @@ StabilityMap make_stability_map(const config::Scenario& scenario, const Stabilit
         row.outcomes[i % columns] =
             kick(scenario, config, hand_of(i / columns), config.mass[i % columns], row.damping);
       },
-      told(0));
+      progress_from(0));
   do_all(
       map.rows.size(),
       [&](std::size_t i) {
@@ -180,7 +180,7 @@ StabilityMap make_stability_map(const config::Scenario& scenario, const Stabilit
           return kick(scenario, config, hand_of(i), mass, row.damping).verdict;
         });
       },
-      told(cells));
+      progress_from(cells));
   return map;
 }
 

@@ -46,7 +46,7 @@ class Page : public std::enable_shared_from_this<Page> {
     write();
   }
 
-  void tell(Text event) {
+  void notify(Text event) {
     if (events_.size() == kMaxEvents) {
       events_.pop_front();
       ++hub_.dropped;
@@ -109,7 +109,7 @@ class Page : public std::enable_shared_from_this<Page> {
     if (!refusal.empty()) return refuse(command.id, refusal);
     command.is_done = true;
     hub_.put_command(command);
-    tell(to_text(encode_answer(command.id, {})));
+    notify(to_text(encode_answer(command.id, {})));
   }
 
   void hold(double sequence) {
@@ -122,7 +122,7 @@ class Page : public std::enable_shared_from_this<Page> {
 
   void refuse(double id, std::string_view reason) {
     ++hub_.refused;
-    tell(to_text(encode_answer(id, reason)));
+    notify(to_text(encode_answer(id, reason)));
   }
 
   void write() {

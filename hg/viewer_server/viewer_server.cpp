@@ -57,9 +57,9 @@ void Hub::join(const std::shared_ptr<Page>& page) {
   page->number = next_page++;
   pages.insert(page);
   clients = pages.size();
-  page->tell(to_text(encode_welcome(page->number)));
-  for (const Text& event : events) page->tell(event);
-  if (values) page->tell(values);
+  page->notify(to_text(encode_welcome(page->number)));
+  for (const Text& event : events) page->notify(event);
+  if (values) page->notify(values);
   if (newest_frame) page->show(newest_frame);
 }
 
@@ -85,7 +85,7 @@ bool Hub::put_command(Command command) {
 
 void Hub::answer(std::uint64_t page, const Text& answer) {
   for (const auto& candidate : pages) {
-    if (candidate->number == page) candidate->tell(answer);
+    if (candidate->number == page) candidate->notify(answer);
   }
 }
 
@@ -97,7 +97,7 @@ void Hub::show(Text frame) {
 void Hub::announce(Text event) {
   if (events.size() == kMaxEvents) events.pop_front();
   events.push_back(event);
-  for (const auto& page : pages) page->tell(event);
+  for (const auto& page : pages) page->notify(event);
 }
 
 namespace {
@@ -236,7 +236,7 @@ struct ViewerServer::Impl {
     }
     if (outbox.values) {
       hub.values = to_text(std::move(*outbox.values));
-      for (const auto& page : hub.pages) page->tell(hub.values);
+      for (const auto& page : hub.pages) page->notify(hub.values);
     }
     if (outbox.view && hub.desk != nullptr) {
       outbox.view->safety.stop_pressed_by = hub.desk->stop_pressed_by();

@@ -67,7 +67,7 @@ def contact_case(**more):
     return {"hit_by": "wrist", "body_part": "upper_arm", "speed_m_per_s": 0.5, "is_clamped": True,
             "permissible_transient_N": 150.0, "permissible_quasi_static_N": 75.0,
             "permissible_pressure_N_per_cm2": 60.0, "without": run | {"max_force_N": 151.0},
-            "with": run | {"told_s": 0.012}} | more
+            "with": run | {"reported_s": 0.012}} | more
 
 
 class Contact(Reports):

@@ -190,7 +190,7 @@ std::string joint_out_of_singularity(const config::DeviceConfig& device, const S
   constexpr double kStep = 1e-2;
   const DeviceModel& model = device.model;
   model::ChainData chain(model.chain);
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.nv());
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.chain.nv());
   double best = 0.0;
   int joint = 0;
   for (int i = 0; i < model.n_m; ++i) {

@@ -52,7 +52,7 @@ DeviceStation::DeviceStation(const config::Scenario& scenario,
       interrupted_(interrupted),
       print_(std::move(print)) {}
 
-Observation DeviceStation::live(Wish wish) {
+Observation DeviceStation::advance(Wish wish) {
   Sample& sample = session_.sample();
   session_.read();
   sample.operator_input.request = request(wish);
@@ -71,9 +71,9 @@ Observation DeviceStation::live(Wish wish) {
   return seen;
 }
 
-void DeviceStation::ask(Act act, const std::string& words) {
+void DeviceStation::prompt(Act act, const std::string& words) {
   report("-> " + words);
-  operator_.ask(act);
+  operator_.prompt(act);
 }
 
 void DeviceStation::report(const std::string& words) {

@@ -28,8 +28,8 @@ class DeviceStation final : public Station {
   DeviceStation(const config::Scenario& scenario, std::unique_ptr<device::Device> device,
                 bool is_simulated, const std::atomic<bool>& interrupted, Print print);
 
-  Observation live(Wish wish) override;
-  void ask(Act act, const std::string& words) override;
+  Observation advance(Wish wish) override;
+  void prompt(Act act, const std::string& words) override;
   void report(const std::string& words) override;
 
   /// Switches the drives off.

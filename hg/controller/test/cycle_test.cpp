@@ -676,10 +676,11 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
 // continues.
 TEST(Cycle, ASnapshotInContactContinuesBitForBitInAnotherCycle) {
   DeviceModel device = rendering::unlimited_device();
-  device.chain.update_poses(
+  model::ChainData chain(device.chain);
+  chain.update_poses(
       (Eigen::VectorXd(8) << Eigen::Vector2d::Zero(), Eigen::VectorXd(kPosture)).finished());
-  const Eigen::Vector3d elbow = device.chain.pose(device.elbow).p;
-  const Eigen::Vector3d handle = device.chain.pose(device.handle).p;
+  const Eigen::Vector3d elbow = chain.pose(device.elbow).p;
+  const Eigen::Vector3d handle = chain.pose(device.handle).p;
   CartesianLimit wall = {.name = "elbow", .frame = device.elbow};
   for (int axis = 0; axis < 3; ++axis) {
     wall.axes[static_cast<std::size_t>(axis)] = {

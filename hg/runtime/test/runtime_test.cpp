@@ -451,12 +451,12 @@ TEST(Runtime, ReportsMissedCyclesWhereTheThreadIsRealTime) {
   for (const bool keeps_time : {false, true}) {
     RuntimeReport report;
     const auto late =
-        late_cycles({.duration_s = 0.2, .tells_late_cycles = true}, keeps_time, report);
+        late_cycles({.duration_s = 0.2, .reports_late_cycles = true}, keeps_time, report);
     EXPECT_GE(report.overruns, 4u);
     ASSERT_GT(late.size(), 20u);
-    EXPECT_EQ(report.told_late_cycles, report.thread.priority > 0);
+    EXPECT_EQ(report.reported_late_cycles, report.thread.priority > 0);
     // 25 ms at 200 Hz: at least four periods were missed by then
-    EXPECT_EQ(late[20] >= 4, report.told_late_cycles) << late[20];
+    EXPECT_EQ(late[20] >= 4, report.reported_late_cycles) << late[20];
   }
 }
 
@@ -470,10 +470,10 @@ TEST(Runtime, DoesNotReportLateCyclesOfADeviceThatWaits) {
 TEST(Runtime, DoesNotReportLateCyclesOfAnOrdinaryThread) {
   RuntimeReport report;
   const auto late = late_cycles(
-      {.duration_s = 0.2, .thread = {.priority = 0}, .tells_late_cycles = true}, false, report);
+      {.duration_s = 0.2, .thread = {.priority = 0}, .reports_late_cycles = true}, false, report);
   EXPECT_EQ(report.thread.priority, 0);
   EXPECT_EQ(report.thread.priority_error, 0);  // it was not requested
-  EXPECT_FALSE(report.told_late_cycles);
+  EXPECT_FALSE(report.reported_late_cycles);
   for (const std::uint32_t cycles : late) EXPECT_EQ(cycles, 0u);
 }
 

@@ -43,9 +43,9 @@ void RunRecording::event(double time_s, std::string_view name, std::string_view 
 }
 
 std::string RunRecording::news() {
-  if (!recorder_ || has_told_) return {};
+  if (!recorder_ || has_reported_) return {};
   const std::string error = recorder_->error();
-  has_told_ = !error.empty();
+  has_reported_ = !error.empty();
   return error;
 }
 

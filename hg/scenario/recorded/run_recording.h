@@ -50,7 +50,7 @@ class RunRecording {
   bool is_always_, is_waiting_;
   std::unique_ptr<recording::Recorder> recorder_;
   std::unique_ptr<recording::FlightRecorder> flight_;
-  bool has_told_ = false;
+  bool has_reported_ = false;
   FaultCode fault_ = FaultCode::kNone;  ///< fault of the last sample
   std::string cause_;                   ///< cause of a stop that is not written yet; empty = none
   double write_at_s_ = 0.0;

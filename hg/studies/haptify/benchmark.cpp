@@ -17,7 +17,7 @@ std::vector<std::uint64_t> Group::seeds() const {
 void Group::do_all(const std::string& what, std::size_t count,
                    const std::function<void(std::size_t)>& work) const {
   studies::do_all(count, work, [&](std::size_t done, std::size_t total) {
-    if (told) told(what, done, total);
+    if (progress) progress(what, done, total);
   });
 }
 
@@ -51,9 +51,9 @@ nlohmann::json as_json(const studies::FreeTwin& body) {
 }
 
 Benchmark measure(const config::Scenario& scenario, const HaptifyOptions& options,
-                  const Told& told) {
+                  const Progress& progress) {
   Benchmark result = {.device = scenario.device.name};
-  const Group group = {scenario, options, told, result};
+  const Group group = {scenario, options, progress, result};
   add_workspace(group);
   add_free_space(group);
   add_sources(group);

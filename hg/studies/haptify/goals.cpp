@@ -166,10 +166,10 @@ void add_presses(const Group& group) {
 }  // namespace
 
 Benchmark measure_goals(const config::Scenario& scenario, const config::Scenario& light,
-                        const HaptifyOptions& options, const Told& told) {
+                        const HaptifyOptions& options, const Progress& progress) {
   Benchmark result = {.device = scenario.device.name};
-  const Group group = {scenario, options, told, result};
-  const Group with_light_body = {light, options, told, result};
+  const Group group = {scenario, options, progress, result};
+  const Group with_light_body = {light, options, progress, result};
   add_transparency(group, 10.0);
   add_transparency(group, 40.0);
   add_latencies(group);

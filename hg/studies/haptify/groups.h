@@ -27,7 +27,7 @@ struct Play {
 struct Group {
   const config::Scenario& scenario;
   const HaptifyOptions& options;
-  const Told& told;
+  const Progress& progress;
   Benchmark& out;
 
   /// Seeds of the repetitions.

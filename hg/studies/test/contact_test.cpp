@@ -34,8 +34,8 @@ TEST(Contact, IsToldInMilliseconds) {
     const ContactRun run = hit(walk, config, {"chest", point, 0.25}, true, 1);
     EXPECT_NEAR(run.hit_speed, 0.25, 0.03) << point.name;
     EXPECT_GT(run.force, 10.0) << point.name;
-    ASSERT_GE(run.told, 0.0) << point.name;
-    EXPECT_LT(run.told, 0.02) << point.name;
+    ASSERT_GE(run.reported, 0.0) << point.name;
+    EXPECT_LT(run.reported, 0.02) << point.name;
   }
 }
 

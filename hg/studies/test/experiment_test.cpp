@@ -21,16 +21,16 @@ config::Scenario walk_scenario() { return config::load_scenario("models/scenario
 
 TEST(DoAll, DoesEverythingOnceAndCounts) {
   std::vector<std::atomic<int>> done(50);
-  std::vector<std::size_t> told;
+  std::vector<std::size_t> progress;
   do_all(
       done.size(), [&](std::size_t i) { ++done[i]; },
       [&](std::size_t now, std::size_t total) {
         EXPECT_EQ(total, 50u);
-        told.push_back(now);
+        progress.push_back(now);
       });
   for (const auto& times : done) EXPECT_EQ(times, 1);
-  ASSERT_EQ(told.size(), 50u);
-  for (std::size_t i = 0; i < told.size(); ++i) EXPECT_EQ(told[i], i + 1);
+  ASSERT_EQ(progress.size(), 50u);
+  for (std::size_t i = 0; i < progress.size(); ++i) EXPECT_EQ(progress[i], i + 1);
 }
 
 TEST(DoAll, HandsAnExceptionOn) {

@@ -1,4 +1,4 @@
-// Faults on purpose in closed loop: what is noticed, what is harmless, and that the campaign tells.
+// Faults on purpose in closed loop: what is noticed, what is harmless, and that the campaign reports it.
 
 #include <gtest/gtest.h>
 
@@ -97,7 +97,7 @@ TEST(PlayFault, AGantryEncoderThatDriftsSlowlyIsSeenInTime) {
   }
 }
 
-TEST(PlayFault, AnArmThatFallsBecauseItsBrakeDoesNotHoldIsWatchedToTheEndAndTold) {
+TEST(PlayFault, AFallingArmIsWatchedToTheEndAndReported) {
   const faults::Injection weak = {
       .kind = faults::find_kind("brake_weak"), .index = 4, .from_s = 2.0};
   const faults::Injection stop = {.kind = faults::find_kind("emergency_stop"), .from_s = 4.0};
@@ -106,7 +106,7 @@ TEST(PlayFault, AnArmThatFallsBecauseItsBrakeDoesNotHoldIsWatchedToTheEndAndTold
                  {.phase = Phase::kPair, .injection = weak, .other = stop}, {}, 10.0);
   EXPECT_EQ(result.outcome, Outcome::kNoticed);
   EXPECT_GT(result.travel_share, 1.0);
-  EXPECT_TRUE(result.is_told_to_fall);
+  EXPECT_TRUE(result.has_reported_slip);
 }
 
 TEST(PlayFault, AnEncoderThatJumpsIsNamedAndNotTheCollisionThatItSeemsToBe) {
@@ -149,12 +149,12 @@ TEST(Campaign, CountsAnArmThatNoSoftwareHoldsByItself) {
                       .other = faults::Injection{.kind = faults::find_kind("emergency_stop")},
                       .outcome = Outcome::kNoticed,
                       .travel_share = 3.0,
-                      .is_told_to_fall = true};
+                      .has_reported_slip = true};
   campaign.cases = {fallen};
   EXPECT_TRUE(is_passed(campaign));
   EXPECT_TRUE(to_json(campaign)["cases"][0]["has_fallen"].get<bool>());
-  campaign.cases[0].is_told_to_fall = false;
-  EXPECT_FALSE(is_passed(campaign)) << "nobody was told";
+  campaign.cases[0].has_reported_slip = false;
+  EXPECT_FALSE(is_passed(campaign)) << "not reported";
   campaign.cases = {fallen};
   campaign.cases[0].injection.kind = faults::find_kind("motor_dead");
   EXPECT_FALSE(is_passed(campaign)) << "all brakes held";
@@ -175,12 +175,12 @@ TEST(Campaign, FailsForAnUnnoticedFaultAndForAnExceededBound) {
   EXPECT_FALSE(is_passed(campaign));
   EXPECT_TRUE(to_json(campaign)["cases"][0]["passed"].get<bool>());
   EXPECT_FALSE(to_json(campaign)["cases"][1]["passed"].get<bool>());
-  for (const auto& spoil :
+  for (const auto& change :
        {+[](FaultCase& c) { c.peak_force = 300.0; }, +[](FaultCase& c) { c.worst_excess = 0.2; },
         +[](FaultCase& c) { c.is_complete = false; }, +[](FaultCase& c) { c.travel_share = 1.1; },
         +[](FaultCase& c) { c.energy = 40.0; }}) {
     bad = good;
-    spoil(bad);
+    change(bad);
     campaign.cases = {bad};
     EXPECT_FALSE(is_passed(campaign));
   }

@@ -1,4 +1,4 @@
-// Many seeds of a scenario: each one is itself, and the table tells the worst.
+// Many seeds of a scenario: each one is itself, and the table names the worst.
 
 #include "hg/studies/seed_ranges.h"
 

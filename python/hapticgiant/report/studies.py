@@ -18,7 +18,7 @@ def middle(values):
 # contact with a bystander
 
 CONTACT_HEAD = ["by", "on", "m/s", "N off", "N on", "allowed", "N/cm^2", "Ns", "ms", "later N off",
-                "later N on", "allowed", "told ms", "stop ms"]
+                "later N on", "allowed", "reported ms", "stop ms"]
 
 
 def is_too_much(case, run):
@@ -46,7 +46,7 @@ def contact_row(case):
             force(on["max_force_N"], transient), f"{transient:.0f}",
             both("max_pressure_N_per_cm2", 0), both("impulse_Ns", 1), both("contact_s", 0, 1e3),
             force(off["settled_force_N"], settled), force(on["settled_force_N"], settled),
-            f"{settled:.0f}", time(on, "told_s"), f"{time(off, 'stopped_s')} / {time(on, 'stopped_s')}"]
+            f"{settled:.0f}", time(on, "reported_s"), f"{time(off, 'stopped_s')} / {time(on, 'stopped_s')}"]
 
 
 def contact_figure(results):

@@ -28,7 +28,7 @@ TEST(DeviceStation, FaultsOfTheComputerActInAStartTest) {
   DeviceStation station = bench.station();
   FaultCode fault = FaultCode::kNone;  // once the drives are on
   for (int k = 0; k < 5000 && fault == FaultCode::kNone; ++k) {
-    fault = station.live(Wish::kArm).fault;
+    fault = station.advance(Wish::kArm).fault;
   }
   EXPECT_EQ(fault, FaultCode::kCycleOverrun);
 }
@@ -36,11 +36,11 @@ TEST(DeviceStation, FaultsOfTheComputerActInAStartTest) {
 TEST(DeviceStation, AnInterruptionEndsIt) {
   Bench bench;
   DeviceStation station = bench.station();
-  EXPECT_NO_THROW(station.live(Wish::kTare));
+  EXPECT_NO_THROW(station.advance(Wish::kTare));
   bench.interrupted = true;
-  EXPECT_THROW(station.live(Wish::kTare), Ended);
+  EXPECT_THROW(station.advance(Wish::kTare), Ended);
   EXPECT_EQ(station.end(), FaultCode::kNone);
-  station.ask(Act::kLean, "lean on the handle");
+  station.prompt(Act::kLean, "lean on the handle");
   EXPECT_EQ(bench.printed, std::vector<std::string>{"-> lean on the handle"});
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPeriod = 0.01;
 
-/// A machine and a person in one: what is requested happens at once, unless a test corruptions it.
+/// A machine and a person in one: what is requested happens at once, unless a test changes it.
 /// Faults stay until they are reset.
 class Machine final : public Station {
  public:

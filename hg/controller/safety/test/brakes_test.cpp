@@ -37,7 +37,7 @@ struct Dark {
   }
   // samples until it is reported; -1: not within 2000
   template <typename Change>
-  int until_told(Change change) {
+  int until_reported(Change change) {
     for (int k = 1; k <= 2000; ++k) {
       change(sensors);
       if (step().code == FaultCode::kBrakesSlip) return k;
@@ -56,14 +56,14 @@ void turn_both(SensorFrame& s) {
 TEST(Brakes, AnAxisThatMovesWithItsBrakeClosedIsSeenByEitherEncoder) {
   for (const auto turn : {turn_link, turn_motor, turn_both}) {
     Dark dark;
-    EXPECT_NEAR(dark.until_told(turn), 103, 1);  // 0.1 rad and three samples
+    EXPECT_NEAR(dark.until_reported(turn), 103, 1);  // 0.1 rad and three samples
     EXPECT_EQ(dark.state.slip.index, 4);
     EXPECT_GT(dark.state.slip.value, dark.state.slip.limit);
   }
   Dark without_motors(0.0, false);
-  EXPECT_NEAR(without_motors.until_told(turn_link), 103, 1);
+  EXPECT_NEAR(without_motors.until_reported(turn_link), 103, 1);
   Dark gantry;
-  EXPECT_NEAR(gantry.until_told([](SensorFrame& s) { s.q_p[1] -= 1e-3; }), 53, 1);  // 0.05 m
+  EXPECT_NEAR(gantry.until_reported([](SensorFrame& s) { s.q_p[1] -= 1e-3; }), 53, 1);  // 0.05 m
   EXPECT_EQ(gantry.state.slip.index, 7);
 }
 
@@ -72,10 +72,10 @@ TEST(Brakes, OtherSensorsThatAreWrongHideNothing) {
   dark.sensors.a_S[0] = dark.sensors.w_S[1] = kNan;
   dark.sensors.q_m[2] = kNan;
   dark.sensors.driver_fault = FaultCode::kDriveFault;
-  EXPECT_NEAR(dark.until_told(turn_both), 103, 1);
+  EXPECT_NEAR(dark.until_reported(turn_both), 103, 1);
   EXPECT_EQ(dark.state.slip.index, 4);
   Dark frozen;  // the motor encoder of the joint that falls
-  EXPECT_NEAR(frozen.until_told(turn_link), 103, 1);
+  EXPECT_NEAR(frozen.until_reported(turn_link), 103, 1);
 }
 
 TEST(Brakes, AnEncoderThatGivesNoNumberIsTakenFromWhereItGivesOneAgain) {
@@ -83,22 +83,22 @@ TEST(Brakes, AnEncoderThatGivesNoNumberIsTakenFromWhereItGivesOneAgain) {
   dark.sensors.q_m[4] = kNan;
   for (int k = 0; k < 10; ++k) EXPECT_EQ(dark.step().code, FaultCode::kNone);
   dark.sensors.q_m[4] = 0.0;
-  EXPECT_NEAR(dark.until_told(turn_link), 103, 1);
+  EXPECT_NEAR(dark.until_reported(turn_link), 103, 1);
 }
 
 TEST(Brakes, ASpeedLeavesAShareOfTheStoppingDistanceForTheTimeOfAStop) {
   Dark fast(2.0);  // its rating: all of 0.8 rad
-  EXPECT_NEAR(fast.until_told(turn_both), 903, 2);
+  EXPECT_NEAR(fast.until_reported(turn_both), 903, 2);
   Dark slow(0.25);  // an eighth
-  EXPECT_NEAR(slow.until_told(turn_both), 203, 2);
+  EXPECT_NEAR(slow.until_reported(turn_both), 203, 2);
   Dark late(2.0);
   for (int k = 0; k < 1000; ++k) ASSERT_EQ(late.step().code, FaultCode::kNone);
-  EXPECT_NEAR(late.until_told(turn_both), 103, 1) << "it came to rest in time";
+  EXPECT_NEAR(late.until_reported(turn_both), 103, 1) << "it came to rest in time";
 }
 
 TEST(Brakes, ABrakeThatSlippedIsNotTrustedAgain) {
   Dark dark;
-  dark.until_told([](SensorFrame& s) { s.q_m[4] += 0.05; });
+  dark.until_reported([](SensorFrame& s) { s.q_m[4] += 0.05; });
   dark.sensors.q_m[4] = 0.0;
   for (const bool is_powered : {false, true, false}) {
     EXPECT_EQ(dark.step(is_powered).code, FaultCode::kBrakesSlip);
@@ -130,7 +130,7 @@ TEST(Brakes, AMissingSampleIsNotJudged) {
   Dark dark;
   dark.sensors.q_m.setZero();
   dark.sensors.driver_fault = FaultCode::kDeviceSilent;
-  EXPECT_EQ(dark.until_told([](SensorFrame& s) { s.q_m[4] += 0.05; }), -1);
+  EXPECT_EQ(dark.until_reported([](SensorFrame& s) { s.q_m[4] += 0.05; }), -1);
 }
 
 }  // namespace

@@ -13,25 +13,25 @@
 namespace hg::haptify {
 namespace {
 
-struct Told {
+struct Report {
   double at_s = kInfinity;
   Shaking what = Shaking::kNone;
   Fault fault;
 };
 
-Told watched(const config::Scenario& scenario) {
-  Told told;
+Report watched(const config::Scenario& scenario) {
+  Report report;
   studies::Player player(scenario);
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
     player.begin();
     player.run();
     const CycleRecord& record = player.record();
-    if (record.warning.code != FaultCode::kOscillation || told.what != Shaking::kNone) continue;
-    told.at_s = record.time_s;
-    told.what = static_cast<Shaking>(record.warning.index);
+    if (record.warning.code != FaultCode::kOscillation || report.what != Shaking::kNone) continue;
+    report.at_s = record.time_s;
+    report.what = static_cast<Shaking>(record.warning.index);
   }
-  told.fault = player.record().fault;
-  return told;
+  report.fault = player.record().fault;
+  return report;
 }
 
 // 74 Hz: a rotation too light for this device, twisted for 10 ms.
@@ -75,11 +75,11 @@ config::Scenario wall(double stiffness, double run_up, double inside) {
 TEST(ShakingRun, OfALightRotationIsToldAndStopped) {
   EXPECT_EQ(watched(light_rotation(0.08)).what, Shaking::kNone);
   config::Scenario light = light_rotation(0.001);
-  const Told told = watched(light);
-  EXPECT_TRUE(told.what == Shaking::kFastForce || told.what == Shaking::kFastTorque)
-      << to_string(told.what);
-  EXPECT_LT(told.at_s, 3.0);
-  EXPECT_EQ(told.fault.code, FaultCode::kNone);
+  const Report report = watched(light);
+  EXPECT_TRUE(report.what == Shaking::kFastForce || report.what == Shaking::kFastTorque)
+      << to_string(report.what);
+  EXPECT_LT(report.at_s, 3.0);
+  EXPECT_EQ(report.fault.code, FaultCode::kNone);
 
   light.device.passivity.reaction = passivity::Reaction::kAct;
   EXPECT_EQ(watched(light).fault.code, FaultCode::kOscillation);
