@@ -66,13 +66,13 @@ struct RuntimeReport {
   std::uint64_t cycles = 0;
   std::uint64_t overruns = 0;  ///< Cycles that ended after the next one was due, or were left out
   std::uint64_t most_overruns_in_a_row = 0;
-  std::uint64_t dropped = 0;      ///< Samples dropped because the ring was full
-  std::uint64_t allocations = 0;  ///< Heap allocations inside the loop
-  long page_faults = 0;           ///< Page faults inside the loop
-  ThreadReport thread;            ///< Real-time properties of the thread, in real time
+  std::uint64_t dropped = 0;          ///< Samples dropped because the ring was full
+  std::uint64_t allocations = 0;      ///< Heap allocations inside the loop
+  long page_faults = 0;               ///< Page faults inside the loop
+  ThreadReport thread;                ///< Real-time properties of the thread, in real time
   bool reported_late_cycles = false;  ///< Late cycles were reported to the cycle
-  bool stop_timed_out = false;    ///< Still moving when only the brakes were left to stop it
-  Histogram wake_up_us;           ///< Wake-up delay after a cycle was due, in real time
+  bool stop_timed_out = false;        ///< Still moving when only the brakes were left to stop it
+  Histogram wake_up_us;               ///< Wake-up delay after a cycle was due, in real time
   std::array<Histogram, kStageCount> stage_us;  ///< Durations of the cycle's stages, in real time
 };
 

@@ -46,7 +46,7 @@ struct ContactRun {
   double impulse = 0.0;        ///< impulse of the force until ContactConfig::settled, Ns
   double contact = 0.0;        ///< total contact time of the arm, s
   double compression = 0.0;    ///< largest compression, m
-  double reported = -1.0;          ///< time from the hit until it was reported, s; < 0 = not reported
+  double reported = -1.0;      ///< time from the hit until it was reported, s; < 0 = not reported
   double stopped = -1.0;  ///< time from the hit until the device began to stop, s; < 0 = it did not
   FaultCode fault = FaultCode::kNone;  ///< fault that stopped the device
 };

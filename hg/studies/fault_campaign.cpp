@@ -280,7 +280,8 @@ FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
     }
     const bool was_noticed = !std::isnan(noticed_at_s);
     travel.add(truth, player.sample(), was_noticed);
-    result.has_reported_slip = result.has_reported_slip || record.fault.code == FaultCode::kBrakesSlip;
+    result.has_reported_slip =
+        result.has_reported_slip || record.fault.code == FaultCode::kBrakesSlip;
     result.stop = std::max(result.stop, record.stop);
     if (std::isnan(noticed_at_s) || !stands_still(truth)) {
       result.stopped_s = kNever;

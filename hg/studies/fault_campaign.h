@@ -65,9 +65,9 @@ struct FaultCase {
   /// Largest true unplanned travel of an axis: deviation from its plan until the device stopped,
   /// all travel from there on; as a share of its stopping distance.
   double travel_share = 0.0;
-  double energy = 0.0;           ///< energy given to the person from the stop on, J
+  double energy = 0.0;             ///< energy given to the person from the stop on, J
   bool has_reported_slip = false;  ///< rule 323 has reported that a brake does not hold
-  bool is_complete = true;       ///< the recording has every cycle exactly once, in order
+  bool is_complete = true;         ///< the recording has every cycle exactly once, in order
 };
 
 struct Campaign {

@@ -32,8 +32,12 @@ struct Scene {
 
 Scene make_scene(const config::DeviceConfig& device) {
   const DeviceModel& model = device.model;
-  Scene scene = {
-      device, joint_ranges(device), model::ChainData(model.chain), Eigen::VectorXd::Zero(model.chain.nv()), {}, {}};
+  Scene scene = {device,
+                 joint_ranges(device),
+                 model::ChainData(model.chain),
+                 Eigen::VectorXd::Zero(model.chain.nv()),
+                 {},
+                 {}};
   scene.effort.resize(model.chain.nv());
   for (int i = 0; i < model.chain.nv(); ++i) {
     scene.effort[i] = model.chain.joints()[index(i)].effort_max;

@@ -1,4 +1,5 @@
-// Faults on purpose in closed loop: what is noticed, what is harmless, and that the campaign reports it.
+// Faults on purpose in closed loop: what is noticed, what is harmless, and that the campaign
+// reports it.
 
 #include <gtest/gtest.h>
 
