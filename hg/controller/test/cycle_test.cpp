@@ -54,6 +54,7 @@ struct Loop {
       device.actuators = reference_actuators();
       // the joint torques that it measures are always zero, whatever moves it
       config.monitor.motor_tolerance = config.monitor.unexplained_tolerance = kInfinity;
+      config.monitor.plausibility = kInfinity;
     }
     cycle = std::make_unique<Cycle>(config, device, twin);
     sensors.q_m = kPosture;
