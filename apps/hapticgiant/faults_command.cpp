@@ -51,7 +51,7 @@ int faults(const FaultsArguments& arguments) {
     if (times.lb > times.ub) {
       throw SetupError(
           name +
-          ": faults are played in scenarios with a script that goes on for two seconds "
+          ": faults are played in scenarios with a script that continues for two seconds "
           "after the grasp");
     }
   }

@@ -114,7 +114,7 @@ void tell_problems(Observers& observers, const std::string& text) {
 void check_recording(Observers& observers, double time_s) {
   const std::string why = observers.recording.news();
   if (!why.empty()) {
-    notify(observers, time_s, "recording", "has ended early, the run goes on: " + why);
+    notify(observers, time_s, "recording", "has ended early, the run continues: " + why);
   }
 }
 
@@ -145,11 +145,11 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
 void close_device(udp::RemoteDevice& device, const Fault& fault) {
   device.close(fault.code);
   if (!device.farewell().empty()) {
-    print_out(fmt::format("the remote device says: {}\n", device.farewell()));
+    print_out(fmt::format("message of the remote device: {}\n", device.farewell()));
   }
 }
 
-// `goes_on`: after the script, until Ctrl-C
+// `goes_on`: continues after the script, until Ctrl-C
 runtime::RuntimeOptions runtime_options(const PreparedRun& run, bool goes_on,
                                         const std::atomic<bool>& interrupted, page::RunPage* page) {
   const RunArguments& arguments = run.arguments;

@@ -72,7 +72,7 @@ std::string text_of_done(const Command& command) {
     case CommandName::kPanel:
       return fmt::format("{} by {}", command.value != 0.0 ? "on" : "off", page);
     default:
-      return "asked for in the page";
+      return "requested in the page";
   }
 }
 
