@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/experiments/paper_experiment_command.h"
@@ -124,35 +124,32 @@ int report(nlohmann::ordered_json results, const std::string& kind, const std::s
   }
 }
 
-// By encoders alone, and with units on all links that the control uses.
-std::vector<std::pair<std::string, haptify::HandFigures>> felt_with_units(
-    const config::Scenario& walk) {
+// What a hand feels with encoders alone, and with units on all links that the control uses.
+nlohmann::ordered_json felt_with_units(const config::Scenario& walk) {
   config::Scenario with_units = walk;
   estimation::InertialUnitsConfig& units = with_units.device.estimation.units;
   units.frames = studies::frames_of(walk.device, studies::unit_sets(walk.device)[0].links);
   studies::learn_mounting(with_units);
   units.feeds_back = true;
-  const std::vector<const config::Scenario*> scenarios = {&walk, &with_units};
-  std::vector<std::pair<std::string, haptify::HandFigures>> felt = {{"encoders alone", {}},
-                                                                    {"encoders and units", {}}};
+  const std::array<const config::Scenario*, 2> scenarios = {&walk, &with_units};
+  std::array<haptify::HandFigures, 2> felt;
   studies::do_all(
       scenarios.size(),
-      [&](std::size_t i) { felt[i].second = haptify::measure_hand_figures(*scenarios[i]); },
+      [&](std::size_t i) { felt[i] = haptify::measure_hand_figures(*scenarios[i]); },
       progress_of("hands"));
-  return felt;
+  return {{"encoders alone", to_json(felt[0])}, {"encoders and units", to_json(felt[1])}};
 }
 
 int experiment_free_space(const ExperimentArguments& arguments) {
   const haptify::FreeSpaceConfig config;
+  check_output(arguments.json);
   begin(arguments,
         fmt::format("Free space: a hand leads a free body on random strokes for {:g} s, seed {}, "
                     "as in `hapticgiant haptify`\n\n",
                     config.duration_s, kSeed));
   const auto runs =
       haptify::measure_variants(walk_scenario(), config, kSeed, progress_of("variants"));
-  print_out(haptify::to_text(runs));
-  write_json(arguments.json, haptify::to_json(runs));
-  return 0;
+  return report(haptify::to_json(runs), "free-space", arguments.json);
 }
 
 int experiment_stability_map(const ExperimentArguments& arguments) {
@@ -169,15 +166,14 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
 
 int experiment_impedance(const ExperimentArguments& arguments) {
   const haptify::ImpedanceConfig config;
+  check_output(arguments.json);
   begin(arguments, fmt::format("Impedance at the handle, pushed to and fro with {:g} N, as in "
                                "`hapticgiant haptify`\n\n",
                                config.response.force));
   const config::Scenario scenario = walk_scenario();
   const studies::FreeTwin twin = studies::free_twin_of(scenario);
   const auto runs = haptify::measure_impedance(scenario, config, kSeed, progress_of("pushes"));
-  print_out(haptify::to_text(runs, config, twin));
-  write_json(arguments.json, haptify::to_json(runs, twin));
-  return 0;
+  return report(haptify::to_json(runs, config, twin), "impedance", arguments.json);
 }
 
 int experiment_contact(const ContactArguments& arguments) {
@@ -206,11 +202,11 @@ int experiment_inertial(const InertialArguments& arguments) {
       arguments.seeds));
   const std::vector<studies::InertialRun> runs =
       studies::measure_inertial(scenarios, names, arguments.seeds, progress_of("runs"));
-  const int code = report(studies::to_json(runs), "inertial", arguments.json);
+  nlohmann::ordered_json results = studies::to_json(runs);
   if (arguments.feels) {
-    print_out("\n" + haptify::to_text(felt_with_units(walk_scenario("", arguments.simulation))));
+    results["felt"] = felt_with_units(walk_scenario("", arguments.simulation));
   }
-  return code;
+  return report(results, "inertial", arguments.json);
 }
 
 int experiment_seeds(const SeedsArguments& arguments) {

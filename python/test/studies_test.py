@@ -11,6 +11,7 @@ import tempfile
 import unittest
 
 import matplotlib
+import numpy as np
 from report_test import overlapping  # also finds the package
 
 from hapticgiant import figures
@@ -47,7 +48,7 @@ class Seeds(Reports):
                       (folder / "seeds.md").read_text())
         self.assertIn("1.00 / 4.00", said)
 
-    def test_a_fault_is_told_and_makes_the_verdict(self):
+    def test_a_fault_is_reported_and_makes_the_verdict(self):
         runs = [seeded(), seeded(trial=1, hand="stiff", held=False, fault=100, seed=4, ended_s=12.34,
                                  fault_text="measured value is not finite", expected_events=0)]
         verdict, said, folder = self.report(studies, {"kind": "seeds", "runs": runs})
@@ -107,6 +108,51 @@ class Inertial(Reports):
                                         "2.00", "0.300"])
         self.assertEqual(len(lines), 2 + 2 + 2 + 2)
         self.assertIn("walk, arm, seed 9: fault 111 torque", said)
+        self.assertNotIn("what a hand feels", said)
+
+    def test_what_a_hand_feels_follows_where_it_was_measured(self):
+        felt = {"transparency_Hz": 15.6, "latency_s": 2.9e-3, "extra_N": 0.19, "vibration_m_per_s2": 0.06,
+                "centroid_Hz": 97.7, "joint_error_rad": 1e-3, "light_normal_m_per_s": 5e-3,
+                "light_stiff_m_per_s": 7e-3, "wall": ["stable", "hunts"]}
+        _, said, _ = self.report(studies, {"kind": "inertial", "runs": [],
+                                           "felt": {"encoders alone": felt}})
+        self.assertRegex(said, r"encoders alone +15.6 +2.9 +0.19 +0.060 +98 +1.00 +5.0 +7.0  stable, hunts")
+
+
+def variant(name, extra, vibration, **more):
+    return {"name": name, "takes_away": True, "joint_error_rad": 2e-3, "torque_share": 0.5,
+            "measured": {"force_N": 1.0, "own_share_N": 0.8, "extra_N": extra, "centroid_Hz": 90.0,
+                         "vibration_m_per_s2": vibration,
+                         "acceleration_above_5_Hz_m_per_s2": 0.1}} | more
+
+
+class FreeSpace(Reports):
+    def test_the_removal_that_helps_most_is_named(self):
+        variants = [variant("as shipped", 0.2, 0.06, takes_away=False), variant("no noise", 0.15, 0.03),
+                    variant("no friction", 0.1, 0.07), variant("slow", 0.01, 0.01, takes_away=False),
+                    variant("dead", 0.0, 0.0, failure="fault 100")]
+        _, said, _ = self.report(studies, {"kind": "free-space", "force_below_Hz": 20,
+                                           "vibration_above_Hz": 20, "variants": variants})
+        self.assertIn("most by 'no friction': 0.100 instead of 0.200 N\n", said)
+        self.assertIn("most by 'no noise': 0.030 instead of 0.060 m/s^2\n", said)
+        self.assertRegex(said, "above 5 Hz +no removal makes it smaller\n")
+        self.assertRegex(said, r"dead +1.00 +0.80 +0.00 +0.000 +90 +0.100 +2.00 +0.50  failed: fault 100\n")
+
+
+class Impedance(Reports):
+    def test_deflection_of_a_spring_and_the_share_of_a_twin(self):
+        def run(frequency, impedance, **more):
+            mobility = 1.0 / impedance
+            return {"name": "modal", "axis": "x", "frequency_Hz": [frequency],
+                    "mobility_m_per_Ns": [[mobility.real, mobility.imag]]} | more
+        omega = 2.0 * np.pi
+        spring = run(1.0, -1j * 2e4 / omega, is_rigid=True, static_peak_m=2e-3, static_end_m=1e-3)
+        half = run(1.0, 0.5 * (1j * omega * 6.0 + 4.0), is_rigid=False)
+        _, said, _ = self.report(studies, {
+            "kind": "impedance", "twin": {"mass_kg": 6.0, "damping_Ns_per_m": 4.0}, "static_force_N": 50.0,
+            "static_end_s": 1.55, "runs": [half, spring]})
+        self.assertRegex(said, r"modal, along x +50.0 +2.00 mm +1.00 mm\n")
+        self.assertRegex(said, r"felt / rendered +1 Hz\nmodal, along x +0.50\n")
 
 
 def stability():

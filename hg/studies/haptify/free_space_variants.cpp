@@ -1,8 +1,5 @@
 #include "hg/studies/haptify/free_space_variants.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -31,22 +28,6 @@ void take_quantisation(simulator::SensorsConfig& sensors) {
 
 void take_gear_errors(simulator::SensorsConfig& sensors) {
   sensors.motor_encoder.error_1 = sensors.motor_encoder.error_2 = sensors.torque.ripple = 0.0;
-}
-
-// The imperfection whose removal improves the value most.
-std::string dominant(const std::vector<FreeSpaceRun>& runs, double FreeSpace::*value,
-                     const std::string& what, const std::string& unit) {
-  const FreeSpaceRun* best = nullptr;
-  const double shipped = runs.front().measured.*value;
-  for (const FreeSpaceRun& run : runs) {
-    if (!run.takes_away || !run.measured.failure.empty()) continue;
-    if (best == nullptr || run.measured.*value < best->measured.*value) best = &run;
-  }
-  if (best == nullptr || best->measured.*value >= shipped) {
-    return fmt::format("{:<20} nothing that was taken away makes it smaller\n", what);
-  }
-  return fmt::format("{:<20} most by '{}': {:.3f} instead of {:.3f} {}\n", what, best->name,
-                     best->measured.*value, shipped, unit);
 }
 
 }  // namespace
@@ -138,31 +119,11 @@ std::vector<FreeSpaceRun> measure_variants(const config::Scenario& scenario,
   return runs;
 }
 
-std::string to_text(const std::vector<FreeSpaceRun>& runs) {
-  std::string text = fmt::format(
-      "{0:<36}{1:>7}{2:>7}{3:>7}{4:>11}{5:>8}{6:>9}{7:>8}{8:>8}\n"
-      "{9:<36}{10:>7}{10:>7}{10:>7}{11:>11}{12:>8}{13:>9}{14:>8}{15:>8}\n",
-      "", "force", "own", "extra", "vibration", "centre", "> 5 Hz", "joints", "torque", "variant",
-      "N", "m/s^2", "Hz", "m/s^2", "mrad", "of peak");
-  for (const FreeSpaceRun& run : runs) {
-    const FreeSpace& it = run.measured;
-    text += fmt::format(
-        "{:<36}{:>7.2f}{:>7.2f}{:>7.2f}{:>11.3f}{:>8.0f}{:>9.3f}{:>8.2f}{:>8.2f}{}\n", run.name,
-        it.force, it.own_share, it.extra, it.vibration_rms, it.centroid_Hz, it.acceleration_5Hz,
-        1e3 * it.joint_error, it.torque_share, it.failure.empty() ? "" : "  failed: " + it.failure);
-  }
-  text += fmt::format(
-      "\nown: mean |m a + b v| of the twin; extra: mean |f - (m a + b v)|; both of the true "
-      "handle, below {:g} Hz\nvibration: rms above {:g} Hz, as in `hapticgiant haptify`\n\n",
-      kForceBand, kVibrationBand);
-  text += dominant(runs, &FreeSpace::extra, "extra force", "N");
-  text += dominant(runs, &FreeSpace::vibration_rms, "vibration", "m/s^2");
-  return text + dominant(runs, &FreeSpace::acceleration_5Hz, "above 5 Hz", "m/s^2");
-}
-
 nlohmann::ordered_json to_json(const std::vector<FreeSpaceRun>& runs) {
   nlohmann::ordered_json json;
   json["experiment"] = "free-space";
+  json["force_below_Hz"] = kForceBand;
+  json["vibration_above_Hz"] = kVibrationBand;
   json["variants"] = nlohmann::ordered_json::array();
   for (const FreeSpaceRun& run : runs) {
     const FreeSpace& it = run.measured;

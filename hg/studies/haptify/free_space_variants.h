@@ -49,8 +49,6 @@ std::vector<FreeSpaceRun> measure_variants(const config::Scenario& scenario,
                                            const FreeSpaceConfig& config, std::uint64_t seed,
                                            const studies::Progress& progress);
 
-/// Table of all variants, and the dominating contribution.
-std::string to_text(const std::vector<FreeSpaceRun>& runs);
 nlohmann::ordered_json to_json(const std::vector<FreeSpaceRun>& runs);
 
 }  // namespace hg::haptify

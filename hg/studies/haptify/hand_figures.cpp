@@ -1,6 +1,6 @@
 #include "hg/studies/haptify/hand_figures.h"
 
-#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "hg/simulator/person/hand.h"
 #include "hg/studies/changes.h"
@@ -48,21 +48,16 @@ HandFigures measure_hand_figures(const config::Scenario& scenario) {
           .wall = {wall(scenario, 6.0), wall(scenario, 3.0)}};
 }
 
-std::string to_text(const std::vector<std::pair<std::string, HandFigures>>& all) {
-  std::string text =
-      fmt::format("{:28} {:>12} {:>7} {:>7} {:>9} {:>8} {:>7} {:>8} {:>8}  {}\n",
-                  "what a hand feels", "transparency", "latency", "extra", "vibration", "centroid",
-                  "joints", "0.3 kg", "0.4 kg", "wall of 20 kN/m");
-  text += fmt::format("{:28} {:>12} {:>7} {:>7} {:>9} {:>8} {:>7} {:>8} {:>8}  {}\n", "", "Hz",
-                      "ms", "N", "m/s^2", "Hz", "mrad", "mm/s", "mm/s", "6 kg, 3 kg");
-  for (const auto& [name, figures] : all) {
-    text += fmt::format(
-        "{:28} {:12.1f} {:7.1f} {:7.2f} {:9.3f} {:8.0f} {:7.2f} {:8.1f} {:8.1f}  {}, {}\n", name,
-        figures.transparency_Hz, 1e3 * figures.latency_s, figures.extra_force, figures.vibration,
-        figures.centroid_Hz, 1e3 * figures.joint_error, 1e3 * figures.light_normal,
-        1e3 * figures.light_stiff, to_string(figures.wall[0]), to_string(figures.wall[1]));
-  }
-  return text;
+nlohmann::ordered_json to_json(const HandFigures& figures) {
+  return {{"transparency_Hz", figures.transparency_Hz},
+          {"latency_s", figures.latency_s},
+          {"extra_N", figures.extra_force},
+          {"vibration_m_per_s2", figures.vibration},
+          {"centroid_Hz", figures.centroid_Hz},
+          {"joint_error_rad", figures.joint_error},
+          {"light_normal_m_per_s", figures.light_normal},
+          {"light_stiff_m_per_s", figures.light_stiff},
+          {"wall", {to_string(figures.wall[0]), to_string(figures.wall[1])}}};
 }
 
 }  // namespace hg::haptify

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <array>
-#include <string>
-#include <utility>
-#include <vector>
+#include <nlohmann/json_fwd.hpp>
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/studies/decay.h"
@@ -29,7 +27,6 @@ struct HandFigures {
 /// Measures the key figures. The twin of `scenario` is a free body.
 HandFigures measure_hand_figures(const config::Scenario& scenario);
 
-/// Table with a row for each set of figures.
-std::string to_text(const std::vector<std::pair<std::string, HandFigures>>& all);
+nlohmann::ordered_json to_json(const HandFigures& figures);
 
 }  // namespace hg::haptify

@@ -1,12 +1,9 @@
 #include "hg/studies/haptify/impedance.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "hg/studies/changes.h"
 #include "hg/studies/haptify/play.h"
@@ -60,23 +57,6 @@ Give measure_give(const config::Scenario& scenario, const ImpedanceConfig& confi
   return give;
 }
 
-// Deflection over force, m/N.
-double compliance(const Answer& answer) {
-  return 1.0 / (2.0 * std::numbers::pi * answer.frequency_Hz * std::abs(answer.impedance));
-}
-
-std::string heading(const std::vector<double>& frequency_Hz, const std::string& what) {
-  std::string text = fmt::format("{:<40}", what);
-  for (const double frequency : frequency_Hz) {
-    text += fmt::format("{:>7}", fmt::format("{:g} Hz", frequency));
-  }
-  return text;
-}
-
-std::string failure_text(const std::string& failure) {
-  return failure.empty() ? "" : "  failed: " + failure;
-}
-
 ResponseConfig response_of(const ImpedanceConfig& config, bool is_rigid) {
   ResponseConfig response = config.response;
   if (is_rigid) {
@@ -123,44 +103,13 @@ std::vector<ImpedanceRun> measure_impedance(const config::Scenario& scenario,
   return runs;
 }
 
-std::string to_text(const std::vector<ImpedanceRun>& runs, const ImpedanceConfig& config,
-                    const studies::FreeTwin& twin) {
-  std::string text =
-      heading(response_of(config, true).frequency_Hz, "twin does not move: um per N") +
-      fmt::format("   {:g} N: peak, after {:g} s\n", config.static_force,
-                  config.ramp + config.held);
-  for (const ImpedanceRun& run : runs) {
-    if (!run.is_rigid) continue;
-    text += fmt::format("{:<40}", fmt::format("{}, along {}", run.name, run.axis));
-    for (const Answer& answer : run.response.answers) {
-      text += fmt::format("{:>7.1f}", 1e6 * compliance(answer));
-    }
-    if (run.give.failure.empty()) {
-      text += fmt::format("{:>10.2f} {:>8.2f} mm", 1e3 * run.give.peak, 1e3 * run.give.end);
-    }
-    text += failure_text(run.response.failure) + "\n";
-  }
-  text += "blind: the force/torque sensor shows nothing, so nothing is fed forward\n\n";
-  text +=
-      heading(config.response.frequency_Hz,
-              fmt::format("twin of {:g} kg, {:g} Ns/m: felt / rendered", twin.mass, twin.damping)) +
-      "\n";
-  for (const ImpedanceRun& run : runs) {
-    if (run.is_rigid) continue;
-    text += fmt::format("{:<40}", fmt::format("{}, along {}", run.name, run.axis));
-    for (const Answer& answer : run.response.answers) {
-      text += fmt::format("{:>7.2f}", std::abs(answer.impedance / answer.twin));
-    }
-    text += failure_text(run.response.failure) + "\n";
-  }
-  return text;
-}
-
-nlohmann::ordered_json to_json(const std::vector<ImpedanceRun>& runs,
+nlohmann::ordered_json to_json(const std::vector<ImpedanceRun>& runs, const ImpedanceConfig& config,
                                const studies::FreeTwin& twin) {
   nlohmann::ordered_json json;
   json["experiment"] = "impedance";
   json["twin"] = {{"mass_kg", twin.mass}, {"damping_Ns_per_m", twin.damping}};
+  json["static_force_N"] = config.static_force;
+  json["static_end_s"] = config.ramp + config.held;
   json["runs"] = nlohmann::ordered_json::array();
   for (const ImpedanceRun& run : runs) {
     nlohmann::ordered_json entry;

@@ -57,9 +57,7 @@ std::vector<ImpedanceRun> measure_impedance(const config::Scenario& scenario,
                                             const ImpedanceConfig& config, std::uint64_t seed,
                                             const studies::Progress& progress);
 
-std::string to_text(const std::vector<ImpedanceRun>& runs, const ImpedanceConfig& config,
-                    const studies::FreeTwin& twin);
-nlohmann::ordered_json to_json(const std::vector<ImpedanceRun>& runs,
+nlohmann::ordered_json to_json(const std::vector<ImpedanceRun>& runs, const ImpedanceConfig& config,
                                const studies::FreeTwin& twin);
 
 }  // namespace hg::haptify

@@ -1,10 +1,11 @@
-"""What `hapticgiant experiment contact|inertial|seeds|stability-map` shows."""
+"""What `hapticgiant experiment contact|free-space|impedance|inertial|seeds|stability-map` shows."""
 
 import itertools
 import json
 import statistics
 
 import matplotlib
+import numpy as np
 
 from ..figures import SETTINGS
 from . import pages, pictures, tables
@@ -125,12 +126,122 @@ def inertial_rows(runs):
     return rows
 
 
+FELT_HEAD = [["what a hand feels", "transparency", "latency", "extra", "vibration", "centroid", "joints",
+              "0.3 kg", "0.4 kg", "wall of 20 kN/m"],
+             ["", "Hz", "ms", "N", "m/s^2", "Hz", "mrad", "mm/s", "mm/s", "6 kg, 3 kg"]]
+FELT = (("transparency_Hz", 1.0, 1), ("latency_s", 1e3, 1), ("extra_N", 1.0, 2),
+        ("vibration_m_per_s2", 1.0, 3), ("centroid_Hz", 1.0, 0), ("joint_error_rad", 1e3, 2),
+        ("light_normal_m_per_s", 1e3, 1), ("light_stiff_m_per_s", 1e3, 1))
+
+
+def felt_rows(felt):
+    return [[name, *(f"{scale * figures[key]:.{digits}f}" for key, scale, digits in FELT),
+             ", ".join(figures["wall"])] for name, figures in felt.items()]
+
+
 def inertial(folder, results, docs):
     print(tables.as_text(INERTIAL_HEAD + inertial_rows(results["runs"]), left=range(3)), end="")
     for run in results["runs"]:
         if run["fault"]:
             print(f"{run['scenario']}, {run['units']}, seed {run['seed']}: fault {run['fault']} "
                   f"{run['fault_text']}")
+    if "felt" in results:
+        print("\n" + tables.as_text(FELT_HEAD + felt_rows(results["felt"]), left=(0, 9)), end="")
+    return 0
+
+
+# free space with parts of the machine changed
+
+FREE_SPACE_HEAD = [["", "force", "own", "extra", "vibration", "centre", "> 5 Hz", "joints", "torque", ""],
+                   ["variant", "N", "N", "N", "m/s^2", "Hz", "m/s^2", "mrad", "of peak", ""]]
+FREE_SPACE = (("force_N", 2), ("own_share_N", 2), ("extra_N", 2), ("vibration_m_per_s2", 3),
+              ("centroid_Hz", 0), ("acceleration_above_5_Hz_m_per_s2", 3))
+
+
+def failure_of(run):
+    return f"failed: {run['failure']}" if "failure" in run else ""
+
+
+def free_space_row(variant):
+    return [variant["name"],
+            *(f"{variant['measured'][key]:.{digits}f}" for key, digits in FREE_SPACE),
+            f"{1e3 * variant['joint_error_rad']:.2f}", f"{variant['torque_share']:.2f}",
+            failure_of(variant)]
+
+
+def dominant(variants, key):
+    """The imperfection whose removal improves a value most; None = no removal improves it."""
+    removed = [variant for variant in variants if variant["takes_away"] and "failure" not in variant]
+    best = min(removed, key=lambda variant: variant["measured"][key], default=variants[0])
+    return best if best["measured"][key] < variants[0]["measured"][key] else None
+
+
+def dominant_line(variants, what, key, unit):
+    best = dominant(variants, key)
+    if best is None:
+        return f"{what:<20} no removal makes it smaller\n"
+    return (f"{what:<20} most by '{best['name']}': {best['measured'][key]:.3f} instead of "
+            f"{variants[0]['measured'][key]:.3f} {unit}\n")
+
+
+def free_space(folder, results, docs):
+    variants = results["variants"]
+    print(tables.as_text(FREE_SPACE_HEAD + list(map(free_space_row, variants)), left=(0, 9))
+          + "\nown: mean |m a + b v| of the twin; extra: mean |f - (m a + b v)|; both of the true handle, "
+          f"below {results['force_below_Hz']:g} Hz\nvibration: rms above "
+          f"{results['vibration_above_Hz']:g} Hz, as in `hapticgiant haptify`\n\n"
+          + dominant_line(variants, "extra force", "extra_N", "N")
+          + dominant_line(variants, "vibration", "vibration_m_per_s2", "m/s^2")
+          + dominant_line(variants, "above 5 Hz", "acceleration_above_5_Hz_m_per_s2", "m/s^2"), end="")
+    return 0
+
+
+# impedance at the handle
+
+def mobility(run):
+    """Velocity over force at the run's frequencies, m/Ns."""
+    return np.array([complex(*pair) for pair in run["mobility_m_per_Ns"]])
+
+
+def compliance(run):
+    """Deflection over force at the run's frequencies, m/N."""
+    return np.abs(mobility(run)) / (2.0 * np.pi * np.array(run["frequency_Hz"]))
+
+
+def felt_share(run, twin):
+    """Felt impedance over that of the twin, j w m + b, at the run's frequencies."""
+    omega = 2.0 * np.pi * np.array(run["frequency_Hz"])
+    return np.abs(1.0 / (mobility(run) * (1j * omega * twin["mass_kg"] + twin["damping_Ns_per_m"])))
+
+
+def impedance_table(runs, title, columns, row):
+    """`row` gives the columns of a run behind its name."""
+    longest = max(runs, key=lambda run: len(run["frequency_Hz"]))
+    head = [title, *(f"{frequency:g} Hz" for frequency in longest["frequency_Hz"]), *columns]
+    rows = [[f"{run['name']}, along {run['axis']}", *row(run)] for run in runs]
+    width = max(map(len, [head, *rows]))
+    return tables.as_text([cells + [""] * (width - len(cells)) for cells in [head, *rows]])
+
+
+def impedance(folder, results, docs):
+    rigid = [run for run in results["runs"] if run["is_rigid"]]
+    moved = [run for run in results["runs"] if not run["is_rigid"]]
+    twin = results["twin"]
+
+    def given(run):
+        still = [f"{1e3 * run[key]:.2f} mm" if key in run else "-"
+                 for key in ("static_peak_m", "static_end_m")]
+        return [*(f"{1e6 * value:.1f}" for value in compliance(run)), *still, failure_of(run)]
+
+    def felt(run):
+        return [*(f"{share:.2f}" for share in felt_share(run, twin)), failure_of(run)]
+
+    print(impedance_table(rigid, "twin does not move: um per N",
+                          [f"{results['static_force_N']:g} N: peak",
+                           f"after {results['static_end_s']:g} s"], given)
+          + "blind: the force/torque sensor shows nothing, so nothing is fed forward\n\n"
+          + impedance_table(moved, f"twin of {twin['mass_kg']:g} kg, {twin['damping_Ns_per_m']:g} Ns/m: "
+                            "felt / rendered", [], felt), end="")
     return 0
 
 
@@ -261,7 +372,8 @@ def stability_map(folder, results, docs):
     return 0
 
 
-STUDIES = {"contact": contact, "inertial": inertial, "seeds": seeds, "stability-map": stability_map}
+STUDIES = {"contact": contact, "free-space": free_space, "impedance": impedance, "inertial": inertial,
+           "seeds": seeds, "stability-map": stability_map}
 
 
 def write(folder, docs=None):
