@@ -14,6 +14,7 @@
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
+#include "hg/model/chain_data.h"
 #include "hg/model/urdf.h"
 #include "hg/runtime/requests.h"
 #include "hg/scenario/assembly.h"
@@ -87,10 +88,12 @@ void bind_scenario(nb::module_& module) {
           "for_s = 0: until the end.")
       .def_ro("limits", &Scenario::limits, "what CycleRecord.limits is about, in its order")
       .def_prop_ro(
-          "device", [](const Scenario& scenario) { return scenario.device.model.chain; },
+          "device",
+          [](const Scenario& scenario) { return model::ChainData(scenario.device.model.chain); },
           "copy of the device's chain, gantry first")
       .def_prop_ro(
-          "twin", [](const Scenario& scenario) { return scenario.twin.model.chain; },
+          "twin",
+          [](const Scenario& scenario) { return model::ChainData(scenario.twin.model.chain); },
           "copy of the twin's chain");
   module.def(
       "load_scenario_file", [](const std::string& file) { return config::load_scenario(file); },
