@@ -58,29 +58,6 @@ TEST(Shake, GivesDrivesOfThatLagTheWantedAcceleration) {
   EXPECT_NEAR(largest, 0.24, 0.002);
 }
 
-TEST(FreeSpaceText, SaysWhatDominates) {
-  FreeSpaceRun shipped = {.name = "as shipped", .measured = {}};
-  shipped.measured.extra = 0.3;
-  shipped.measured.acceleration_5Hz = 0.1;
-  shipped.measured.vibration_rms = 0.05;
-  FreeSpaceRun quiet = {.name = "quiet", .takes_away = true, .measured = {}};
-  quiet.measured.extra = 0.2;
-  quiet.measured.acceleration_5Hz = 0.02;
-  quiet.measured.vibration_rms = 0.06;
-  FreeSpaceRun smooth = quiet;
-  smooth.name = "smooth";
-  smooth.measured.extra = 0.1;
-  smooth.measured.acceleration_5Hz = 0.05;
-  const FreeSpaceRun other = {.name = "another twin", .measured = {}};  // takes nothing away
-  FreeSpaceRun failed = {.name = "failed", .takes_away = true, .measured = {}};
-  failed.measured.failure = "the device did not run";
-  const std::string text = to_text({shipped, quiet, smooth, other, failed});
-  EXPECT_NE(text.find("most by 'smooth': 0.100 instead of 0.300 N"), std::string::npos) << text;
-  EXPECT_NE(text.find("most by 'quiet': 0.020 instead of 0.100 m/s^2"), std::string::npos) << text;
-  EXPECT_NE(text.find("nothing that was taken away"), std::string::npos) << text;
-  EXPECT_NE(text.find("did not run"), std::string::npos) << text;
-}
-
 TEST(MeasureCase, RendersTheTwinAndHoldsWhatDoesNotMove) {
   config::Scenario scenario = walk_scenario();
   scenario.device.simulation.factors = {};
