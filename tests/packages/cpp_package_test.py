@@ -12,7 +12,7 @@ import subprocess
 import sys
 
 EXAMPLES = pathlib.Path("examples/cpp").resolve()
-MOVED = re.compile(r"the joints have moved by up to 0\.[3-9][0-9] rad in 2[0-9]{3} cycles")
+MOVED = re.compile(r"the joints have moved by up to 1\.[4-6][0-9] rad in 2[0-9]{3} cycles")
 DOOR_OPEN = re.compile(r"hinge at 1\.[0-9]+ rad after 10\.6 s")
 
 REMOTE_PROJECT = """cmake_minimum_required(VERSION 3.22)
