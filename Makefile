@@ -80,12 +80,14 @@ bench:
 	@cmake --build $(BUILD) --target hapticgiant
 	@$(BUILD)/hapticgiant bench --out $(RESULTS) $(ARGS)
 
-experiments: build
-	@$(BUILD)/hapticgiant experiment all --law both --out build/experiments --docs docs/experiments
-	@$(BUILD)/hapticgiant experiment timing --out build/experiments --docs docs/experiments
-	@$(BUILD)/hapticgiant haptify --out build/experiments/haptify --docs docs/experiments
-	@$(BUILD)/hapticgiant haptify --goals --repetitions 16 --out build/experiments/goals --docs docs/experiments
-	@$(BUILD)/hapticgiant experiment contact --docs docs/experiments
+experiments: build  # each one refreshes its page, also after one that is not as expected
+	@failed=; run() { $(BUILD)/hapticgiant "$$@" --docs docs/experiments || failed="$$failed; $$*"; }; \
+	run experiment all --law both --out build/experiments; \
+	run experiment timing --out build/experiments; \
+	run haptify --out build/experiments/haptify; \
+	run haptify --goals --repetitions 16 --out build/experiments/goals; \
+	run experiment contact; \
+	[ -z "$$failed" ] || { echo "make experiments: not as expected$$failed" >&2; exit 1; }
 
 bench-instructions:
 	@tools/setup.sh count
