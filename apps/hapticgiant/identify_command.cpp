@@ -18,7 +18,7 @@ namespace {
 using identification::PayloadEstimate;
 using identification::StaticPose;
 
-std::vector<StaticPose> simulated_poses(const config::SimulatedDevice& device, int count) {
+std::vector<StaticPose> simulated_poses(const config::SimulatedDeviceConfig& device, int count) {
   std::vector<StaticPose> poses;
   for (const VectorM& q_m : identification::static_postures(device, count)) {
     poses.push_back(identification::measure_simulated(device, q_m));
@@ -66,7 +66,7 @@ void print_yaml(const PayloadEstimate& found) {
 }  // namespace
 
 int identify_payload(const IdentifyArguments& arguments) {
-  const config::SimulatedDevice device =
+  const config::SimulatedDeviceConfig device =
       config::load_simulated_device(config::find_device(arguments.device));
   const bool is_simulated = arguments.files.empty();
   const std::vector<StaticPose> poses =

@@ -1,5 +1,5 @@
 /// `hapticgiant identify payload [FILE...]`: the payload beyond the force/torque sensor, from poses
-/// at rest: of the simulated device, which takes them autonomously, or from CSV files. `hapticgiant
+/// at rest: of the simulated device, which takes them on its own, or from CSV files. `hapticgiant
 /// identify friction RECORDING`: the friction of each joint, from a run.
 #pragma once
 

@@ -25,7 +25,7 @@
 namespace hg::apps {
 namespace {
 
-tuning::TuningProblem problem_of(const config::SimulatedDevice& device,
+tuning::TuningProblem problem_of(const config::SimulatedDeviceConfig& device,
                                  const TuneArguments& arguments) {
   return {.device = tuning::device_of(device),
           .noise = tuning::noise_of(device),
@@ -53,7 +53,7 @@ std::string command_of(const TuneArguments& arguments) {
 }  // namespace
 
 int run_tune(const TuneArguments& arguments) {
-  const config::SimulatedDevice device =
+  const config::SimulatedDeviceConfig device =
       config::load_simulated_device(config::find_device(arguments.device));
   tuning::TuningProblem problem = problem_of(device, arguments);
   const tuning::Figures now = tuning::figures_of(problem, problem.device);

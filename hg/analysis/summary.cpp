@@ -43,7 +43,7 @@ std::string link_text(const LinkCounts& counts) {
   return text;
 }
 
-Summary::Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz,
+Summary::Summary(LimitCatalogue catalogue, FindPositions positions, double rate_Hz,
                  const VectorM& torque_rated)
     : catalogue_(std::move(catalogue)),
       truth_(catalogue_, std::move(positions), rate_Hz, torque_rated),

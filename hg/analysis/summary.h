@@ -46,7 +46,7 @@ std::string link_text(const LinkCounts& counts);
 class Summary {
  public:
   /// `positions` evaluates devices whose truth is known, as in TruthSummary.
-  Summary(LimitCatalogue catalogue, LimitPositions positions, double rate_Hz,
+  Summary(LimitCatalogue catalogue, FindPositions positions, double rate_Hz,
           const VectorM& torque_rated = {});
 
   void add(const Sample& sample);

@@ -30,8 +30,8 @@ Eigen::Vector3d HighPass::step(const Eigen::Vector3d& value) noexcept {
   return y;
 }
 
-TruthSummary::TruthSummary(const LimitCatalogue& catalogue, LimitPositions positions,
-                           double rate_Hz, const VectorM& torque_rated)
+TruthSummary::TruthSummary(const LimitCatalogue& catalogue, FindPositions positions, double rate_Hz,
+                           const VectorM& torque_rated)
     : positions_of_(std::move(positions)),
       above_5_(5.0, rate_Hz),
       above_20_(20.0, rate_Hz),

@@ -27,13 +27,13 @@ class HighPass {
 };
 
 /// Positions of all limits of the device in the order of its catalogue.
-using LimitPositions = std::function<void(const Truth&, std::vector<double>&)>;
+using FindPositions = std::function<void(const Truth&, std::vector<double>&)>;
 
 class TruthSummary {
  public:
   /// `catalogue` begins with the limits of the device. `torque_rated`: rated motor torques, Nm;
   /// empty for a device without torque control.
-  TruthSummary(const LimitCatalogue& catalogue, LimitPositions positions, double rate_Hz,
+  TruthSummary(const LimitCatalogue& catalogue, FindPositions positions, double rate_Hz,
                const VectorM& torque_rated = {});
 
   void add(const Sample& sample);
@@ -64,7 +64,7 @@ class TruthSummary {
   double rms(double sum_of_squares) const noexcept;
 
   std::vector<Interval> ranges_;
-  LimitPositions positions_of_;
+  FindPositions positions_of_;
   std::vector<double> positions_, worst_excess_;
   HighPass above_5_, above_20_;
   std::uint64_t cycles_ = 0, clamped_cycles_ = 0;

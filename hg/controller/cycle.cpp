@@ -38,7 +38,7 @@ bool is_stopping(Motion motion) noexcept {
 }
 
 // Deceleration of joints braked without the law.
-VectorM braking_of(const DeviceModel& device) {
+VectorM deceleration_of(const DeviceModel& device) {
   constexpr double kWithoutRating = 10.0;  // rad/s^2 or m/s^2
   VectorM ddq(device.n_m);
   for (int i = 0; i < device.n_m; ++i) {
@@ -49,7 +49,7 @@ VectorM braking_of(const DeviceModel& device) {
 }
 
 // Properties of the other parts on which the monitor's rules depend. The paper's bounds ask for
-// more than any rating where they contradict each other, and where the law knows torques they are
+// more than any rating where they contradict each other, and where the law models torques they are
 // what limits accelerations.
 safety::MonitoredParts parts_of(const CycleConfig& config, const DeviceModel& device,
                                 const rendering::TwinModel& twin) {
@@ -137,8 +137,7 @@ Cycle::Cycle(const CycleConfig& config, const DeviceModel& device, const renderi
   if (config.control.method != tracking::Method::kDrives) {
     torque_max_ = compliance::peak_torques(device);
   }
-  ddq_max_ = braking_of(device);
-  longest_stop_ = static_cast<int>(std::lround(config.monitor.stop_time / dt_));
+  ddq_max_ = deceleration_of(device);
   state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
   state_.control = control_.start();
   state_.dq_p = VectorP::Zero(device.n_p);
@@ -470,7 +469,7 @@ void Cycle::time_stop(Motion motion, const RobotState& robot, const Moved& moved
                           moved.twin.dq_a.lpNorm<Eigen::Infinity>() < kStandstill &&
                           moved.reference.dq_m.lpNorm<Eigen::Infinity>() < kStandstill &&
                           robot.dq_p.lpNorm<Eigen::Infinity>() < kStandstill;
-  safety::continue_stop(is_at_rest, longest_stop_, config_.monitor.stop_time, state_.supervisor);
+  safety::continue_stop(is_at_rest, config_.monitor.stop_time, dt_, state_.supervisor);
 }
 
 // Compares measured and desired values with the thresholds of all rules, and watches the brakes.
@@ -542,7 +541,8 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   constexpr double kFade = 0.05;  // s
   double share = 1.0;
   if (supervisor.mode() == Mode::kStopping) {
-    const double left = (longest_stop_ / 3 - supervisor.stop_samples) * dt_;
+    const double left =
+        (safety::samples_of(config_.monitor.stop_time, dt_) / 3 - supervisor.stop_samples) * dt_;
     const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained;
     share = is_stopped_by_it ? std::clamp(left / kFade, 0.0, 1.0) : 0.0;
   }

@@ -200,7 +200,6 @@ class Cycle {
   double dt_;           ///< Period, s
   VectorM torque_max_;  ///< Peak torque of each joint, Nm; empty without torque control
   VectorM ddq_max_;     ///< Deceleration of joints that brake without the law, rad/s^2 or m/s^2
-  int longest_stop_;    ///< Longest controlled stop, cycles
   estimation::Estimation estimation_;
   rendering::Rendering rendering_;
   tracking::JointControl control_;

@@ -13,7 +13,7 @@
 /// A row with one coefficient, of value 1, is a bound on that variable. After the numbers of a row
 /// there may be
 ///   weight <w>   of its slack, default 1
-///   dense        a row of add_row() all the same, although it has only one coefficient, of value 1
+///   dense        a row of add_row() although it has one coefficient, of value 1
 ///   bad          deliberately invalid content that the solver refuses; an error without this word
 /// Guesses have a letter per row: .lu=<> in the order of RowState; `before` may be left out.
 /// Set-up code: allocates, and throws SetupError with "file:line: what was expected".

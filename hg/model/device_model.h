@@ -1,4 +1,4 @@
-/// The device as the controller knows it: chain, frames, period, limits, drives, sensor.
+/// The controller's model of the device: chain, frames, period, limits, drives, sensor.
 ///
 /// Set-up data: filled by config, checked once, constant afterwards. Every part of the controller
 /// is built from it, so that no other struct repeats a fact that stands here. SI units.
@@ -49,13 +49,13 @@ struct DeviceModel {
   std::vector<limits::JointLimits> joint_limits;  ///< Limits of the manipulator joints
   /// Actuators, one per manipulator joint; empty: drives that follow positions.
   std::vector<ActuatorModel> actuators;
-  /// Whether the law knows the torques of the motors: they are limits, and no other limit is
+  /// Whether the law models the torques of the motors: they are limits, and no other limit is
   /// accelerated beyond its rating.
   bool has_torque_limits = false;
   std::vector<VirtualJoint> virtual_joints;
   std::vector<CartesianLimit> cartesian_limits;  ///< Cartesian limits, highest priority first
   /// Goals of the manipulator joints (n_m; empty: none), NaN = no goal. The gantry moves so that
-  /// they are reached; a manipulator with more joints than the task needs moves there autonomously.
+  /// they are reached; a manipulator with more joints than the task needs moves there on its own.
   VectorM posture;
 
   /// Period of the control cycle, s.

@@ -99,7 +99,7 @@ class Runtime {
   /// Sets the target of a simulated hand from the next cycle on. One operator thread only.
   void set_hand_target(const HandTarget& target) noexcept { hand_targets_.push(target); }
   /// Queues a parameter change of the twin for one of the next cycles, after due changes of
-  /// Options. False if the queue is full. Operator thread only.
+  /// RuntimeOptions. False if the queue is full. Operator thread only.
   [[nodiscard]] bool change(const ParameterChange& change) noexcept {
     return parameter_changes_.push(change);
   }

@@ -49,8 +49,8 @@ Interval end_stops(const config::SimulationConfig& reality, const model::Joint& 
   return {q_min - beyond, q_max + beyond};
 }
 
-simulator::PlantConfig elastic_plant(const config::SimulatedDevice& device, const Start& start,
-                                     double step) {
+simulator::PlantConfig elastic_plant(const config::SimulatedDeviceConfig& device,
+                                     const Start& start, double step) {
   const config::SimulationConfig& reality = device.simulation;
   simulator::PlantConfig plant = {
       .step = step,
@@ -87,7 +87,7 @@ simulator::PlantConfig elastic_plant(const config::SimulatedDevice& device, cons
 }
 
 // The machine of a device: elastic joints where its joints have actuators.
-simulator::SimulatorConfig device_simulation(const config::SimulatedDevice& device,
+simulator::SimulatorConfig device_simulation(const config::SimulatedDeviceConfig& device,
                                              const Start& start) {
   const config::SimulationConfig& reality = device.simulation;
   const double period = device.model.dt();
@@ -140,7 +140,7 @@ void place(const config::BystanderInTheWay& bystander, const model::ChainModel& 
 }
 
 simulator::Simulation simulation_of(
-    const config::SimulatedDevice& device, const Start& start, person::Person person,
+    const config::SimulatedDeviceConfig& device, const Start& start, person::Person person,
     const std::optional<config::BystanderInTheWay>& bystander = {}) {
   const bool is_elastic = device.control.method != tracking::Method::kDrives;
   const model::ChainModel& chain =
@@ -165,7 +165,7 @@ bool has_noise(const simulator::SensorsConfig& sensors) {
 
 }  // namespace
 
-bool notices_frozen_sensors(const config::SimulatedDevice& device) {
+bool notices_frozen_sensors(const config::SimulatedDeviceConfig& device) {
   const bool is_noisy = !device.simulation.is_from_file || has_noise(device.simulation.sensors);
   return is_noisy && device.monitor.frozen_samples > 0.0;
 }
@@ -190,7 +190,7 @@ simulator::Simulation make_simulation(const config::Scenario& scenario) {
   return simulation_of(scenario.device, start, make_person(scenario, start), scenario.bystander);
 }
 
-simulator::Simulation make_unheld_simulation(const config::SimulatedDevice& device,
+simulator::Simulation make_unheld_simulation(const config::SimulatedDeviceConfig& device,
                                              const Start& start) {
   return simulation_of(device, start,
                        person::Person({.kind = person::PersonKind::kNone},

@@ -18,7 +18,7 @@ namespace hg::scenario {
 controller::Cycle make_cycle(const config::Scenario& scenario);
 
 /// Whether rule 105 is on: sensors without noise in simulation.yaml give constant values at rest.
-bool notices_frozen_sensors(const config::SimulatedDevice& device);
+bool notices_frozen_sensors(const config::SimulatedDeviceConfig& device);
 
 /// The scenario's person, who grasps the handle of a device at `start`.
 person::Person make_person(const config::Scenario& scenario, const Start& start);
@@ -27,7 +27,7 @@ person::Person make_person(const config::Scenario& scenario, const Start& start)
 /// SetupError when the device cannot reach that pose.
 simulator::Simulation make_simulation(const config::Scenario& scenario);
 /// The device alone at `start` (the pose of the handle does not matter), with a free handle.
-simulator::Simulation make_unheld_simulation(const config::SimulatedDevice& device,
+simulator::Simulation make_unheld_simulation(const config::SimulatedDeviceConfig& device,
                                              const Start& start);
 /// The world of make_simulation() behind the interface of a device, with the faults of the
 /// scenario. Late cycles act in a session or runtime, faults::loads_of(); a hurried solver in the

@@ -87,7 +87,7 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
 
 // applies --plant, --sensors, --hand, --seed and --step
 void apply_to_simulation(const ScenarioOptions& options, config::Scenario& scenario) {
-  config::SimulatedDevice& device = scenario.device;
+  config::SimulatedDeviceConfig& device = scenario.device;
   if (options.plant == "ideal") device.control.method = tracking::Method::kDrives;
   if (options.plant == "elastic" && device.model.actuators.empty()) {
     throw SetupError("--plant elastic: needs 'actuators' in " + device.sources.front().name);

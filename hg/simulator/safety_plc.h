@@ -1,5 +1,5 @@
 /// The safety controller of the simulated device: it monitors switches, scanner and speeds
-/// autonomously and removes the power, whatever the program does.
+/// on its own and removes the power, whatever the program does.
 ///
 /// Source: [HG] III-D layers 1 and 4, [HANDBOOK] 6.5, 6.8:
 ///   motion = stop buttons free and operator holds and

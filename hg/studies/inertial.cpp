@@ -237,7 +237,7 @@ InertialRun play_with_units(const config::Scenario& original, const std::string&
           std::numeric_limits<double>::quiet_NaN());
     }
     player.run();
-    judge.add(player.judged_sample(), player.is_running() && time_s > 0.95 * middle_s);
+    judge.add(player.sample(), player.is_running() && time_s > 0.95 * middle_s);
   }
   InertialRun run = judge.result();
   run.scenario = name;

@@ -32,7 +32,6 @@ class Player {
   const CycleRecord& record() const noexcept { return session_.record(); }
   /// Sample of this period, with the truth; valid between run() and end().
   const Sample& sample() const noexcept { return session_.sample(); }
-  const Sample& judged_sample() const noexcept { return sample(); }
   /// True state at the time of the sensors; valid between begin() and end().
   const Truth& truth() const noexcept { return session_.sample().truth; }
   /// Sensor values of the cycle, to inject faults: may be changed between begin() and run().

@@ -42,7 +42,8 @@ constexpr auto kUntilRunning = std::chrono::seconds(60);
 constexpr auto kUntilEnded = std::chrono::seconds(30);
 constexpr auto kFaultToStop = milliseconds(300);
 constexpr auto kFrozen = std::chrono::seconds(1);
-constexpr double kWatchedAfter_s = 1.0;     // after the session: the device continues autonomously
+constexpr double kWatchedAfter_s =
+    1.0;  // after the session: the device continues without a program
 constexpr std::uint64_t kUnwritten = 1000;  // samples that a recording may lack at its end
 
 struct Description {
@@ -51,12 +52,12 @@ struct Description {
   bool may_die = false;      ///< the controller may end by a signal
   bool is_recorded = true;   ///< the recording is complete except for its end
   bool is_reported = false;  ///< reported by an exit code other than 0
-  bool is_stop = false;      ///< the device has to stop autonomously: no more commands arrive
+  bool is_stop = false;      ///< the device has to stop on its own: no more commands arrive
 };
 
 constexpr auto kDescriptions = std::to_array<Description>({
     {ProcessFault::kNone, "none", "only the stop"},
-    {ProcessFault::kTerminalStalled, "terminal_stalled", "nobody reads what it prints"},
+    {ProcessFault::kTerminalStalled, "terminal_stalled", "its output is not read"},
     {ProcessFault::kTerminalClosed, "terminal_closed", "what it prints has no reader"},
     {ProcessFault::kDiskFull, "disk_full", "no file may grow", false, false, true},
     {ProcessFault::kFolderGone, "folder_gone", "its recording is deleted", false, false, true},
@@ -129,7 +130,7 @@ class Witness final : public device::Device {
   double energy_ = 0.0, watched_s_ = 0.0;
 };
 
-// Serves the device to one controller, and lets it continue autonomously afterwards.
+// Serves the device to one controller, and lets it continue on its own afterwards.
 void serve(udp::DeviceServer& server, Witness& witness, double dt, const std::atomic<bool>& stop) {
   if (!server.wait_for_client(stop)) return;
   server.serve(witness, stop);

@@ -19,7 +19,7 @@ SeededRun play(const Trial& trial, std::uint64_t seed) {
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
     player.begin();
     player.run();
-    summary.add(player.judged_sample());
+    summary.add(player.sample());
     (void)detector.observe(player.record());
   }
   const analysis::TruthSummary& truth = summary.truth();

@@ -222,7 +222,7 @@ def mark_places(panel, run, places):
 
 
 def draw_checkpoints(panel, run):
-    """Circles of 5 cm with the heading in which the handle is requested."""
+    """Circles of 5 cm with the heading that is asked of the handle."""
     from matplotlib.patches import Circle
     for point in run.facts["checkpoints"]:
         x, y, azimuth = point["x_m"], point["y_m"], point["azimuth_rad"]

@@ -103,12 +103,9 @@ void show_progress(std::string_view name, double done_s, double total_s) {
 
 runtime::RuntimeOptions runtime_options(const config::Scenario& scenario,
                                         const RunArguments& arguments) {
-  runtime::RuntimeOptions options;
+  runtime::RuntimeOptions options = scenario::run_options(scenario);
   options.is_fast = true;
-  options.duration_s = arguments.duration_s.value_or(scenario::planned_duration_s(scenario));
-  options.longest_stop_s = scenario::longest_stop_s(scenario);
-  options.changes = scenario.changes;
-  options.load = faults::loads_of(scenario.faults);
+  options.duration_s = arguments.duration_s.value_or(options.duration_s);
   runtime::check_runtime_options(options);
   return options;
 }
@@ -154,11 +151,8 @@ void play_experiment(const PaperExperiment& experiment, const RunArguments& argu
       watcher.recorder ? settle(*watcher.recorder, folder) : std::vector<std::string>();
   write_run(folder, run, watcher.columns);
 
-  analysis::RunFacts facts = scenario::facts_of_scenario(scenario);
+  analysis::RunFacts facts = scenario::facts_of_run(scenario, options, report);
   facts.version = kVersion;
-  facts.rate_Hz = scenario.device.model.rate_Hz;
-  facts.allocations_in_loop = report.allocations;
-  facts.timing.is_fast = true;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
   write_output((folder / "timing.json").string(),
                watcher.summary.to_json(facts, watcher.detector.missing()) + "\n");

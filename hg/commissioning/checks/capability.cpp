@@ -24,7 +24,8 @@ Guarantee worst_direction(const Eigen::Ref<const Eigen::Matrix3Xd>& columns,
   return worst;
 }
 
-Guarantee worst_acceleration(const MatrixJ& J, const Eigen::Ref<const Eigen::VectorXd>& ddq_max) {
+Guarantee worst_acceleration(const model::Jacobian& J,
+                             const Eigen::Ref<const Eigen::VectorXd>& ddq_max) {
   const auto [sigma, U, V] = singular_value_decomposition(J);
   if (sigma.size() < 6 || sigma[5] < kRankTolerance) return {0.0, -1};
   const Eigen::MatrixXd inverse =
@@ -32,8 +33,8 @@ Guarantee worst_acceleration(const MatrixJ& J, const Eigen::Ref<const Eigen::Vec
   return worst_direction(inverse.transpose(), ddq_max);
 }
 
-Conditioning conditioning(const MatrixJ& J, double length) {
-  MatrixJ scaled = J;
+Conditioning conditioning(const model::Jacobian& J, double length) {
+  model::Jacobian scaled = J;
   scaled.topRows<3>() /= length;
   const Eigen::VectorXd sigma = singular_value_decomposition(scaled).sigma;
   if (sigma.size() < 6) return {0.0, kInfinity};

@@ -9,10 +9,9 @@
 
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::checks {
-
-using MatrixJ = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxTwin>;
 
 /// Smallest over all directions of the largest force (N), torque (Nm) or acceleration (m/s^2).
 struct Guarantee {
@@ -27,7 +26,8 @@ Guarantee worst_direction(const Eigen::Ref<const Eigen::Matrix3Xd>& columns,
 
 /// Acceleration of the handle's origin, without angular acceleration, available in every direction
 /// with joint accelerations up to ddq_max; zero where J has not full rank.
-Guarantee worst_acceleration(const MatrixJ& J, const Eigen::Ref<const Eigen::VectorXd>& ddq_max);
+Guarantee worst_acceleration(const model::Jacobian& J,
+                             const Eigen::Ref<const Eigen::VectorXd>& ddq_max);
 
 struct Conditioning {
   double smallest = 0.0;   ///< smallest singular value of the scaled Jacobian
@@ -35,6 +35,6 @@ struct Conditioning {
 };
 
 /// Conditioning of J with its linear rows divided by `length` in m, so that all rows are rad.
-Conditioning conditioning(const MatrixJ& J, double length);
+Conditioning conditioning(const model::Jacobian& J, double length);
 
 }  // namespace hg::checks

@@ -52,7 +52,7 @@ std::vector<CartesianRule> cartesian_rules(const config::DeviceConfig& device,
       const auto axis = static_cast<Eigen::Index>(k % 3);
       const limits::JointLimits& range = limit.axes[k % 3];
       if (!is_limited(range) || !is_near_face(range, chain.pose(limit.frame).p[axis])) continue;
-      const MatrixJ J = manipulator_jacobian(model, chain, limit.frame);
+      const model::Jacobian J = manipulator_jacobian(model, chain, limit.frame);
       double acceleration = 0.0;
       for (Eigen::Index i = 0; i < J.cols(); ++i) {
         const auto& joint = model.joint_limits[static_cast<std::size_t>(i)];

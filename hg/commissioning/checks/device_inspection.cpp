@@ -198,7 +198,7 @@ std::string joint_out_of_singularity(const config::DeviceConfig& device, const S
       Eigen::VectorXd q = survey.most_singular.q;
       q[model.n_p + i] += step;
       chain.update_kinematics(q, zero);
-      const MatrixJ J = manipulator_jacobian(model, chain, model.handle);
+      const model::Jacobian J = manipulator_jacobian(model, chain, model.handle);
       const double value = conditioning(J, survey.length).smallest;
       if (value <= best) continue;
       best = value;

@@ -26,7 +26,7 @@ using config::FileKind;
 // Everything that could be loaded, and what was found on the way.
 struct Check {
   CheckReport report = {};
-  std::list<config::SimulatedDevice> devices;
+  std::list<config::SimulatedDeviceConfig> devices;
   std::list<config::Twin> twins;
   std::list<config::Scenario> scenarios;
   std::vector<std::string> scripts;
@@ -124,7 +124,7 @@ void check_twins(Check& check) {
   const double dt = check.devices.empty() ? kUsualPeriod : check.devices.front().model.dt();
   for (const config::Twin& twin : check.twins) {
     add(inspect(twin, dt), check);
-    for (const config::SimulatedDevice& device : check.devices) {
+    for (const config::SimulatedDeviceConfig& device : check.devices) {
       add(inspect(device, twin), check);
     }
   }

@@ -27,7 +27,7 @@ constexpr double kHigh = 0.95;
 
 // One posture of the twin and the device in it.
 struct Meeting {
-  MatrixJ J_a;
+  model::Jacobian J_a;
   std::optional<Eigen::MatrixXd> manipulator_of_twin;  // J_m^+ J_a, where the device gets there
 };
 
@@ -155,7 +155,8 @@ Match match(const config::DeviceConfig& device, const config::Twin& twin) {
       const scenario::Start start = scenario::find_start(device, moved);
       ++result.reached;
       device_chain.update_kinematics(stacked(start.q_p, start.q_m), zero);
-      const MatrixJ J_m = manipulator_jacobian(device.model, device_chain, device.model.handle);
+      const model::Jacobian J_m =
+          manipulator_jacobian(device.model, device_chain, device.model.handle);
       meeting.manipulator_of_twin =
           LeastSquares(J_m).pseudo_inverse() * Eigen::MatrixXd(meeting.J_a);
     } catch (const SetupError& error) {
@@ -175,7 +176,7 @@ Match match(const config::DeviceConfig& device, const config::Twin& twin) {
   return result;
 }
 
-Findings inspect(const config::SimulatedDevice& device, const config::Twin& twin) {
+Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {
   Collector out(twin.sources, twin.places);
   try {
     scenario::find_start(device, twin);

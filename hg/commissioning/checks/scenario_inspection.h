@@ -36,6 +36,6 @@ struct Match {
 Match match(const config::DeviceConfig& device, const config::Twin& twin);
 
 /// All findings about the pair; they stand at keys of the twin.
-Findings inspect(const config::SimulatedDevice& device, const config::Twin& twin);
+Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin& twin);
 
 }  // namespace hg::checks

@@ -24,7 +24,7 @@ constexpr double kPhase_deg = 16.5;  // see frequency_Hz()
 constexpr double kLeastWay = 0.01;   // m at the handle, over which a spring should be followed
 
 // Mean delay between a wrench and the reaction of the motors.
-double delay_of(const config::SimulatedDevice& device) {
+double delay_of(const config::SimulatedDeviceConfig& device) {
   double delay = device.control.loop.latency;
   if (device.estimation.wrench.low_pass_Hz > 0.0) {
     delay += 1.0 / (kTurn * device.estimation.wrench.low_pass_Hz);
@@ -163,7 +163,8 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
   return acceleration * std::sqrt(mass / stiffness);
 }
 
-StiffnessLimits stiffness_limits(const config::SimulatedDevice& device, const config::Twin& twin) {
+StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
+                                 const config::Twin& twin) {
   const auto [mass, dq] = rendering::felt_mass(twin.model);
   StiffnessLimits limits = {.mass = mass.lb,
                             .period = device.model.dt(),
@@ -176,7 +177,7 @@ StiffnessLimits stiffness_limits(const config::SimulatedDevice& device, const co
   return limits;
 }
 
-void inspect_stiffness(const config::SimulatedDevice& device, const config::Twin& twin,
+void inspect_stiffness(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
                        Collector& out) {
   const StiffnessLimits limits = stiffness_limits(device, twin);
   out.add(Severity::kNote, "end_effector",

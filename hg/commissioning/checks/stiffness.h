@@ -40,10 +40,11 @@ struct StiffnessLimits {
 /// Speed of a hand that explores a surface, m/s; [A].
 inline constexpr double kFeelingSpeed = 0.1;
 
-StiffnessLimits stiffness_limits(const config::SimulatedDevice& device, const config::Twin& twin);
+StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
+                                 const config::Twin& twin);
 
 /// Adds a note with the limits, and a warning for each spring beyond them.
-void inspect_stiffness(const config::SimulatedDevice& device, const config::Twin& twin,
+void inspect_stiffness(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
                        Collector& out);
 
 /// Warnings for each surface beyond the stiffness limits.

@@ -49,7 +49,7 @@ Scene make_scene(const config::DeviceConfig& device) {
   return scene;
 }
 
-bool has_paper_wrench(const MatrixJ& J, const Eigen::VectorXd& available) {
+bool has_paper_wrench(const model::Jacobian& J, const Eigen::VectorXd& available) {
   for (Eigen::Index i = 0; i < J.cols(); ++i) {
     const double needed =
         kPaperForce * J.col(i).head<3>().norm() + kPaperTorque * J.col(i).tail<3>().norm();
@@ -61,8 +61,8 @@ bool has_paper_wrench(const MatrixJ& J, const Eigen::VectorXd& available) {
 // scene.chain: after update() at q
 Posture examine(const Scene& scene, const Eigen::VectorXd& q, double length) {
   const DeviceModel& model = scene.device.model;
-  const MatrixJ J = scene.chain.jacobian(model.handle);
-  const MatrixJ J_m = J.rightCols(model.n_m);
+  const model::Jacobian J = scene.chain.jacobian(model.handle);
+  const model::Jacobian J_m = J.rightCols(model.n_m);
   const Eigen::VectorXd available = scene.effort - scene.chain.gravity().cwiseAbs();
   Posture posture;
   posture.q = q;
@@ -83,7 +83,7 @@ double characteristic_length(Scene& scene, Random& random) {
     const auto q = draw(scene.device, scene.ranges, false, random);
     if (!q) return 1.0;
     scene.chain.update_kinematics(*q, scene.zero);
-    const MatrixJ J = manipulator_jacobian(model, scene.chain, model.handle);
+    const model::Jacobian J = manipulator_jacobian(model, scene.chain, model.handle);
     sum += J.topRows<3>().norm() / std::max(1e-9, J.bottomRows<3>().norm());
   }
   return std::max(1e-3, sum / kPostures);
@@ -277,7 +277,8 @@ Survey survey(const config::DeviceConfig& device, const SurveyOptions& options) 
   return result;
 }
 
-MatrixJ manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain, int frame) {
+model::Jacobian manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain,
+                                     int frame) {
   return chain.jacobian(frame).rightCols(model.n_m);
 }
 

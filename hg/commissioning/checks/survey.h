@@ -88,6 +88,7 @@ struct Survey {
 Survey survey(const config::DeviceConfig& device, const SurveyOptions& options = {});
 
 /// Manipulator columns of the Jacobian of `frame`; `chain`: after update_kinematics().
-MatrixJ manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain, int frame);
+model::Jacobian manipulator_jacobian(const DeviceModel& model, const model::ChainData& chain,
+                                     int frame);
 
 }  // namespace hg::checks

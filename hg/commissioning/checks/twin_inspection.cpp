@@ -149,7 +149,7 @@ TwinFigures twin_figures(const config::Twin& twin, const std::vector<Configurati
     const Eigen::MatrixXd inverse = hg::inverse(chain.M());
     figures.smallest_inertia =
         figures.smallest_inertia.cwiseMin(VectorA(inverse.diagonal().cwiseInverse()));
-    const MatrixJ J = chain.jacobian(twin.model.end_effector);
+    const model::Jacobian J = chain.jacobian(twin.model.end_effector);
     const Eigen::Matrix<double, 6, 6> mobility = J * inverse * J.transpose();
     const auto lightest = [](const Eigen::Matrix3d& part) {
       return 1.0 / symmetric_eigen(part).values[2];

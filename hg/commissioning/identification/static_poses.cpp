@@ -149,7 +149,7 @@ std::vector<VectorM> static_postures(const config::DeviceConfig& device, int cou
   return postures;
 }
 
-StaticPose measure_simulated(const config::SimulatedDevice& device, const VectorM& q_m) {
+StaticPose measure_simulated(const config::SimulatedDeviceConfig& device, const VectorM& q_m) {
   const scenario::Start start = {.T_B_H = {}, .q_p = VectorP::Zero(device.model.n_p), .q_m = q_m};
   simulator::Simulation simulation = scenario::make_unheld_simulation(device, start);
   CommandFrame brakes_closed;

@@ -15,7 +15,7 @@ std::vector<VectorM> static_postures(const config::DeviceConfig& device, int cou
 
 /// Measurement of the simulated device at rest in such a posture, brakes closed, handle free: the
 /// mean over a second, a second after the start.
-StaticPose measure_simulated(const config::SimulatedDevice& device, const VectorM& q_m);
+StaticPose measure_simulated(const config::SimulatedDeviceConfig& device, const VectorM& q_m);
 
 /// Reads one pose per row of a CSV text; rows with the same value in a column `pose` are averaged.
 /// Columns by name, in any order: a_x a_y a_z (acceleration minus gravity, m/s^2), f_x f_y f_z (N),

@@ -90,7 +90,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   BystanderDraft bystander;
   std::vector<surfaces::Surface> surfaces;
   std::vector<TimedPanel> panel;
-  std::optional<SimulatedDevice> device;
+  std::optional<SimulatedDeviceConfig> device;
   std::optional<Twin> twin;
   std::optional<Script> script = Script{};
   LimitCatalogue catalogue;

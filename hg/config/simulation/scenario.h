@@ -32,7 +32,7 @@ struct Scenario {
   std::string description;  ///< description in one sentence
   /// Duration of the run, even if the script is longer; 0 = as the script
   double duration_s = 0.0;
-  SimulatedDevice device;
+  SimulatedDeviceConfig device;
   Twin twin;
   person::PersonKind person = person::PersonKind::kNone;
   Script script;  ///< script, empty unless person is kScript

@@ -239,13 +239,14 @@ SimulationConfig ideal_simulation(const DeviceConfig& device) {
 
 }  // namespace
 
-SimulatedDevice load_simulated_device(const std::filesystem::path& file) {
+SimulatedDeviceConfig load_simulated_device(const std::filesystem::path& file) {
   SourceReader reader;
   return load_simulated_device(file, reader);
 }
 
-SimulatedDevice load_simulated_device(const std::filesystem::path& file, SourceReader& reader) {
-  SimulatedDevice device = {load_device(file, reader), {}};
+SimulatedDeviceConfig load_simulated_device(const std::filesystem::path& file,
+                                            SourceReader& reader) {
+  SimulatedDeviceConfig device = {load_device(file, reader), {}};
   if (device.simulation_file.empty()) {
     device.simulation = ideal_simulation(device);
   } else {
@@ -254,7 +255,7 @@ SimulatedDevice load_simulated_device(const std::filesystem::path& file, SourceR
   return device;
 }
 
-void take_simulation(SimulatedDevice& device, const std::filesystem::path& file,
+void take_simulation(SimulatedDeviceConfig& device, const std::filesystem::path& file,
                      SourceReader& reader) {
   const std::size_t first_source = reader.texts().size();
   device.simulation = load_simulation(file, reader, target_of(device));

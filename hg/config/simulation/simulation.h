@@ -97,18 +97,19 @@ SimulationConfig load_simulation(const std::filesystem::path& file, SourceReader
                                  const SimulationTarget& target);
 
 /// A device with its simulation: ideal sensors, and nothing differs, where its file names none.
-struct SimulatedDevice : DeviceConfig {
+struct SimulatedDeviceConfig : DeviceConfig {
   SimulationConfig simulation;
 };
 
 /// Loads a device with its simulation. Throws SetupError with all faults of the device's file or
 /// else of the simulation's, one per line.
-SimulatedDevice load_simulated_device(const std::filesystem::path& file);
-SimulatedDevice load_simulated_device(const std::filesystem::path& file, SourceReader& reader);
+SimulatedDeviceConfig load_simulated_device(const std::filesystem::path& file);
+SimulatedDeviceConfig load_simulated_device(const std::filesystem::path& file,
+                                            SourceReader& reader);
 
 /// Replaces the device's simulation by that of this file; its texts join those of the device.
 /// Throws SetupError as load_simulation() does.
-void take_simulation(SimulatedDevice& device, const std::filesystem::path& file,
+void take_simulation(SimulatedDeviceConfig& device, const std::filesystem::path& file,
                      SourceReader& reader);
 
 }  // namespace hg::config

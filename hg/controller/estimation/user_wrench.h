@@ -32,8 +32,8 @@ struct WrenchState {
 
 /// Words of the state hash, in its order.
 void hashed(auto& hash, const WrenchState& state) {
-  const auto& [is_started, omega_S, alpha_S, w_S, tare] =
-      state;  // is_started: in the flags of State
+  // is_started: in the flags of EstimationState
+  const auto& [is_started, omega_S, alpha_S, w_S, tare] = state;
   hash.mix(omega_S, alpha_S, w_S, tare);
 }
 

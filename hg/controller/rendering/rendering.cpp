@@ -161,7 +161,7 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const RenderingOptions&
       std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
 }
 
-RenderingState Rendering::start(const VectorM& q_m) const {
+RenderingState Rendering::start(const VectorM& q_m) const noexcept {
   RenderingState state;
   state.reference = {q_m, VectorM::Zero(q_m.size()), VectorM::Zero(q_m.size())};
   const int n_a = twin_.chain.nv();

@@ -77,13 +77,13 @@ class Rendering {
 
   const DeviceModel& device() const noexcept { return device_; }
   const TwinModel& twin() const noexcept { return twin_; }
-  /// Device in the posture of the last step(): with M and c only where the law knows its motors.
+  /// Device in the posture of the last step(): with M and c only where the law models its motors.
   const model::ChainData& device_chain() const noexcept { return device_now_; }
   /// Twin in the posture of the last step(), with M and c.
   const model::ChainData& twin_chain() const noexcept { return twin_now_; }
 
   /// State at rest: manipulator at `q_m`, twin at its start.
-  RenderingState start(const VectorM& q_m) const;
+  RenderingState start(const VectorM& q_m) const noexcept;
 
   /// Changes a parameter of the twin, from the next step() on.
   ChangeStatus change(const ParameterChange& change, RenderingState& state) const noexcept;

@@ -61,7 +61,7 @@ struct LimitRow {
 
 /// Inputs of one cycle.
 struct TaskInput {
-  /// Device in this cycle, after update(); without motors that the law knows update_kinematics()
+  /// Device in this cycle, after update(); without motors in the law update_kinematics()
   /// is enough.
   const model::ChainData& device_chain;
   const model::ChainData& twin_chain;  ///< Twin in this cycle, after update()

@@ -108,7 +108,7 @@ double slowest(const TwinModel& twin, int dof, const TwinParameters& parameters)
 
 }  // namespace
 
-TwinParameters initial_parameters(const TwinModel& twin) {
+TwinParameters initial_parameters(const TwinModel& twin) noexcept {
   TwinParameters parameters;
   for (std::size_t i = 0; i < twin.dofs.size(); ++i) {
     const TwinDof& dof = twin.dofs[i];

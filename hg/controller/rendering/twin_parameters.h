@@ -70,7 +70,7 @@ void hashed(auto& hash, const TwinParameters& parameters, int dofs) {
 }
 
 /// Parameters as the twin was set up, nothing changing.
-TwinParameters initial_parameters(const TwinModel& twin);
+TwinParameters initial_parameters(const TwinModel& twin) noexcept;
 
 /// Sets `change` as a target, or refuses it and changes nothing: unknown parameter or index, a
 /// value outside the range of its Parameter, limits that would cross, no lower limit

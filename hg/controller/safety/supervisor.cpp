@@ -1,6 +1,7 @@
 #include "hg/controller/safety/supervisor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -125,13 +126,16 @@ void break_rule(const Fault& fault, SupervisorState& state, Stop at_least) noexc
   (has_cause ? state.also : state.fault) = fault;
 }
 
-void continue_stop(bool is_at_rest, int longest, double longest_s,
-                   SupervisorState& state) noexcept {
+int samples_of(double time_s, double dt) noexcept {
+  return static_cast<int>(std::lround(time_s / dt));
+}
+
+void continue_stop(bool is_at_rest, double longest_s, double dt, SupervisorState& state) noexcept {
   if (state.mode() != Mode::kStopping) return;
   ++state.stop_samples;
   if (is_at_rest) {
     happen(SafetyEvent::kStandstill, state);
-  } else if (state.stop_samples > longest) {
+  } else if (state.stop_samples > samples_of(longest_s, dt)) {
     break_rule({FaultCode::kStopTooSlow, -1, longest_s, longest_s}, state);
   }
 }

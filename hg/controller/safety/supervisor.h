@@ -55,10 +55,12 @@ Refusal advance(const SupervisorInput& input, SupervisorState& state) noexcept;
 /// Handles a broken rule with the reaction of its row, or `at_least` where that is harder.
 void break_rule(const Fault& fault, SupervisorState& state, Stop at_least = Stop::kNone) noexcept;
 
-/// Counts one more sample of a stop. Ends it when the device `is_at_rest`; reports kStopTooSlow
-/// once it has taken longer than `longest_s`, which is `longest` samples. No effect in other
-/// states.
-void continue_stop(bool is_at_rest, int longest, double longest_s, SupervisorState& state) noexcept;
+/// Number of samples of period `dt` (s) in `time_s`.
+int samples_of(double time_s, double dt) noexcept;
+
+/// Counts one more sample of a stop, of period `dt` (s). Ends it when the device `is_at_rest`;
+/// reports kStopTooSlow once it has taken longer than `longest_s`. No effect in other states.
+void continue_stop(bool is_at_rest, double longest_s, double dt, SupervisorState& state) noexcept;
 
 /// Broken rule that the safety controller's inputs mean in the present state, or kNone.
 Fault check_safety_inputs(const SafetyInputs& safety, const SupervisorState& state) noexcept;

@@ -90,7 +90,7 @@ JointControl::JointControl(const ControlConfig& config, const DeviceModel& devic
   has_feet_ = std::ranges::any_of(actuators_, has_presliding);
 }
 
-ControlState JointControl::start() const {
+ControlState JointControl::start() const noexcept {
   ControlState state;
   state.latency = config_.loop.latency / dt_;
   state.modes = Modes(n_m_);

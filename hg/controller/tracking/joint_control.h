@@ -24,7 +24,7 @@ inline constexpr int kAnswersNeeded = 100;  ///< samples until the latency count
 inline constexpr double kMostFriction = 2.0;
 
 enum class Method {
-  kDrives,   ///< the drives follow the reference autonomously
+  kDrives,   ///< the drives follow the reference on their own
   kModal,    ///< full-state feedback in the modes of the arm
   kMotorPd,  ///< stiffness and damping on the motor side of each joint alone
 };
@@ -96,7 +96,7 @@ class JointControl {
   /// throws.
   JointControl(const ControlConfig& config, const DeviceModel& device);
 
-  ControlState start() const;
+  ControlState start() const noexcept;
   /// Resets the state after a fault, except for the measured latency.
   void restart(ControlState& state) const noexcept;
   /// Evaluates the age of the command at work; call once per sample, with drives `on` or off. Off,

@@ -105,7 +105,7 @@ class SampledLoop {
   }
 
   std::vector<ActuatorModel> actuators_;  // as they really are
-  CommandDelay delay_;
+  DiscreteDelay delay_;
   Layout layout_;
   LinearObservers observers_;
   Eigen::MatrixXd step_;

@@ -41,10 +41,10 @@ Eigen::MatrixXd plant_with_input(const TruePlant& plant, const MatrixM& M) {
   return A;
 }
 
-CommandDelay::CommandDelay(double latency_s, double period_s)
+DiscreteDelay::DiscreteDelay(double latency_s, double period_s)
     : steps_(static_cast<int>(std::lround(latency_s / period_s * kPlantSteps))) {}
 
-int CommandDelay::age(int step) const {
+int DiscreteDelay::age(int step) const {
   // the command of k periods ago has arrived when k kPlantSteps + step >= steps_
   return std::clamp((steps_ - step + kPlantSteps - 1) / kPlantSteps, 0, slots());
 }

@@ -20,9 +20,9 @@ inline constexpr int kPlantSteps = 8;
 Eigen::MatrixXd plant_with_input(const TruePlant& plant, const MatrixM& M);
 
 /// Delay with which torque commands arrive at the motors.
-class CommandDelay {
+class DiscreteDelay {
  public:
-  CommandDelay(double latency_s, double period_s);
+  DiscreteDelay(double latency_s, double period_s);
 
   /// Number of earlier commands still under way at a sample.
   int slots() const { return (steps_ + kPlantSteps - 1) / kPlantSteps; }

@@ -11,7 +11,7 @@ namespace hg::scenario {
 
 class WatchedDevice final : public device::Device {
  public:
-  /// `device` knows its truth(); `model` must outlive this.
+  /// `device` has a truth(); `model` must outlive this.
   WatchedDevice(std::unique_ptr<device::Device> device, const DeviceModel& model);
 
   void read(SensorFrame& sensors) noexcept override { device_->read(sensors); }

@@ -4,7 +4,6 @@
 /// Source: [HANDBOOK] 7. Forces are fitted along the axis of the stroke, torques about it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -25,8 +24,6 @@ struct DynamicsConfig {
 
 /// Number of stroke axes; 0..2: along x, y, z of B; 3..5: azimuth, pitch, roll of the hand.
 inline constexpr int kStrokeAxes = 6;
-inline constexpr std::array<const char*, kStrokeAxes> kStrokeNames = {"x",       "y",     "z",
-                                                                      "azimuth", "pitch", "roll"};
 
 struct Dynamics {
   DynamicFit fit;

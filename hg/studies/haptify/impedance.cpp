@@ -17,7 +17,7 @@ config::Scenario prepared(const config::Scenario& scenario, const ImpedanceConfi
                           const ImpedanceCase& what) {
   config::Scenario pushed = scenario;
   if (what.is_rigid) studies::set_free_twin(pushed, config.rigid);
-  config::SimulatedDevice& device = pushed.device;
+  config::SimulatedDeviceConfig& device = pushed.device;
   device.control.method = what.is_modal ? tracking::Method::kModal : tracking::Method::kMotorPd;
   if (!what.has_friction) studies::take_friction(device.model);
   if (what.is_rigid) device.control.error_max = kInfinity;  // the deflection is what is measured

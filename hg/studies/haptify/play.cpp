@@ -50,7 +50,7 @@ Played play(const config::Scenario& scenario, const Disturbance& disturbance) {
     if (disturbance && player.is_running()) {
       disturbance(player.record().time_s, player.command().dq_p);
     }
-    const Sample& sample = player.judged_sample();
+    const Sample& sample = player.sample();
     summary.add(sample);
     const CycleRecord& record = sample.record;
     if (record.time_s < grasp_s) continue;

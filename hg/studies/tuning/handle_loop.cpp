@@ -343,7 +343,7 @@ class Period {
   DeviceModel model_;
   tracking::TruePlant plant_;
   double dt_;
-  tracking::CommandDelay command_delay_;
+  tracking::DiscreteDelay command_delay_;
   tracking::LinearObservers observers_;
   int average_, delay_;  // of the wrench, half periods
   Layout layout_;

@@ -1,7 +1,7 @@
 /// The whole loop around the handle as a linear system: the person's hand, series elastic arm,
 /// sensors, estimation, a free body as the twin, and the torque control.
 ///
-/// Unlike control/loop_stability.h, which has feedback alone, the hand's force passes through the
+/// Unlike tracking/loop_stability.h, which has feedback alone, the hand's force passes through the
 /// force/torque sensor into twin and feedforward here: felt impedance, noise at the handle, and
 /// stability with a given hand follow from one matrix. Small motions about rest in one posture,
 /// without friction, torque limits, tremor, gantry, and payload (whose inertia is compensated by

@@ -22,8 +22,8 @@ struct Deviation {
 std::vector<Deviation> deviations(const tracking::Loop& nominal);
 
 /// Deviations in a hand: none; 1.5 times the latency; torques that follow half as fast. The last
-/// occurs when motors are at their peak (follow_torque() in control/joint_control.cpp) and can make
-/// a stable hand oscillate for ever.
+/// occurs when motors are at their peak (follow_torque() in tracking/joint_control.cpp) and can
+/// make a stable hand oscillate for ever.
 std::vector<Deviation> deviations_in_hand(const tracking::Loop& nominal);
 
 /// Deviations in joints with presliding: the friction has not slipped, with a stiffness of 0.5, 1

@@ -17,7 +17,7 @@ double rounding(double step) { return step / std::sqrt(12.0); }
 
 }  // namespace
 
-TunedDevice device_of(const config::SimulatedDevice& device) {
+TunedDevice device_of(const config::SimulatedDeviceConfig& device) {
   const auto refuse = [&](const std::string& why) {
     throw SetupError(fmt::format(
         "{}: {}", device.sources.empty() ? device.name : device.sources.front().name, why));
@@ -51,7 +51,7 @@ TunedDevice device_of(const config::SimulatedDevice& device) {
                      .low_pass_Hz = device.estimation.wrench.low_pass_Hz}};
 }
 
-Noise noise_of(const config::SimulatedDevice& device) {
+Noise noise_of(const config::SimulatedDeviceConfig& device) {
   const simulator::SensorsConfig& sensors = device.simulation.sensors;
   const Payload& payload = device.estimation.wrench.payload;
   const double accelerometer = sensors.accelerometer.noise * payload.mass;
@@ -69,7 +69,7 @@ Noise noise_of(const config::SimulatedDevice& device) {
   return noise;
 }
 
-Eigen::VectorXd unexpected_friction(const config::SimulatedDevice& device) {
+Eigen::VectorXd unexpected_friction(const config::SimulatedDeviceConfig& device) {
   constexpr double kShare = 0.3;
   Eigen::VectorXd friction(device.model.n_m);
   for (int i = 0; i < device.model.n_m; ++i) {
@@ -78,7 +78,7 @@ Eigen::VectorXd unexpected_friction(const config::SimulatedDevice& device) {
   return friction;
 }
 
-tracking::TruePlant simulated(const config::SimulatedDevice& device) {
+tracking::TruePlant simulated(const config::SimulatedDeviceConfig& device) {
   const config::RealityFactors& factors = device.simulation.factors;
   tracking::TruePlant plant = {device.model.actuators, config::actual(device.control.loop, factors),
                                factors.mass};

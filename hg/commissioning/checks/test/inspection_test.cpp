@@ -357,7 +357,7 @@ INSTANTIATE_TEST_SUITE_P(
              "<link name=\"leaf\""}),
     name_of);
 
-config::SimulatedDevice shipped_device() {
+config::SimulatedDeviceConfig shipped_device() {
   return config::load_simulated_device("models/haptic_giant/device.yaml");
 }
 
@@ -374,7 +374,7 @@ TEST(Pair, StartInTheFloorIsAFault) {
   config::SourceReader reader =
       reader_of("models/haptic_giant/device.yaml", "models/haptic_giant/haptic_giant.urdf",
                 {"floor_z_m: -2.15", "floor_z_m: 0.9", "", ""});
-  const config::SimulatedDevice device = config::load_simulated_device("f.yaml", reader);
+  const config::SimulatedDeviceConfig device = config::load_simulated_device("f.yaml", reader);
   const Findings findings = inspect(device, door({}));
   ASSERT_FALSE(findings.empty());
   EXPECT_EQ(findings.front().severity, Severity::kFault);
@@ -382,7 +382,7 @@ TEST(Pair, StartInTheFloorIsAFault) {
 }
 
 TEST(Pair, AccelerationThatTheHandCannotBrakeIsNamedWithTheOneItCan) {
-  const config::SimulatedDevice device = shipped_device();
+  const config::SimulatedDeviceConfig device = shipped_device();
   const Findings bad =
       inspect(device, door({"ddq_max_rad_per_s2: 3 ", "ddq_max_rad_per_s2: 25 ", "", ""}));
   const Finding* finding = find(bad, "joints.hinge.ddq_max_rad_per_s2", "Cartesian limits");
@@ -401,7 +401,7 @@ TEST(Pair, SpeedThatTheHandCannotFollowIsFound) {
 }
 
 TEST(Pair, LeverThatTheWristCannotStopIsFound) {
-  const config::SimulatedDevice device = shipped_device();
+  const config::SimulatedDeviceConfig device = shipped_device();
   const Findings findings =
       inspect(device, door({"ddq_max_rad_per_s2: 20", "ddq_max_rad_per_s2: 44", "", ""}));
   EXPECT_NE(find(findings, "joints.lever.ddq_max_rad_per_s2", "joint m"), nullptr)
@@ -409,7 +409,7 @@ TEST(Pair, LeverThatTheWristCannotStopIsFound) {
 }
 
 TEST(Pair, PosturesOutOfReachAreCountedAndOneIsExplained) {
-  const config::SimulatedDevice device = shipped_device();
+  const config::SimulatedDeviceConfig device = shipped_device();
   const config::Twin excavator = config::load_twin("models/twins/excavator/twin.yaml");
   const Findings findings = inspect(device, excavator);
   const Finding* finding = find(findings, "placement", "% of the twin's postures");
@@ -432,7 +432,7 @@ TEST(Pair, TwinThatIsTooMuchWorkForTheRateIsFound) {
     config::SourceReader reader({{"snake.urdf", urdf + "</robot>"},
                                  {"f.yaml", "name: snake\nurdf: snake.urdf\nend_effector: l" +
                                                 std::to_string(dofs) + "\n"}});
-    config::SimulatedDevice device = shipped_device();
+    config::SimulatedDeviceConfig device = shipped_device();
     device.rendering.law = law;
     device.model.rate_Hz = rate_Hz;
     const Findings findings = inspect(device, config::load_twin("f.yaml", reader));
@@ -457,7 +457,7 @@ TEST(TwinFigures, DrawTheHalfLimitedJointWithinItsLimit) {
   const int index = twin.model.dofs[0].q_index;
   twin.model.q_start[index] = 4.0;
   for (const ConfigurationA& q : twin_postures(twin, 100, 1)) EXPECT_GE(q[index], 4.0);
-  config::SimulatedDevice device = shipped_device();
+  config::SimulatedDeviceConfig device = shipped_device();
   device.model.joint_limits[5] = {.q_min = 4.0, .q_max = kInfinity};
   const JointRanges ranges = joint_ranges(device);
   EXPECT_EQ(ranges.lower[7], 4.0);
@@ -491,7 +491,7 @@ TEST(SynchronisationPole, DividesWhatComesTogetherFromWhatRunsAway) {
 }
 
 TEST(Shipped, DeviceAndTwinsHaveNoFaultsAndNoWarningsButTheExplainedOnes) {
-  const config::SimulatedDevice device = shipped_device();
+  const config::SimulatedDeviceConfig device = shipped_device();
   Findings all = inspect(device, survey(device));
   for (const char* name : {"door", "excavator", "free_space"}) {
     const config::Twin twin = config::load_twin(std::string("models/twins/") + name + "/twin.yaml");

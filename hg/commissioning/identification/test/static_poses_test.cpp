@@ -12,14 +12,14 @@
 namespace hg::identification {
 namespace {
 
-const config::SimulatedDevice& reference_device() {
-  static const config::SimulatedDevice device =
+const config::SimulatedDeviceConfig& reference_device() {
+  static const config::SimulatedDeviceConfig device =
       config::load_simulated_device("models/haptic_giant/device.yaml");
   return device;
 }
 
 TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
-  const config::SimulatedDevice& device = reference_device();
+  const config::SimulatedDeviceConfig& device = reference_device();
   const std::vector<VectorM> postures = static_postures(device, 12);
   ASSERT_EQ(postures.size(), 12u);
   std::vector<StaticPose> poses;
@@ -48,7 +48,7 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
 }
 
 TEST(SimulatedPoses, ShowThePayloadOfTheDevice) {
-  const config::SimulatedDevice& device = reference_device();
+  const config::SimulatedDeviceConfig& device = reference_device();
   const Payload& configured = device.estimation.wrench.payload;
   ASSERT_GT(configured.mass, 0.0);
   std::vector<StaticPose> poses;

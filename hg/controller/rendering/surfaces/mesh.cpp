@@ -207,7 +207,8 @@ Mesh read_stl(std::string_view content, std::string_view source, double scale) {
                          content.size() == kHeader + kRecord * std::size_t{count_of(content)};
   if (!is_binary && !content.starts_with("solid")) {
     throw SetupError(std::string(source) +
-                     ": no STL file: neither 'solid' nor of the length of its count of triangles");
+                     ": no STL file: it neither begins with 'solid' nor has the length that its "
+                     "count of triangles demands");
   }
   const std::vector<Corners> triangles =
       is_binary ? read_binary(content, scale) : read_text(content, source, scale);

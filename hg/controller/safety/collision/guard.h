@@ -84,17 +84,17 @@ class Guard {
   /// Throws SetupError when too many pairs would have to be watched.
   Guard(const CollisionConfig& config, const Braking& braking, const model::ChainModel& chain);
 
-  /// Predicts braking from `q` and `dq`. `is_moving` = the device may move autonomously. As long as
-  /// it may not, pairs nearer than the safe distance are accepted as they are; afterwards they must
+  /// Predicts braking from `q` and `dq`. `is_powered`: the drives move the device. As long as they
+  /// do not, pairs nearer than the safe distance are accepted as they are; afterwards they must
   /// not come 5 mm nearer.
-  Prediction step(const VectorPM& q, const VectorPM& dq, bool is_moving,
+  Prediction step(const VectorPM& q, const VectorPM& dq, bool is_powered,
                   CollisionState& state) noexcept;
 
  private:
   struct Path;  // braking path
 
   double distance(int pair, const Path& path, double time) noexcept;
-  void evaluate(int pair, const Path& path, bool is_moving, int& budget,
+  void evaluate(int pair, const Path& path, bool is_powered, int& budget,
                 CollisionState& state) noexcept;
   void fade(const VectorPM& q, const VectorPM& stop, CollisionState& state) noexcept;
 

@@ -166,7 +166,7 @@ struct Results {
   }
 };
 
-// A device that runs and does as it is command, with noise on what has noise.
+// A device that runs and follows its commands, with noise on what has noise.
 struct Bench {
   Monitor monitor;
   MonitorState state;

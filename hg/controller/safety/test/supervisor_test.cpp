@@ -77,7 +77,7 @@ Refusal let_happen(SafetyEvent event, SupervisorState& state) {
       input.safety.operator_enable = false;
       break;
     case SafetyEvent::kStandstill:
-      continue_stop(true, 100, 0.1, state);
+      continue_stop(true, 0.1, 1e-3, state);
       return Refusal::kNone;
     case SafetyEvent::kRule:
       break_rule(kRuleFault, state);
@@ -229,7 +229,7 @@ TEST(Supervisor, AnOperatorWhoLetsGoStopsItWithoutAFaultToReset) {
   input.safety.operator_enable = true;
   advance(input, state);
   EXPECT_EQ(state.state, SafetyState::kToReady) << "holding it again does not continue";
-  continue_stop(true, 100, 0.1, state);
+  continue_stop(true, 0.1, 1e-3, state);
   EXPECT_EQ(state.state, SafetyState::kReady);
   EXPECT_EQ(state.fault.code, FaultCode::kNone);
   EXPECT_EQ(state.stop, Stop::kNone);
@@ -282,9 +282,9 @@ TEST(Supervisor, AStopThatTakesTooLongIsBrokenOff) {
   for (const SafetyState stopping :
        {SafetyState::kToArmed, SafetyState::kToReady, SafetyState::kToFault}) {
     SupervisorState state = in(stopping);
-    for (int k = 0; k < 100; ++k) continue_stop(false, 100, 0.1, state);
+    for (int k = 0; k < 100; ++k) continue_stop(false, 0.1, 1e-3, state);
     EXPECT_EQ(state.state, stopping);
-    continue_stop(false, 100, 0.1, state);
+    continue_stop(false, 0.1, 1e-3, state);
     EXPECT_EQ(state.state, SafetyState::kFault);
     EXPECT_EQ(state.stop, Stop::kSto);
     const Fault& reported = stopping == SafetyState::kToFault ? state.also : state.fault;
@@ -297,9 +297,9 @@ TEST(Supervisor, AStopDoesNotGetNewTimeWhenItsReasonChanges) {
   SupervisorInput input = quiet(SafetyState::kByHand);
   input.request = ModeRequest::kStop;
   advance(input, state);
-  for (int k = 0; k < 90; ++k) continue_stop(false, 100, 0.1, state);
+  for (int k = 0; k < 90; ++k) continue_stop(false, 0.1, 1e-3, state);
   break_rule(kRuleFault, state);
-  for (int k = 0; k < 11; ++k) continue_stop(false, 100, 0.1, state);
+  for (int k = 0; k < 11; ++k) continue_stop(false, 0.1, 1e-3, state);
   EXPECT_EQ(state.state, SafetyState::kFault);
   EXPECT_EQ(state.also.code, FaultCode::kStopTooSlow);
 }

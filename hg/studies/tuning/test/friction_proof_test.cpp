@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPresliding = 1e-4;  // rad, of all joints
 
-config::SimulatedDevice reference() {
+config::SimulatedDeviceConfig reference() {
   return config::load_simulated_device("models/haptic_giant/device.yaml");
 }
 

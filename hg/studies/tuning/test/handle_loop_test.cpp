@@ -139,7 +139,7 @@ TEST(HandleLoop, NoiseComesFromWhatIsNoisyAndNothingElse) {
 TEST(HandleLoop, HasTheNoiseOfTheWrenchAtOtherRates) {
   const config::Scenario scenario = walk();
   const auto vibration = [&](double rate_Hz) {
-    config::SimulatedDevice device = scenario.device;
+    config::SimulatedDeviceConfig device = scenario.device;
     device.control.flatness_Hz = 40.0;
     device.model.rate_Hz = rate_Hz;
     return feel(linearise(device_of(device), simulated(device), {}, person::HandImpedance{},

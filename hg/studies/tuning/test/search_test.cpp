@@ -14,7 +14,7 @@ namespace hg::tuning {
 namespace {
 
 TuningProblem problem_of(int postures) {
-  const config::SimulatedDevice device =
+  const config::SimulatedDeviceConfig device =
       config::load_simulated_device("models/haptic_giant/device.yaml");
   TuningProblem problem = {.device = device_of(device),
                            .noise = noise_of(device),

@@ -58,9 +58,11 @@ TEST(ReadStl, ReportsWhatIsWrong) {
     return message_of([&] { read_stl(content, "plate.stl", 1.0); });
   };
   EXPECT_EQ(message(""),
-            "plate.stl: no STL file: neither 'solid' nor of the length of its count of triangles");
+            "plate.stl: no STL file: it neither begins with 'solid' nor has the length that its "
+            "count of triangles demands");
   EXPECT_EQ(message(binary({{}}).substr(1)),
-            "plate.stl: no STL file: neither 'solid' nor of the length of its count of triangles");
+            "plate.stl: no STL file: it neither begins with 'solid' nor has the length that its "
+            "count of triangles demands");
   std::string text = kText;
   EXPECT_EQ(message(text.replace(text.find("1e3"), 3, "l00")),
             "plate.stl:5: a number is expected after 'vertex', got 'l00'");
