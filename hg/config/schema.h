@@ -104,11 +104,11 @@ using Choices = std::span<const Choice<std::type_identity_t<T>>>;
 /// A choice per enumerator of E, named like it: "either_way" for kEitherWay.
 template <class E>
 constexpr auto choices_of() {
-  return []<std::size_t... i>(std::index_sequence<i...>) {
+  const auto choices = []<std::size_t... i>(std::index_sequence<i...>) {
     return std::array{
         Choice<E>{key_name<enumerators<E>()[i].value>(), enumerators<E>()[i].value}...};
-  }
-  (std::make_index_sequence<enumerators<E>().size()>{});
+  };
+  return choices(std::make_index_sequence<enumerators<E>().size()>{});
 }
 
 // ---- limits, chains, poses ----
