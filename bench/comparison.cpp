@@ -11,7 +11,7 @@ namespace {
 constexpr double kNothing = 1e-10;
 
 double value_of(const hqp::Problem& problem, int row, std::span<const double> x) {
-  if (problem.variable(row) >= 0) return x[static_cast<std::size_t>(problem.variable(row))];
+  if (problem.variable(row) >= 0) return x[problem.variable(row)];
   const std::span<const double> c = problem.coefficients(row);
   double value = 0.0;
   for (std::size_t i = 0; i < c.size(); ++i) value += c[i] * x[i];

@@ -14,7 +14,7 @@ hqp::Capacity capacity_of(int n, int levels) {
 }
 
 std::span<const double> span_of(const Eigen::VectorXd& v) {
-  return {v.data(), static_cast<std::size_t>(v.size())};
+  return {v.data(), v.data() + v.size()};
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ void GrowingProblem::add_rows() {
   for (int level = 0; level < levels; ++level) {
     problem_.add_level();
     for (int i = level * count / levels; i < (level + 1) * count / levels; ++i) {
-      const Row& row = rows_[static_cast<std::size_t>(i)];
+      const Row& row = rows_[i];
       if (row.variable >= 0) {
         problem_.add_bound(row.variable, {0.0, 0.0});
       } else {
@@ -56,7 +56,7 @@ void GrowingProblem::add_rows() {
 
 void GrowingProblem::set_bounds() {
   for (int id = 0; id < first_wish(); ++id) {
-    const Row& row = rows_[static_cast<std::size_t>(id)];
+    const Row& row = rows_[id];
     const double at = row.variable >= 0 ? point_[row.variable] : row.direction.dot(point_);
     if (row.variable < 0) problem_.set_row(id, span_of(row.direction));
     problem_.set_bounds(id, {at - row.below, at + row.above});

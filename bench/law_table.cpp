@@ -46,7 +46,7 @@ class Observer {
   void add(const CycleRecord& record) {
     if (record.solver_status != SolverStatus::kSolved) ++run_.unsolved;
     int changes = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(record.limit_count); ++i) {
+    for (int i = 0; i < record.limit_count; ++i) {
       const LimitReport& limit = record.limits[i];
       const bool is_acting = limit.state != LimitState::kInactive;
       if (is_acting != is_acting_[i]) ++changes;

@@ -32,7 +32,7 @@ bool is_problem_file(const std::string& name) {
 
 std::size_t bytes_of(const hqp::Problem& problem) {
   const hqp::Capacity& capacity = problem.capacity();
-  return sizeof(double) * static_cast<std::size_t>((capacity.variables + 6) * capacity.rows);
+  return sizeof(double) * (capacity.variables + 6) * capacity.rows;
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void ProblemSource::read_reference(const std::string& stem) {
   }
   for (std::size_t i = 0; i < norms_.size(); ++i) {
     const int variables = block_[i].variables(), levels = block_[i].levels();
-    if (norms_[i].size() != static_cast<std::size_t>(variables + levels)) {
+    if (std::ssize(norms_[i]) != variables + levels) {
       throw SetupError(stem + ".sol.gz:" + std::to_string(i + 1) + ": expected " +
                        std::to_string(variables) + " variables and " + std::to_string(levels) +
                        " slacks, got " + std::to_string(norms_[i].size()) + " numbers");

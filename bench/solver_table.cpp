@@ -82,7 +82,7 @@ class SetTimer {
     for (int pass = 0; pass < passes_; ++pass) {
       for (std::size_t i = 0; i < block.size(); ++i) {
         *placed_ = block[i];
-        x.resize(static_cast<std::size_t>(placed_->variables()));
+        x.resize(placed_->variables());
         const Clock::time_point begin = Clock::now();
         const bool is_solved = baseline_(*placed_, x.data());
         cascade_.times.add(first_ + i, microseconds_since(begin));

@@ -5,6 +5,7 @@
 
 #include "bench/player.h"
 #include "bench/times.h"
+#include "hg/core/index.h"
 #include "hg/core/stage_probe.h"
 
 namespace hg::bench {
@@ -21,14 +22,13 @@ class StopWatch {
     player.cycle().watch({});
   }
 
-  double us(Stage stage) const noexcept { return us_[static_cast<std::size_t>(stage)]; }
+  double us(Stage stage) const noexcept { return us_[index(stage)]; }
 
  private:
   static void lap(void* listener, Stage stage) noexcept {
     auto& watch = *static_cast<StopWatch*>(listener);
     const Clock::time_point now = Clock::now();
-    watch.us_[static_cast<std::size_t>(stage)] +=
-        std::chrono::duration<double, std::micro>(now - watch.last_).count();
+    watch.us_[index(stage)] += std::chrono::duration<double, std::micro>(now - watch.last_).count();
     watch.last_ = now;
   }
 

@@ -21,6 +21,7 @@
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/config/simulation/scenario.h"
+#include "hg/config/simulation/script_schema.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/scratch_folder.h"
@@ -65,12 +66,9 @@ struct SeedsArguments {
   std::vector<std::string> hands = {"own"};  ///< hands: "own" or presets
   int count = 16;
   std::uint64_t first = 1;
-  std::string law;       ///< law, "gauss" or "paper"; empty = the device's
-  std::string bounds;    ///< bounds, "recoverable" or "paper"; empty = the device's
-  std::string gantry;    ///< guidance of the gantry, "law" or "rule"; empty = the device's
-  std::string braking;   ///< braking, "alone" or "together"; empty = the device's
-  std::string json;      ///< file for all runs; empty = none
-  std::string markdown;  ///< file for the table; empty = none
+  scenario::ScenarioOptions world;  ///< law, bounds, gantry and braking of all runs
+  std::string json;                 ///< file for all runs; empty = none
+  std::string markdown;             ///< file for the table; empty = none
 };
 
 // of the first repetition of `hapticgiant haptify`, whose numbers are repeated
@@ -214,12 +212,9 @@ int experiment_seeds(const SeedsArguments& arguments) {
   for (const std::string& scenario : arguments.scenarios) {
     for (const std::string& hand : arguments.hands) {
       RunArguments run;
+      run.world = arguments.world;
       run.world.scenario = scenario;
       run.world.hand = hand == "own" ? "" : hand;
-      run.world.law = arguments.law;
-      run.world.bounds = arguments.bounds;
-      run.world.gantry = arguments.gantry;
-      run.world.braking = arguments.braking;
       trials.push_back(
           {.name = name_of(scenario), .hand = run.world.hand, .scenario = scripted_scenario(run)});
     }
@@ -240,9 +235,11 @@ void add_seeds(CLI::App& experiment, int& exit_code) {
       "seeds", "what scenarios show over many seeds and hands: limits, faults, events, errors");
   command->add_option("scenarios", arguments->scenarios, "scenario files or names")
       ->capture_default_str();
+  std::vector<std::string> hands = names_of(config::kHandPresets);
+  hands.insert(hands.begin(), "own");
   command->add_option("--hands", arguments->hands, "own: that of each scenario; or presets")
       ->delimiter(',')
-      ->check(CLI::IsMember({"own", "relaxed", "normal", "stiff"}))
+      ->check(CLI::IsMember(hands))
       ->capture_default_str();
   command->add_option("--count", arguments->count, "seeds per scenario and hand")
       ->check(whole_number(1.0, 1e6))
@@ -250,14 +247,7 @@ void add_seeds(CLI::App& experiment, int& exit_code) {
   command->add_option("--first", arguments->first, "the first of them")
       ->check(whole_number(0.0))
       ->capture_default_str();
-  command->add_option("--law", arguments->law, "gauss or paper; default: the device's")
-      ->check(CLI::IsMember({"gauss", "paper"}));
-  command->add_option("--bounds", arguments->bounds, "recoverable or paper; default: the device's")
-      ->check(CLI::IsMember({"recoverable", "paper"}));
-  command->add_option("--gantry", arguments->gantry, "law or rule; default: the device's")
-      ->check(CLI::IsMember({"law", "rule"}));
-  command->add_option("--braking", arguments->braking, "alone or together; default: the device's")
-      ->check(CLI::IsMember({"alone", "together"}));
+  add_law_options(*command, arguments->world);
   command->add_option("--json", arguments->json, "write all runs as JSON to this file");
   command->add_option("--markdown", arguments->markdown,
                       "write the table as Markdown to this file");

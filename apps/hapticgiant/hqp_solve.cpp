@@ -68,7 +68,7 @@ void explain(std::size_t index, const hqp::RecordedProblem& recorded,
     throw SetupError(fmt::format("--level: problem {} has the levels 0..{}, got {}", index,
                                  problem.levels() - 1, *level));
   }
-  std::vector<double> mu(static_cast<std::size_t>(problem.rows()));
+  std::vector<double> mu(problem.rows());
   const double remainder = player.solver.multipliers(problem, options, player.solution, *level, mu);
   print_out("{}", hqp::to_string(problem, *level, mu, remainder));
 }
@@ -135,7 +135,7 @@ Problems read(const HqpSolveArguments& arguments, std::size_t& first) {
   Problems problems = hqp::read_recorded_problems(arguments.file);
   first = 0;
   if (!arguments.problem) return problems;
-  first = static_cast<std::size_t>(*arguments.problem);
+  first = *arguments.problem;
   if (first >= problems.size()) {
     throw SetupError(fmt::format("--problem: {} has the problems 0..{}, got {}", arguments.file,
                                  problems.size() - 1, first));

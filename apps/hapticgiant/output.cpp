@@ -56,7 +56,7 @@ void write_all(int file, std::string_view text,
       if (file == STDOUT_FILENO && !reader_has_gone(file, errno)) output_error = errno;
       return;
     }
-    text.remove_prefix(static_cast<std::size_t>(written));
+    text.remove_prefix(written);
   }
 }
 

@@ -108,7 +108,7 @@ void print_conditioning(const Datasheet& sheet) {
   const Eigen::VectorXd& q = sheet.most_singular.q;
   for (std::size_t i = 0; i < sheet.joints.size(); ++i) {
     if (sheet.joints[i].is_gantry) continue;
-    print_out(" {} {:.2f}", sheet.joints[i].name, q[static_cast<Eigen::Index>(i)]);
+    print_out(" {} {:.2f}", sheet.joints[i].name, q[i]);
   }
   print_out("\n");
 }
@@ -125,14 +125,8 @@ void print_bandwidth(const checks::Bandwidth& bandwidth) {
   print_out("\n");
 }
 
-nlohmann::json finite(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
-
 nlohmann::json distribution_json(const Distribution& d) {
-  return {{"least", finite(d.smallest)},
-          {"low_5_percent", finite(d.low)},
-          {"median", finite(d.median)}};
+  return {{"least", d.smallest}, {"low_5_percent", d.low}, {"median", d.median}};
 }
 
 nlohmann::json vector_json(const Eigen::Ref<const Eigen::VectorXd>& v) {
@@ -144,12 +138,12 @@ nlohmann::json joint_json(const JointLine& joint) {
   const std::string effort = joint.is_angle ? "Nm" : "N";
   return {{"name", joint.name},
           {"gantry", joint.is_gantry},
-          {"q_min_" + unit, finite(joint.range.lb)},
-          {"q_max_" + unit, finite(joint.range.ub)},
-          {"dq_max_" + unit + "_per_s", finite(joint.dq_max)},
-          {"ddq_max_" + unit + "_per_s2", finite(joint.ddq_max)},
-          {"effort_max_" + effort, finite(joint.effort_max)},
-          {"gravity_max_" + effort, finite(joint.gravity_max)}};
+          {"q_min_" + unit, joint.range.lb},
+          {"q_max_" + unit, joint.range.ub},
+          {"dq_max_" + unit + "_per_s", joint.dq_max},
+          {"ddq_max_" + unit + "_per_s2", joint.ddq_max},
+          {"effort_max_" + effort, joint.effort_max},
+          {"gravity_max_" + effort, joint.gravity_max}};
 }
 
 // prints, of axes with the same limit, the one that needs most of it
@@ -174,8 +168,8 @@ nlohmann::json stopping_json(const Datasheet& sheet) {
     const std::string unit = axis.is_angle ? "rad" : "m";
     axes.push_back({{"name", axis.name},
                     {"distance_" + unit, axis.distance},
-                    {"needs_" + unit, finite(axis.need.distance)},
-                    {"needs_s", finite(axis.need.time)}});
+                    {"needs_" + unit, axis.need.distance},
+                    {"needs_s", axis.need.time}});
   }
   return {{"time_s", sheet.stop_time}, {"axes", axes}};
 }
@@ -227,7 +221,7 @@ nlohmann::json datasheet_json(const Datasheet& sheet) {
     json["free_body_mass_kg"] = sheet.free_body_mass;
   }
   json["acceleration_m_per_s2"] = distribution_json(sheet.acceleration);
-  json["condition_median"] = finite(sheet.condition_median);
+  json["condition_median"] = sheet.condition_median;
   json["smallest_singular_value"] = sheet.most_singular.conditioning.smallest;
   json["most_singular_posture"] = vector_json(sheet.most_singular.q);
   return json;

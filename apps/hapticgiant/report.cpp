@@ -48,7 +48,7 @@ std::string read_all(int descriptor) {
     const ssize_t count = read(descriptor, part, sizeof part);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return text;
-    text.append(part, static_cast<std::size_t>(count));
+    text.append(part, count);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <utility>
@@ -316,7 +317,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   bool is_written = recorded.is_whole();
   try {
     if (!arguments.summary.empty()) {
-      write_output(arguments.summary, observers.summary.to_json(facts, missing));
+      write_output(arguments.summary, observers.summary.to_json(facts, missing).dump(2) + "\n");
     }
   } catch (const SetupError& error) {
     print_error("{}\n", error.what());

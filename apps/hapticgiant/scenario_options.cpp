@@ -11,30 +11,17 @@
 #include "hg/config/simulation/script_schema.h"
 
 namespace hg::apps {
-namespace {
-
-template <typename List>
-std::vector<std::string> names_of(const List& choices) {
-  std::vector<std::string> names;
-  for (const auto& choice : choices) names.emplace_back(choice.name);
-  return names;
-}
-
-// an option that takes one of these names: "off, observe or act" and `what` it is about
-template <typename List>
-void add_choice(CLI::App& command, const char* option, std::string& value, const List& choices,
-                const char* what = "") {
-  std::vector<std::string> names = names_of(choices);
-  CLI::IsMember check(names);
-  const std::string last = " or " + names.back();
+void add_choice(CLI::App& command, const char* option, std::string& value,
+                std::vector<std::string> names, const char* what) {
+  const CLI::IsMember check(names);
+  const std::string last = names.back();
   names.pop_back();
   command
-      .add_option(option, value,
-                  fmt::format("{}{}{}; default: the device's", fmt::join(names, ", "), last, what))
+      .add_option(
+          option, value,
+          fmt::format("{} or {}{}; default: the device's", fmt::join(names, ", "), last, what))
       ->check(check);
 }
-
-}  // namespace
 
 void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
   command
@@ -66,11 +53,14 @@ void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
 }
 
 void add_law_options(CLI::App& command, scenario::ScenarioOptions& world) {
-  add_choice(command, "--law", world.law, config::kLaws);
-  add_choice(command, "--bounds", world.bounds, config::kBounds);
-  add_choice(command, "--gantry", world.gantry, config::kGantries);
-  add_choice(command, "--braking", world.braking, config::kBrakings);
-  add_choice(command, "--passivity", world.passivity, config::kPassivityReactions,
+  add_choice(command, "--law", world.law, names_of(config::kLaws));
+  add_choice(command, "--bounds", world.bounds, names_of(config::kBounds));
+  add_choice(command, "--gantry", world.gantry, names_of(config::kGantries));
+  add_choice(command, "--braking", world.braking, names_of(config::kBrakings));
+}
+
+void add_passivity_option(CLI::App& command, scenario::ScenarioOptions& world) {
+  add_choice(command, "--passivity", world.passivity, names_of(config::kPassivityReactions),
              " on a hand and a device that shake each other");
 }
 

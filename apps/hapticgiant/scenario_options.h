@@ -1,6 +1,9 @@
 /// Options of all commands that play a scenario.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "hg/scenario/options.h"
 
 namespace CLI {
@@ -18,7 +21,21 @@ inline constexpr char kSimulationHelp[] =
 /// parsing.
 void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world);
 
-/// Adds law, bounds, gantry, braking and passivity. `world` must outlive parsing.
+/// Adds law, bounds, gantry and braking. `world` must outlive parsing.
 void add_law_options(CLI::App& command, scenario::ScenarioOptions& world);
+void add_passivity_option(CLI::App& command, scenario::ScenarioOptions& world);
+
+/// Adds an option that takes one of `names`; its help lists them, then `what` they are about.
+/// Without it the device decides.
+void add_choice(CLI::App& command, const char* option, std::string& value,
+                std::vector<std::string> names, const char* what = "");
+
+/// Names of a list of choices such as config::kLaws.
+template <typename List>
+std::vector<std::string> names_of(const List& choices) {
+  std::vector<std::string> names;
+  for (const auto& choice : choices) names.emplace_back(choice.name);
+  return names;
+}
 
 }  // namespace hg::apps

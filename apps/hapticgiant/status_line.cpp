@@ -36,7 +36,7 @@ std::string status_text(const Sample& sample, const LimitCatalogue& limits,
     text += fmt::format("  {} {:.2f}", dof.name, rounded(record.twin.q_a[dof.q_index]));
   }
   if (record.felt_limit >= 0) {
-    const auto felt = static_cast<std::size_t>(record.felt_limit);
+    const std::size_t felt = record.felt_limit;
     text += "  " + viewer_server::limit_text(limits[felt], record.limits[felt]);
   } else {
     text += "  free";

@@ -94,7 +94,7 @@ void Cascade::fill_constraints(const hqp::Problem& problem) {
     }
   };
   for (const Kept& kept : kept_) add(kept.row, kept.slack, options_.bound_epsilon, -1);
-  for (Eigen::Index i = 0; i < slacks; ++i) add(own_[static_cast<std::size_t>(i)], 0.0, 0.0, i);
+  for (Eigen::Index i = 0; i < slacks; ++i) add(own_[i], 0.0, 0.0, i);
   CI_.conservativeResize(line, Eigen::NoChange);
   ci0_.conservativeResize(line);
 }
@@ -104,7 +104,7 @@ bool Cascade::solve_level() {
   const Eigen::Index size = g_.size();
   CE_.resize(0, size);
   zeta_.resize(size);
-  qp_.reset(static_cast<std::size_t>(size), 0, static_cast<std::size_t>(CI_.rows()));
+  qp_.reset(size, 0, CI_.rows());
   const auto status = qp_.solve_quadprog(H_, g_, CE_, ce0_, CI_, ci0_, zeta_);
   if (status != EIQUADPROG_FAST_OPTIMAL || !zeta_.allFinite()) return false;
   x_.noalias() += Z_ * zeta_.head(Z_.cols());

@@ -20,7 +20,7 @@ double worst_violation(const GrowingProblem& growing) {
       value = growing.point()[problem.variable(row)];
     } else {
       for (int i = 0; i < problem.variables(); ++i) {
-        value += problem.coefficients(row)[static_cast<std::size_t>(i)] * growing.point()[i];
+        value += problem.coefficients(row)[i] * growing.point()[i];
       }
     }
     const Interval bounds = problem.bounds(row);
@@ -58,11 +58,11 @@ TEST(GrowingProblem, IsSolvedWithLimitsActing) {
   hqp::ActiveSet active;
   ASSERT_EQ(solver.solve(growing.problem(), {}, active, solution), hqp::Status::kSolved);
   for (int level = 0; level < 3; ++level) {
-    EXPECT_LT(solution.levels[static_cast<std::size_t>(level)].slack_squared, 1e-18) << level;
+    EXPECT_LT(solution.levels[level].slack_squared, 1e-18) << level;
   }
   int acting = 0;
   for (int row = 0; row < growing.first_wish(); ++row) {
-    const hqp::RowState state = solution.state[static_cast<std::size_t>(row)];
+    const hqp::RowState state = solution.state[row];
     acting += state == hqp::RowState::kLower || state == hqp::RowState::kUpper;
   }
   EXPECT_GE(acting, 3);

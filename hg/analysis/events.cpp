@@ -74,7 +74,7 @@ EventDetector::EventDetector(std::vector<EventRule> rules, LimitCatalogue catalo
     : rules_(std::move(rules)), catalogue_(std::move(catalogue)) {}
 
 bool EventDetector::holds(const Condition& condition, const CycleRecord& record) const {
-  const auto i = static_cast<std::size_t>(condition.index);
+  const std::size_t i = condition.index;
   switch (condition.kind) {
     case ConditionKind::kLimit: {
       const LimitState side = reached_side(catalogue_[i], record.limits[i]);

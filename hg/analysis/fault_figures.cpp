@@ -9,7 +9,7 @@ namespace hg::analysis {
 
 std::string name_in(const std::vector<std::string>& list, int index, const char* otherwise) {
   const bool is_known = index >= 0 && index < static_cast<int>(list.size());
-  return is_known ? list[static_cast<std::size_t>(index)] : fmt::format("{} {}", otherwise, index);
+  return is_known ? list[index] : fmt::format("{} {}", otherwise, index);
 }
 
 namespace {
@@ -96,9 +96,8 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
     case FaultCode::kCycleOverrun:
       return index == 0 ? "in a row" : "in a second";
     case FaultCode::kLimitExceeded:
-      return index < static_cast<int>(names.limits.size())
-                 ? names.limits[static_cast<std::size_t>(index)].name
-                 : fmt::format("number {}", index);
+      return index < static_cast<int>(names.limits.size()) ? names.limits[index].name
+                                                           : fmt::format("number {}", index);
     case FaultCode::kGantryExceeded:
     case FaultCode::kGantryDeviates:
       return name_in(names.gantry, index, "axis");

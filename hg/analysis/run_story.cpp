@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "hg/controller/safety/rules.h"
-#include "hg/core/index.h"
 
 namespace hg::analysis {
 namespace {
@@ -178,12 +177,12 @@ void RunStory::add_limits(const CycleRecord& record) {
   if (record.mode != Mode::kRunning && record.mode != Mode::kStopping) return;
   const int count = std::min(record.limit_count, static_cast<int>(names_.limits.size()));
   for (int i = 0; i < count; ++i) {
-    const LimitReport& report = record.limits[index(i)];
+    const LimitReport& report = record.limits[i];
     const bool is_plain =
         report.state != LimitState::kViolated &&
         (report.cause == LimitCause::kAcceleration || report.cause == LimitCause::kFriction);
     if (report.state == LimitState::kInactive || is_plain) continue;
-    const LimitInfo& info = names_.limits[index(i)];
+    const LimitInfo& info = names_.limits[i];
     extend(
         "limit",
         fmt::format("{}: {}{} limit", info.name, side_text(report.state), to_string(report.cause)),

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "hg/core/index.h"
+
 namespace hg::analysis {
 namespace {
 
@@ -92,7 +94,7 @@ void Summary::add(const Sample& sample) {
   sum_force_ += force;
   max_force_ = std::max(max_force_, force);
   max_torque_ = std::max(max_torque_, record.robot.w_H.tail<3>().norm());
-  ++solver_status_[static_cast<std::size_t>(record.solver_status)];
+  ++solver_status_[index(record.solver_status)];
   active_set_changes_ += static_cast<std::uint64_t>(record.active_set_changes);
   const double change = (record.a_H - last_acceleration_).norm();
   last_acceleration_ = record.a_H;
@@ -114,7 +116,8 @@ bool Summary::limits_held() const noexcept {
   return true;
 }
 
-std::string Summary::to_json(const RunFacts& facts, const std::vector<std::string>& missing) const {
+nlohmann::ordered_json Summary::to_json(const RunFacts& facts,
+                                        const std::vector<std::string>& missing) const {
   nlohmann::ordered_json json;
   json["version"] = facts.version;
   json["scenario"] = facts.scenario;
@@ -169,7 +172,7 @@ std::string Summary::to_json(const RunFacts& facts, const std::vector<std::strin
   json["fault"] = {{"code", static_cast<int>(fault_.code)},
                    {"what", std::string(to_string(fault_.code))},
                    {"index", fault_.index}};
-  return json.dump(2) + "\n";
+  return json;
 }
 
 nlohmann::ordered_json Summary::shaking_json() const {
@@ -223,11 +226,11 @@ std::string Summary::truth_text() const {
   if (worst == excess.end() || *worst == 0.0) {
     line("in truth", "all limits of the device held");
   } else {
-    const LimitInfo& limit = catalogue_[static_cast<std::size_t>(worst - excess.begin())];
+    const LimitInfo& limit = catalogue_[worst - excess.begin()];
     line("in truth", fmt::format("{} beyond its limit by {:.3f} {}", limit.name, 1e3 * *worst,
                                  limit.is_angle ? "mrad" : "mm"));
   }
-  const auto joint = static_cast<std::size_t>(std::max(truth_.worst_joint(), 0));
+  const std::size_t joint = std::max(truth_.worst_joint(), 0);
   line("tracking",
        fmt::format("joints within {:.2f} mrad ({}), handle within {:.2f} mm of the twin",
                    1e3 * truth_.max_joint_error(), catalogue_[joint].name,
@@ -240,8 +243,8 @@ std::string Summary::truth_text() const {
     const double warmth = truth_.rated_torque_share().maxCoeff(&hottest);
     line("torque",
          fmt::format("at most {:.0f} % of the peak ({}), rms {:.0f} % of the rated ({}){}",
-                     100.0 * largest, catalogue_[static_cast<std::size_t>(most)].name,
-                     100.0 * warmth, catalogue_[static_cast<std::size_t>(hottest)].name,
+                     100.0 * largest, catalogue_[most].name, 100.0 * warmth,
+                     catalogue_[hottest].name,
                      truth_.clamped_cycles() == 0
                          ? std::string()
                          : fmt::format("; held back in {} cycles", truth_.clamped_cycles())));
@@ -305,9 +308,7 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("force",
        fmt::format("mean {:.1f} N, max {:.1f} N", mean(sum_force_, running_cycles_), max_force_));
   if (truth_.is_known()) text += truth_text();
-  const auto count = [&](SolverStatus status) {
-    return solver_status_[static_cast<std::size_t>(status)];
-  };
+  const auto count = [&](SolverStatus status) { return solver_status_[index(status)]; };
   const std::uint64_t spent = count(SolverStatus::kBudgetSpent);
   line("solver",
        fmt::format("{} solved, {}{} not; {:.1f} active-set changes per second",

@@ -63,8 +63,9 @@ class Summary {
   const TruthSummary& truth() const noexcept { return truth_; }
   double max_sync_error() const noexcept { return max_sync_error_; }
 
-  /// The JSON text of --summary. `missing` are expected events that did not happen.
-  std::string to_json(const RunFacts& facts, const std::vector<std::string>& missing) const;
+  /// The JSON of --summary. `missing` are expected events that did not happen.
+  nlohmann::ordered_json to_json(const RunFacts& facts,
+                                 const std::vector<std::string>& missing) const;
   /// The final lines of a run.
   std::string to_text(const RunFacts& facts, const std::vector<std::string>& missing) const;
 

@@ -46,7 +46,7 @@ std::vector<Eigen::VectorXd> random_postures(const DeviceModel& device, int coun
   for (int k = 0; k < kMostDraws; ++k) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(device.n_p + device.n_m);
     for (int i = 0; i < device.n_m; ++i) {
-      const limits::JointLimits& joint = device.joint_limits[static_cast<std::size_t>(i)];
+      const limits::JointLimits& joint = device.joint_limits[i];
       const double lo = std::max(joint.q_min, -std::numbers::pi);
       const double hi = std::min(joint.q_max, std::numbers::pi);
       const double share = static_cast<double>(random()) / static_cast<double>(random.max());

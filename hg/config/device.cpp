@@ -10,6 +10,7 @@
 #include "hg/config/tool.h"
 #include "hg/controller/safety/stopping.h"
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/model/urdf_parts.h"
 
 namespace hg::config {
@@ -46,10 +47,8 @@ void take_joints(const model::ChainModel& chain, DeviceDraft& draft) {
   draft.frame_names = chain.frame_names();
   for (const model::Joint& joint : chain.joints()) {
     draft.joint_names.push_back(joint.name);
-    draft.actuators.emplace_back();
     draft.joints.push_back(
-        {joint.name,
-         unit_of(joint.type),
+        {unit_of(joint.type),
          {.q_min = joint.position.lb, .q_max = joint.position.ub, .dq_max = joint.velocity_max}});
   }
 }
@@ -74,7 +73,7 @@ void check_order(Loader& loader, const model::ChainModel& chain, const DeviceDra
 
 void check_gantry(Loader& loader, const model::ChainModel& chain, const DeviceDraft& draft) {
   for (int i : draft.gantry) {
-    const model::Joint& joint = chain.joints()[static_cast<std::size_t>(i)];
+    const model::Joint& joint = chain.joints()[i];
     loader.rule(joint.nv == 1, "gantry", "a device has no floating joints", "'" + joint.name + "'");
     loader.rule(unit_of(joint.type) == draft.gantry_unit, "gantry",
                 "gantry joints must be all prismatic or all revolute", "'" + joint.name + "'");
@@ -95,56 +94,50 @@ void check_gantry(Loader& loader, const model::ChainModel& chain, const DeviceDr
 
 void check_joints(Loader& loader, const model::ChainModel& chain, const DeviceDraft& draft) {
   for (int i : draft.manipulator) {
-    const DeviceJoint& joint = draft.joints[static_cast<std::size_t>(i)];
-    loader.rule(chain.joints()[static_cast<std::size_t>(i)].nv == 1, "manipulator",
-                "a device has no floating joints", "'" + joint.name + "'");
+    loader.rule(chain.joints()[i].nv == 1, "manipulator", "a device has no floating joints",
+                "'" + draft.joint_names[i] + "'");
   }
   for (const VirtualJoint& sum : draft.device.model.virtual_joints) {
     for (int i = 0; i < sum.weights.size(); ++i) {
-      const int joint = draft.manipulator[static_cast<std::size_t>(i)];
-      const JointUnit unit = draft.joints[static_cast<std::size_t>(joint)].unit;
+      const int joint = draft.manipulator[i];
+      const JointUnit unit = draft.joints[joint].unit;
       loader.rule(sum.weights[i] == 0.0 || unit == JointUnit::kAngle, "virtual_joints",
-                  "only revolute joints can be added",
-                  "'" + draft.manipulator_names[static_cast<std::size_t>(i)] + "'");
+                  "only revolute joints can be added", "'" + draft.manipulator_names[i] + "'");
     }
   }
   const VectorM& posture = draft.device.model.posture;
   for (int i = 0; i < posture.size(); ++i) {
-    const auto named = static_cast<std::size_t>(i);
-    const limits::JointLimits& limits =
-        draft.joints[static_cast<std::size_t>(draft.manipulator[named])].limits;
+    const limits::JointLimits& limits = draft.joints[draft.manipulator[i]].limits;
     loader.rule(
         std::isnan(posture[i]) || (limits.q_min <= posture[i] && posture[i] <= limits.q_max),
-        "posture", draft.manipulator_names[named] + " must be within the limits of the joint",
+        "posture", draft.manipulator_names[i] + " must be within the limits of the joint",
         model::to_text(posture[i]));
   }
 }
 
 // All joints of the manipulator have an actuator, or none.
 void check_actuators(LoaderFile& file, const DeviceDraft& draft) {
-  const auto is_actuated = [&](int joint) {
-    return draft.actuators[static_cast<std::size_t>(joint)].has_value();
-  };
+  const auto is_actuated = [&](int joint) { return draft.joints[joint].actuator.has_value(); };
   for (int i : draft.gantry) {
     if (!is_actuated(i)) continue;
-    const std::string item = "actuators." + draft.joint_names[static_cast<std::size_t>(i)];
+    const std::string item = "actuators." + draft.joint_names[i];
     file.faults.add(file.places.nearest(item), item,
                     "must be a joint of the manipulator: the gantry has 'drive'");
   }
   if (std::ranges::none_of(draft.manipulator, is_actuated)) return;
   for (int i : draft.manipulator) {
     if (is_actuated(i)) continue;
-    file.faults.add(file.places.nearest("actuators"), "actuators",
-                    "all joints of the manipulator need one, there is none for '" +
-                        draft.joint_names[static_cast<std::size_t>(i)] + "'");
+    file.faults.add(
+        file.places.nearest("actuators"), "actuators",
+        "all joints of the manipulator need one, there is none for '" + draft.joint_names[i] + "'");
   }
 }
 
 void check_ratings(LoaderFile& file, const DeviceDraft& draft) {
   for (int i : draft.manipulator) {
-    const DeviceJoint& joint = draft.joints[static_cast<std::size_t>(i)];
+    const DeviceJoint& joint = draft.joints[i];
     if (std::isfinite(joint.limits.dq_max) && std::isfinite(joint.limits.ddq_max)) continue;
-    const std::string item = "joints." + joint.name;
+    const std::string item = "joints." + draft.joint_names[i];
     file.faults.add(file.places.nearest(item), item,
                     "needs " + std::string(kSpeed.of(joint.unit)) + " and " +
                         std::string(kAcceleration.of(joint.unit)));
@@ -155,14 +148,14 @@ void check_ratings(LoaderFile& file, const DeviceDraft& draft) {
 JointUnit gantry_unit(const DeviceDraft& draft) {
   if (!draft.has_joints) return JointUnit::kEither;
   if (draft.gantry.empty()) return JointUnit::kLength;
-  return draft.joints[static_cast<std::size_t>(draft.gantry[0])].unit;
+  return draft.joints[draft.gantry[0]].unit;
 }
 
 // Without a usable list of joints every name counts: one fault is enough.
 std::vector<std::string> manipulator_names(const DeviceDraft& draft) {
   if (!draft.has_joints) return draft.joint_names;
   std::vector<std::string> names;
-  for (int i : draft.manipulator) names.push_back(draft.joint_names[static_cast<std::size_t>(i)]);
+  for (int i : draft.manipulator) names.push_back(draft.joint_names[i]);
   return names;
 }
 
@@ -174,13 +167,13 @@ void take_model(model::ChainModel chain, DeviceDraft& draft) {
   model.n_p = static_cast<int>(draft.gantry.size());
   model.n_m = static_cast<int>(draft.manipulator.size());
   for (int i : draft.gantry) {
-    const limits::JointLimits& axis = draft.joints[static_cast<std::size_t>(i)].limits;
+    const limits::JointLimits& axis = draft.joints[i].limits;
     model.gantry_range.push_back({axis.q_min, axis.q_max});
   }
   for (int i : draft.manipulator) {
-    model.joint_limits.push_back(draft.joints[static_cast<std::size_t>(i)].limits);
+    model.joint_limits.push_back(draft.joints[i].limits);
     if (device.control.method == tracking::Method::kDrives) continue;
-    model.actuators.push_back(*draft.actuators[static_cast<std::size_t>(i)]);
+    model.actuators.push_back(*draft.joints[i].actuator);
   }
 }
 
@@ -283,7 +276,7 @@ DeviceConfig load_device(const std::filesystem::path& path, SourceReader& reader
   device.model.T_H_S = tool ? tool->T_H_S : pose_of(draft.sensor);
   if (tool) {
     device.monitor.has_dead_man = tool->has_dead_man;
-    constexpr auto kDeadMan = static_cast<std::size_t>(SafetyInput::kDeadMan);
+    constexpr auto kDeadMan = index(SafetyInput::kDeadMan);
     if (!tool->has_dead_man) device.start_test.has_input[kDeadMan] = false;
   }
   take_model(std::move(*chain), draft);

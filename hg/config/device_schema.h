@@ -16,9 +16,9 @@
 namespace hg::config {
 
 struct DeviceJoint {
-  std::string name;
   JointUnit unit = JointUnit::kEither;
   limits::JointLimits limits;
+  std::optional<ActuatorModel> actuator;
 };
 
 /// A device in the making: what is known of it so far, and the names and parts it is made from.
@@ -36,8 +36,6 @@ struct DeviceDraft {
   JointUnit gantry_unit = JointUnit::kEither;
   std::vector<std::string> manipulator_names;
   Placement sensor;
-  std::vector<std::optional<ActuatorModel>> actuators;  ///< actuator per joint, where given
-  std::vector<std::string> input_names{kSafetyInputNames.begin(), kSafetyInputNames.end()};
   bool watches_collisions = true;
 };
 
@@ -144,7 +142,7 @@ void describe_limits(V& v, DeviceDraft& d) {
       "joints", d.joint_names, "a joint of the URDF",
       [&](auto& child, int index) {
         const bool is_gantry = std::ranges::find(d.gantry, index) != d.gantry.end();
-        describe(child, d.joints[static_cast<std::size_t>(index)], is_gantry);
+        describe(child, d.joints[index], is_gantry);
       },
       "limits; what is not given is taken from the URDF");
   d.device.model.posture = per_joint(d.manipulator_names.size(), kNoDefault);
@@ -352,13 +350,14 @@ void describe(V& v, safety::SanitiserConfig& sanitiser) {
 }
 
 template <class V>
-void describe(V& v, StartTestConfig& test, const std::vector<std::string>& input_names) {
+void describe(V& v, StartTestConfig& test) {
+  const std::vector<std::string> names(kSafetyInputNames.begin(), kSafetyInputNames.end());
   std::vector<int> inputs;
-  if (v.names("inputs", inputs, input_names, "an input of the safety controller",
+  if (v.names("inputs", inputs, names, "an input of the safety controller",
               "that this device has and a person operates in the test; without it all, but for the "
               "dead-man switch of a tool that has none")) {
     test.has_input.fill(false);
-    for (const int input : inputs) test.has_input[static_cast<std::size_t>(input)] = true;
+    for (const int input : inputs) test.has_input[input] = true;
   }
   v.number("valid_for_s", test.valid_for_s, kPositive, "how long the result of a test counts");
   v.number("brake_motion_rad", test.brake_motion, kPositive,
@@ -499,7 +498,7 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       "sanitiser", [&](auto& child) { describe(child, d.device.sanitiser); },
       "what is taken out of commands near and beyond limits, docs/concepts/safety.md");
   v.group(
-      "start_test", [&](auto& child) { describe(child, d.device.start_test, d.input_names); },
+      "start_test", [&](auto& child) { describe(child, d.device.start_test); },
       "brakes and stop inputs before the first run of a day, docs/reference/start_test.md");
 }
 
@@ -587,9 +586,7 @@ template <class V>
 void describe_control(V& v, DeviceDraft& d) {
   v.groups_by_name(
       "actuators", d.joint_names, "a joint of the URDF",
-      [&](auto& child, int index) {
-        describe(child, d.actuators[static_cast<std::size_t>(index)].emplace());
-      },
+      [&](auto& child, int index) { describe(child, d.joints[index].actuator.emplace()); },
       "series elastic joints, for all or none of the manipulator; without them the drives follow "
       "a reference of positions");
   v.rule(v.is_given("actuators") || !v.is_given("control"), "control",

@@ -480,7 +480,7 @@ std::optional<model::ChainModel> no_chain(LoaderFile& file) {
 }
 
 std::string name_of(const std::vector<std::string>& names, int index) {
-  return index < 0 ? "" : names[static_cast<std::size_t>(index)];
+  return index < 0 ? "" : names[index];
 }
 
 std::optional<model::ChainModel> read_chain(LoaderFile& file, const UrdfText& urdf,

@@ -73,7 +73,7 @@ class Loader {
     for (const Choice<T>& candidate : choices) names.emplace_back(candidate.name);
     int index = 0;
     if (!name(key, index, names, one_of(names), text)) return false;
-    value = choices[static_cast<std::size_t>(index)].value;
+    value = choices[index].value;
     return true;
   }
   /// Reads a name as its index in `names`; `kind` describes them, for example "a joint".

@@ -12,13 +12,16 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
+#include "hg/core/enumerators.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/limits/acceleration_bounds.h"
@@ -97,6 +100,16 @@ struct Choice {
 };
 template <class T>
 using Choices = std::span<const Choice<std::type_identity_t<T>>>;
+
+/// A choice per enumerator of E, named like it: "either_way" for kEitherWay.
+template <class E>
+constexpr auto choices_of() {
+  const auto choices = []<std::size_t... i>(std::index_sequence<i...>) {
+    return std::array{
+        Choice<E>{key_name<enumerators<E>()[i].value>(), enumerators<E>()[i].value}...};
+  };
+  return choices(std::make_index_sequence<enumerators<E>().size()>{});
+}
 
 // ---- limits, chains, poses ----
 

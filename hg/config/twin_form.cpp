@@ -14,7 +14,7 @@ namespace {
 constexpr int kFineSteps = 200;
 
 double value_of(const rendering::TwinModel& twin, const ParameterChange& change) {
-  const auto index = static_cast<std::size_t>(std::max<int>(change.index, 0));
+  const std::size_t index = std::max<int>(change.index, 0);
   const rendering::TwinDof& dof = twin.dofs[std::min(index, twin.dofs.size() - 1)];
   switch (change.parameter) {
     case Parameter::kStiffness:
@@ -36,7 +36,7 @@ double value_of(const rendering::TwinModel& twin, const ParameterChange& change)
     case Parameter::kSpeedLimit:
       return dof.limits.dq_max;
     case Parameter::kReferenceWrench:
-      return twin.w_ref[static_cast<Eigen::Index>(index)];
+      return twin.w_ref[index];
     case Parameter::kGravity:
       return twin.chain.default_loads().gravity;
     case Parameter::kMassScale:
@@ -160,7 +160,7 @@ int field_of(const std::vector<FormField>& form, const ParameterChange& change) 
 
 std::string refusal(const std::vector<FormField>& form, int field, double value,
                     const std::vector<double>& values) {
-  const FormField& wanted = form[static_cast<std::size_t>(field)];
+  const FormField& wanted = form[field];
   if (!(value >= wanted.min && value <= wanted.max)) {
     return wanted.name + ": must be " + Bounds({.lb = wanted.min, .ub = wanted.max}, "").text() +
            " " + wanted.unit + ", got " + model::to_text(value);
@@ -168,7 +168,7 @@ std::string refusal(const std::vector<FormField>& form, int field, double value,
   const ParameterChange& change = wanted.changes.front();
   const auto other = [&](Parameter parameter) {
     const int index = field_of(form, {parameter, change.index});
-    return values[static_cast<std::size_t>(index)];
+    return values[index];
   };
   const bool crosses =
       (change.parameter == Parameter::kLowerLimit && value > other(Parameter::kUpperLimit)) ||

@@ -14,10 +14,7 @@
 
 namespace hg::config {
 
-inline constexpr std::array<Choice<Surroundings>, 3> kSurroundings = {
-    {{"room", Surroundings::kRoom},
-     {"door", Surroundings::kDoor},
-     {"excavator", Surroundings::kExcavator}}};
+inline constexpr auto kSurroundings = choices_of<Surroundings>();
 
 /// Damping and friction of a floating joint, the same in all directions, and its start.
 struct FloatingPart {
@@ -57,9 +54,7 @@ struct TwinDraft {
   std::vector<rendering::Lock> locks;
   std::vector<rendering::ConditionalLimit> conditional_limits;
 
-  const TwinJoint& scalar_joint(int index) const {
-    return joints[static_cast<std::size_t>(scalar_joints[static_cast<std::size_t>(index)])];
-  }
+  const TwinJoint& scalar_joint(int index) const { return joints[scalar_joints[index]]; }
 };
 
 template <class V>
@@ -172,10 +167,7 @@ void describe(V& v, rendering::Lock& lock, const TwinDraft& d) {
                       "always");
 }
 
-inline constexpr std::array<Choice<rendering::Moving>, 3> kMoving = {
-    {{"either_way", rendering::Moving::kEitherWay},
-     {"lower", rendering::Moving::kLower},
-     {"upper", rendering::Moving::kUpper}}};
+inline constexpr auto kMoving = choices_of<rendering::Moving>();
 
 template <class V>
 void describe(V& v, rendering::ConditionalLimit& limit, const TwinDraft& d) {
@@ -275,7 +267,7 @@ void describe_joints(V& v, TwinDraft& d) {
          "frame E, held by the user", Need::kRequired);
   v.groups_by_name(
       "joints", d.joint_names, "a joint of the twin",
-      [&](auto& child, int index) { describe(child, d.joints[static_cast<std::size_t>(index)]); },
+      [&](auto& child, int index) { describe(child, d.joints[index]); },
       "limits, forces and start; limits that are not given are taken from the URDF");
   describe_reference_wrench(v, d.force_ref, d.torque_ref);
   describe_mass_scale(v, d.mass_scale);

@@ -42,7 +42,7 @@ VectorM deceleration_of(const DeviceModel& device) {
   constexpr double kWithoutRating = 10.0;  // rad/s^2 or m/s^2
   VectorM ddq(device.n_m);
   for (int i = 0; i < device.n_m; ++i) {
-    const double rating = device.joint_limits[static_cast<std::size_t>(i)].ddq_max;
+    const double rating = device.joint_limits[i].ddq_max;
     ddq[i] = std::isfinite(rating) ? rating : kWithoutRating;
   }
   return ddq;
@@ -93,7 +93,7 @@ bool is_pushed_back(const rendering::LawResult& law) noexcept {
   constexpr double kPush = 0.5;   // N, or Nm of a limit
   constexpr double kNear = 0.05;  // m or rad
   for (int i = 0; i < law.limit_count; ++i) {
-    const LimitReport& limit = law.limits[static_cast<std::size_t>(i)];
+    const LimitReport& limit = law.limits[i];
     const double left = std::min(limit.to_lower, limit.to_upper);
     if (left < kNear && std::abs(limit.reaction) > kPush) return true;
   }

@@ -6,7 +6,6 @@
 #include <type_traits>
 
 #include "hg/core/fields.h"
-#include "hg/core/index.h"
 
 namespace hg::controller {
 namespace {
@@ -64,9 +63,9 @@ class Hash {
   template <typename T, std::size_t kSize>
   void mix_first(const std::array<T, kSize>& items, int count) noexcept {
     if constexpr (std::is_class_v<T>) {
-      for (std::size_t i = 0; i < index(count); ++i) mix(items[i]);
+      for (int i = 0; i < count; ++i) mix(items[i]);
     } else {
-      mix_packed(items.data(), index(count));
+      mix_packed(items.data(), count);
     }
   }
 

@@ -33,7 +33,29 @@ constexpr auto candidates(std::index_sequence<i...>) {
   return std::array{Enumerator<E>{static_cast<E>(i), name_of<static_cast<E>(i)>()}...};
 }
 
+struct Key {
+  std::array<char, 32> text{};
+  std::size_t size = 0;
+};
+
+template <auto value>
+inline constexpr Key kKey = [] {
+  Key key;
+  for (const char c : name_of<value>().substr(1)) {
+    const bool is_upper = c >= 'A' && c <= 'Z';
+    if (is_upper && key.size > 0) key.text[key.size++] = '_';
+    key.text[key.size++] = is_upper ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return key;
+}();
+
 }  // namespace detail
+
+/// Name of an enumerator in files and options: kEitherWay is "either_way".
+template <auto value>
+constexpr std::string_view key_name() {
+  return {detail::kKey<value>.text.data(), detail::kKey<value>.size};
+}
 
 /// All enumerators of E with values from 0 to below `end`, in the order of their values.
 template <typename E, std::size_t end = 64>

@@ -79,7 +79,7 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t most_byt
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) refuse(file, "read", std::strerror(errno));
     if (count == 0) return content;
-    content.append(bytes.data(), static_cast<std::size_t>(count));
+    content.append(bytes.data(), count);
     if (content.size() > most_bytes) {
       refuse(file, "read", "it has more than " + std::to_string(most_bytes) + " bytes");
     }

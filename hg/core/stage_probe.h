@@ -7,6 +7,8 @@
 #include <array>
 #include <cstdint>
 
+#include "hg/core/index.h"
+
 namespace hg {
 
 /// Parts of Cycle::step in the order of the data flow. They cover the whole time of a step that
@@ -29,7 +31,7 @@ constexpr const char* to_string(Stage stage) noexcept {
   constexpr std::array<const char*, kStageCount> kNames = {
       "supervision", "estimation",  "prepositioning", "rendering set-up", "solver",
       "reactions",   "integration", "control",        "safety",           "hash"};
-  return kNames[static_cast<std::size_t>(stage)];
+  return kNames[index(stage)];
 }
 
 /// Callback with its context.

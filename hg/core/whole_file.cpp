@@ -42,7 +42,7 @@ bool is_whole(const OpenFile& file, std::string_view text, bool (*is_interrupted
     const ssize_t written = write(file.descriptor(), text.data(), std::min(text.size(), kAtOnce));
     if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (written < 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(written));
+    text.remove_prefix(written);
   }
   return true;
 }

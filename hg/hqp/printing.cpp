@@ -75,10 +75,10 @@ std::string head_text(const Problem& problem, const Solution& solution) {
 }
 
 std::string level_line(const Problem& problem, const Solution& solution, int level) {
-  const LevelResult& result = solution.levels[index(level)];
+  const LevelResult& result = solution.levels[level];
   int rows = 0, met = 0, held = 0, violated = 0;
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    const RowState state = solution.state[index(row)];
+    const RowState state = solution.state[row];
     ++rows;
     met += state == RowState::kEqual;
     held += is_at_bound(state);
@@ -97,9 +97,9 @@ std::string level_line(const Problem& problem, const Solution& solution, int lev
 }
 
 std::string row_line(const Problem& problem, const Solution& solution, int row) {
-  const double slack = solution.slack[index(row)];
-  std::string text = joined({to_string(problem, row), ": ", to_string(solution.state[index(row)])});
-  if (is_violated(solution.state[index(row)])) text += joined({" by ", number(std::abs(slack))});
+  const double slack = solution.slack[row];
+  std::string text = joined({to_string(problem, row), ": ", to_string(solution.state[row])});
+  if (is_violated(solution.state[row])) text += joined({" by ", number(std::abs(slack))});
   return text + joined({", value ", number(solver::dot(problem, row, solution.x.data())), "\n"});
 }
 
@@ -144,7 +144,7 @@ std::string to_string(const Problem& problem, const Solution& solution) {
     text += level_line(problem, solution, level);
   }
   for (int row = 0; row < problem.rows(); ++row) {
-    const RowState state = solution.state[index(row)];
+    const RowState state = solution.state[row];
     if (is_at_bound(state) || is_violated(state)) text += row_line(problem, solution, row);
   }
   return text;
@@ -155,7 +155,7 @@ std::string to_string(const Problem& problem, int level, std::span<const double>
   std::string text = joined({"multipliers of level ", std::to_string(level),
                              "; of the gradient they leave ", number(remainder), "\n"});
   for (int row = 0; row < problem.rows(); ++row) {
-    const double mu = multipliers[index(row)];
+    const double mu = multipliers[row];
     if (mu != 0.0) text += joined({padded(number(mu), 13), "  ", to_string(problem, row), "\n"});
   }
   return text;

@@ -35,10 +35,10 @@ void check_capacity(const Capacity& capacity) {
 
 Problem::Problem(const Capacity& capacity) : capacity_(capacity), variables_(capacity.variables) {
   check_capacity(capacity);
-  first_row_.reserve(index(capacity.levels) + 1);
+  first_row_.reserve(capacity.levels + 1);
   first_row_.assign(1, 0);
-  rows_.reserve(index(capacity.rows));
-  coefficients_.assign(index(capacity.rows) * index(capacity.variables), 0.0);
+  rows_.reserve(capacity.rows);
+  coefficients_.assign(capacity.rows * capacity.variables, 0.0);
 }
 
 void Problem::clear(int variables) {
@@ -77,7 +77,7 @@ int Problem::add_bound(int variable, Interval bounds, double weight) {
 
 void Problem::set_row(int row, std::span<const double> coefficients) noexcept {
   assert(row >= 0 && row < rows() && variable(row) < 0);
-  assert(coefficients.size() == index(variables_));
+  assert(coefficients.size() == variables_);
   double* const own = coefficients_.data() + row * capacity_.variables;
   double sum = 0.0;
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
@@ -85,17 +85,17 @@ void Problem::set_row(int row, std::span<const double> coefficients) noexcept {
     own[i] = c;
     sum += c * c;
   }
-  rows_[index(row)].norm = std::sqrt(sum);
+  rows_[row].norm = std::sqrt(sum);
 }
 
 void Problem::set_bounds(int row, Interval bounds) noexcept {
   assert(row >= 0 && row < rows());
-  rows_[index(row)].bounds = bounds;
+  rows_[row].bounds = bounds;
 }
 
 void Problem::set_weight(int row, double weight) noexcept {
   assert(row >= 0 && row < rows());
-  rows_[index(row)].weight = weight;
+  rows_[row].weight = weight;
 }
 
 int Problem::level_of(int row) const noexcept {

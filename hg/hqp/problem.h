@@ -11,7 +11,6 @@
 #include <span>
 #include <vector>
 
-#include "hg/core/index.h"
 #include "hg/core/interval.h"
 
 namespace hg::hqp {
@@ -60,21 +59,21 @@ class Problem {
   const Capacity& capacity() const noexcept { return capacity_; }
 
   /// Rows of `level` have the ids first_row(level) .. end_row(level) - 1.
-  int first_row(int level) const noexcept { return first_row_[index(level)]; }
-  int end_row(int level) const noexcept { return first_row_[index(level) + 1]; }
+  int first_row(int level) const noexcept { return first_row_[level]; }
+  int end_row(int level) const noexcept { return first_row_[level + 1]; }
   int level_of(int row) const noexcept;
 
-  Interval bounds(int row) const noexcept { return rows_[index(row)].bounds; }
-  double weight(int row) const noexcept { return rows_[index(row)].weight; }
+  Interval bounds(int row) const noexcept { return rows_[row].bounds; }
+  double weight(int row) const noexcept { return rows_[row].weight; }
   /// Index of the only variable of a row made by add_bound(), -1 for a dense row.
-  int variable(int row) const noexcept { return rows_[index(row)].variable; }
+  int variable(int row) const noexcept { return rows_[row].variable; }
   /// Coefficients of a dense row, one per variable; valid until the problem is destroyed.
   std::span<const double> coefficients(int row) const noexcept {
     if (variable(row) >= 0) return {};
-    return {coefficients_.data() + index(row) * index(capacity_.variables), index(variables_)};
+    return std::span(coefficients_.data() + row * capacity_.variables, variables_);
   }
   /// Euclidean norm of the row's coefficients; not finite when one of them is not.
-  double norm(int row) const noexcept { return rows_[index(row)].norm; }
+  double norm(int row) const noexcept { return rows_[row].norm; }
 
  private:
   struct Row {

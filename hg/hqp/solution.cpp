@@ -32,10 +32,10 @@ void check_solver_options(const SolverOptions& options) {
 
 Solution::Solution(const Capacity& capacity) {
   check_capacity(capacity);
-  x.reserve(index(capacity.variables));
-  state.reserve(index(capacity.rows));
-  slack.reserve(index(capacity.rows));
-  levels.reserve(index(capacity.levels));
+  x.reserve(capacity.variables);
+  state.reserve(capacity.rows);
+  slack.reserve(capacity.rows);
+  levels.reserve(capacity.levels);
 }
 
 }  // namespace hg::hqp

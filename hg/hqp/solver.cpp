@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "hg/hqp/solver/active_set_iteration.h"
 #include "hg/hqp/solver/level_by_level.h"
@@ -50,7 +51,7 @@ bool misses_rows(const Problem& problem, const SolverOptions& options, int level
                  const Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
-    if (work.iterate.state[index(row)] == RowState::kInactive && problem.norm(row) > 0.0 &&
+    if (work.iterate.state[row] == RowState::kInactive && problem.norm(row) > 0.0 &&
         violation(problem, options, work.iterate, row) != 0.0) {
       return true;
     }
@@ -63,8 +64,8 @@ bool repeats_mistake(const Problem& problem, int levels, const std::vector<RowSt
                      const std::vector<RowState>& other, const Workspace& work) noexcept {
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
-    if (is_equality(problem.bounds(row)) || other[index(row)] != guess[index(row)]) continue;
-    if (as_guess(work.iterate.state[index(row)]) != guess[index(row)]) return true;
+    if (is_equality(problem.bounds(row)) || other[row] != guess[row]) continue;
+    if (as_guess(work.iterate.state[row]) != guess[row]) return true;
   }
   return false;
 }
@@ -198,8 +199,8 @@ void update(const Problem& problem, const std::vector<RowState>& state,
   if (std::memcmp(state.data(), active.state.data(), state.size()) == 0) return;
   bool is_same = true;
   for (int row = 0; row < problem.rows() && is_same; ++row) {
-    is_same = is_equality(problem.bounds(row)) ||
-              as_guess(state[index(row)]) == as_guess(active.state[index(row)]);
+    is_same =
+        is_equality(problem.bounds(row)) || as_guess(state[row]) == as_guess(active.state[row]);
   }
   if (!is_same) std::copy_n(active.state.begin(), problem.rows(), active.before.begin());
   std::copy_n(state.begin(), problem.rows(), active.state.begin());
@@ -211,16 +212,15 @@ void read_levels(const Problem& problem, int levels, const Workspace& work,
   for (int level = 0; level < levels; ++level) {
     double slack_squared = 0.0;
     for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-      const double slack = -excess(problem.bounds(row), work.iterate.value[index(row)]);
+      const double slack = -excess(problem.bounds(row), work.iterate.value[row]);
       const double weighted = problem.weight(row) * slack;
-      solution.state[index(row)] = work.iterate.state[index(row)];
-      solution.slack[index(row)] = slack;
+      solution.state[row] = work.iterate.state[row];
+      solution.slack[row] = slack;
       slack_squared += weighted * weighted;
     }
-    solution.levels[index(level)] = {
-        .slack_squared = slack_squared,
-        .freedom = problem.variables() - work.iterate.rank_at_level[index(level)],
-        .blocking_row = work.iterate.blocking_row[index(level)]};
+    solution.levels[level] = {.slack_squared = slack_squared,
+                              .freedom = problem.variables() - work.iterate.rank_at_level[level],
+                              .blocking_row = work.iterate.blocking_row[level]};
   }
   std::copy_n(work.iterate.x.data(), problem.variables(), solution.x.begin());
 
@@ -247,17 +247,17 @@ Status Solver::solve(const Problem& problem, const SolverOptions& options, Activ
               problem.levels() < static_cast<int>(work.iterate.rank_at_level.size()) &&
               problem.rows() <= static_cast<int>(work.iterate.state.size()),
           "the problem is larger than the capacity of the solver");
-  require(index(problem.variables()) <= solution.x.capacity() &&
-              index(problem.rows()) <= solution.slack.capacity() &&
-              index(problem.levels()) <= solution.levels.capacity(),
+  require(std::cmp_less_equal(problem.variables(), solution.x.capacity()) &&
+              std::cmp_less_equal(problem.rows(), solution.slack.capacity()) &&
+              std::cmp_less_equal(problem.levels(), solution.levels.capacity()),
           "the problem is larger than the capacity of the solution");
   const int bad_row = find_bad_row(problem);
   const int levels = bad_row < 0 ? problem.levels() : problem.level_of(bad_row);
 
-  solution.x.resize(index(problem.variables()));
-  solution.state.resize(index(problem.rows()));
-  solution.slack.resize(index(problem.rows()));
-  solution.levels.resize(index(problem.levels()));
+  solution.x.resize(problem.variables());
+  solution.state.resize(problem.rows());
+  solution.slack.resize(problem.rows());
+  solution.levels.resize(problem.levels());
   solution.bad_row = bad_row;
   solution.bad_level = bad_row < 0 ? -1 : levels;
   solution.iterations = 0;
@@ -269,7 +269,7 @@ Status Solver::solve(const Problem& problem, const SolverOptions& options, Activ
 
   read_levels(problem, levels, work, solution);
   for (int level = 0; level < solution.completed_levels; ++level) {
-    if (std::isfinite(solution.levels[index(level)].slack_squared)) continue;
+    if (std::isfinite(solution.levels[level].slack_squared)) continue;
     solution.status = Status::kNumericalFailure;
     solution.completed_levels = level;
   }
@@ -308,18 +308,18 @@ double Solver::multipliers(const Problem& problem, const SolverOptions& options,
                   options.rank_tolerance, elimination);
   for (int i = 0; i < work.nnls.size(); ++i) {
     const auto [row, sign] = work.nnls.row(i);
-    mu[index(row)] = sign * work.nnls.mu(i);
-    add_multiple(problem, row, mu[index(row)], work.duals.gradient.data());
+    mu[row] = sign * work.nnls.mu(i);
+    add_multiple(problem, row, mu[row], work.duals.gradient.data());
   }
   for (int t = two_sided - 1; t >= 0; --t) {
     const int row = elimination.pivot_row(t);
-    mu[index(row)] = -VectorView(elimination.column(t), n).dot(work.duals.gradient.head(n)) /
-                     elimination.pivot(t);
-    add_multiple(problem, row, mu[index(row)], work.duals.gradient.data());
+    mu[row] = -VectorView(elimination.column(t), n).dot(work.duals.gradient.head(n)) /
+              elimination.pivot(t);
+    add_multiple(problem, row, mu[row], work.duals.gradient.data());
   }
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     const double factor = problem.weight(row) * problem.weight(row);
-    mu[index(row)] = factor * excess(problem.bounds(row), work.iterate.value[index(row)]);
+    mu[row] = factor * excess(problem.bounds(row), work.iterate.value[row]);
   }
   return work.duals.gradient.head(n).norm();
 }

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/core/nearest_name.h"
 #include "hg/core/open_file.h"
 #include "hg/core/text.h"
@@ -163,7 +164,7 @@ struct ParsedRow {
 ParsedRow parse_row(Reader& reader, int level, int n, bool is_equality) {
   reader.need_line("a row of " + std::string(is_equality ? "an equality" : "an inequality"));
   const int count = n + (is_equality ? 1 : 2);
-  ParsedRow row = {level, std::vector<double>(index(n)), {}};
+  ParsedRow row = {level, std::vector<double>(n), {}};
   int position = 0;
   const auto need_number = [&] {
     ++position;
@@ -228,7 +229,7 @@ SolverOptions parse_options(Reader& reader) {
 using States = std::array<RowState, kMaxRows>;
 
 void parse_states(Reader& reader, std::string_view letters, int rows, States& states) {
-  if (letters.size() != index(rows) ||
+  if (std::ssize(letters) != rows ||
       letters.find_first_not_of(kStateLetters) != std::string_view::npos) {
     reader.fail("a letter of " + std::string(kStateLetters) + " for each of the " +
                     std::to_string(rows) + " rows",
@@ -319,12 +320,6 @@ void enlarge(Capacity& capacity, const Problem& problem) {
   capacity.rows = std::max(capacity.rows, problem.rows());
 }
 
-void write_number(std::ostream& out, double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof(text), value).ptr;
-  out.write(text, end - text);
-}
-
 bool has_one_bound(const Problem& problem, int row) {
   const auto [lb, ub] = problem.bounds(row);
   return std::bit_cast<std::uint64_t>(lb) == std::bit_cast<std::uint64_t>(ub);
@@ -333,20 +328,13 @@ bool has_one_bound(const Problem& problem, int row) {
 void write_row(std::ostream& out, const Problem& problem, int row, bool is_equality) {
   const std::span<const double> coefficients = problem.coefficients(row);
   for (int i = 0; i < problem.variables(); ++i) {
-    const double coefficient = problem.variable(row) < 0 ? coefficients[index(i)]
-                                                         : (problem.variable(row) == i ? 1.0 : 0.0);
-    write_number(out, coefficient);
-    out << ' ';
+    const double coefficient =
+        problem.variable(row) < 0 ? coefficients[i] : (problem.variable(row) == i ? 1.0 : 0.0);
+    out << to_text(coefficient) << ' ';
   }
-  write_number(out, problem.bounds(row).lb);
-  if (!is_equality) {
-    out << ' ';
-    write_number(out, problem.bounds(row).ub);
-  }
-  if (problem.weight(row) != 1.0) {
-    out << " weight ";
-    write_number(out, problem.weight(row));
-  }
+  out << to_text(problem.bounds(row).lb);
+  if (!is_equality) out << ' ' << to_text(problem.bounds(row).ub);
+  if (problem.weight(row) != 1.0) out << " weight " << to_text(problem.weight(row));
   if (problem.variable(row) < 0 && single_variable(coefficients) >= 0) out << " dense";
   if (broken_rule(problem, row) != nullptr) out << " bad";
   out << '\n';
@@ -377,7 +365,7 @@ void write_options(std::ostream& out, const SolverOptions& options) {
 std::string letters_of(const States& states, int rows) {
   std::string letters;
   for (int row = 0; row < rows; ++row) {
-    letters += kStateLetters[static_cast<std::size_t>(states[static_cast<std::size_t>(row)])];
+    letters += kStateLetters[index(states[row])];
   }
   return letters;
 }
@@ -428,7 +416,7 @@ std::string read_text(const std::string& file) {
   std::vector<char> buffer(1 << 16);
   int count = 0;
   while ((count = gzread(handle, buffer.data(), static_cast<unsigned>(buffer.size()))) > 0) {
-    text.append(buffer.data(), index(count));
+    text.append(buffer.data(), count);
   }
   const bool is_complete = gzclose(handle) == Z_OK && count == 0;
   if (!is_complete) throw SetupError(file + ": is damaged");

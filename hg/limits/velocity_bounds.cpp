@@ -31,10 +31,6 @@ void check_drive_response(const DriveResponse& drive, std::string_view item) {
   require_positive(item, "ddq_max", drive.ddq_max);
 }
 
-Interval constant_velocity_bounds(Interval q_limits, double q, double dt) noexcept {
-  return {(q_limits.lb - q) / dt, (q_limits.ub - q) / dt};
-}
-
 Interval braking_velocity_bounds(Interval q_limits, const DriveResponse& drive, double q) noexcept {
   const double ub = max_velocity(q_limits.ub - q, drive);
   const double lb = -max_velocity(q - q_limits.lb, drive);

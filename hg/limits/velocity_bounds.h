@@ -25,9 +25,6 @@ struct DriveResponse {
 /// Throws SetupError unless both values are finite and positive; the message begins with `item`.
 void check_drive_response(const DriveResponse& drive, std::string_view item);
 
-/// Bounds (28)-(29): at constant speed the limits `q_limits` are not passed within dt > 0.
-Interval constant_velocity_bounds(Interval q_limits, double q, double dt) noexcept;
-
 /// Bounds from the braking distance. Towards a limit at distance d
 ///   dq <= min(-a tau + sqrt((a tau)^2 + 2 a d), d / (4 tau)),   a = drive.ddq_max:
 /// the first term solves v tau + v^2 / (2 a) = d, the second makes the approach critically damped.

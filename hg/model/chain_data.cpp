@@ -139,7 +139,7 @@ struct ChainData::Impl {
 
   const ChainParts::Frame& frame(int index) const noexcept {
     assert(index >= 0 && index < static_cast<int>(parts.frames.size()));
-    return parts.frames[static_cast<std::size_t>(index)];
+    return parts.frames[index];
   }
 
   // Cached results of a frame, each with the number of the update that it belongs to.
@@ -149,7 +149,7 @@ struct ChainData::Impl {
     Vector6 twist, bias;
     Jacobian J;
   };
-  Results& results_of(int index) noexcept { return results[static_cast<std::size_t>(index)]; }
+  Results& results_of(int index) noexcept { return results[index]; }
 
   ChainModel model;
   const ChainParts& parts;  // of the model

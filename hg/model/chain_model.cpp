@@ -37,7 +37,7 @@ pinocchio::JointModel scalar_joint(bool turns, const Eigen::Vector3d& axis) {
                : pinocchio::JointModel(pinocchio::JointModelPrismaticUnaligned(axis));
 }
 ChainParts::Axis axis_of(const Joint& joint) {
-  ChainParts::Axis axis = {joint.type != JointType::kPrismatic, joint.axis};
+  ChainParts::Axis axis = {!joint.is_slide(), joint.axis};
   for (Eigen::Index k = 0; k < 3; ++k) {
     if (joint.axis != Eigen::Vector3d::Unit(k)) continue;
     axis.k = k;
@@ -140,7 +140,7 @@ class Builder {
     pinocchio::SE3 T_joint_link;
   };
 
-  const UrdfLink& link(int index) const { return urdf_.links[static_cast<std::size_t>(index)]; }
+  const UrdfLink& link(int index) const { return urdf_.links[index]; }
 
   [[noreturn]] void fail(int line, const std::string& what) const {
     throw SetupError(urdf_.source + ":" + std::to_string(line) + ": " + what);
@@ -149,7 +149,7 @@ class Builder {
   int root_link() const {
     std::vector<const UrdfJoint*> holder(urdf_.links.size(), nullptr);
     for (const UrdfJoint& j : urdf_.joints) {
-      const UrdfJoint*& first = holder[static_cast<std::size_t>(j.child)];
+      const UrdfJoint*& first = holder[j.child];
       if (first != nullptr) {
         fail(j.line, "joint " + j.name + ": link " + link(j.child).name +
                          " is the child of joint " + first->name + " already");
@@ -158,7 +158,7 @@ class Builder {
     }
     int root = -1;
     for (int i = 0; i < static_cast<int>(holder.size()); ++i) {
-      if (holder[static_cast<std::size_t>(i)] != nullptr) continue;
+      if (holder[i] != nullptr) continue;
       if (root >= 0) {
         fail(link(i).line, "link " + link(i).name + ": is not connected to link " +
                                link(root).name + ", a chain has one root");

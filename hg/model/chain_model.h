@@ -38,6 +38,8 @@ struct Joint {
   double effort_max = kInfinity;    ///< Largest effort, Nm or N
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< Axis of a scalar joint in its own frame
   std::string planar;  ///< Planar joint of the URDF containing this one, see urdf_parts.h
+
+  bool is_slide() const noexcept { return type == JointType::kPrismatic; }
 };
 
 /// Tool fixed to a link of a chain, for example a handle with its force/torque sensor.

@@ -12,7 +12,7 @@ void check_device_model(const DeviceModel& device) {
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError(text);
   };
-  const auto n_p = static_cast<std::size_t>(device.n_p), n_m = static_cast<std::size_t>(device.n_m);
+  const std::size_t n_p = device.n_p, n_m = device.n_m;
   require(device.rate_Hz >= 100.0 && device.rate_Hz <= 20000.0,
           "rate_Hz: must be 100..20000, got " + model::to_text(device.rate_Hz));
   require(device.n_p <= kMaxGantry && device.n_m <= kMaxManipulator &&

@@ -69,18 +69,11 @@ struct DeviceModel {
     return n_m +
            static_cast<int>(virtual_joints.size() + motors().size() + 3 * cartesian_limits.size());
   }
-  const std::string& manipulator_joint(int i) const {
-    return chain.joints()[static_cast<std::size_t>(n_p + i)].name;
-  }
+  const std::string& manipulator_joint(int i) const { return chain.joints()[n_p + i].name; }
   /// Whether a manipulator joint is prismatic.
-  bool is_slide(int joint) const noexcept {
-    return chain.joints()[static_cast<std::size_t>(n_p + joint)].type ==
-           model::JointType::kPrismatic;
-  }
+  bool is_slide(int joint) const noexcept { return chain.joints()[n_p + joint].is_slide(); }
   /// Whether the gantry's axes are prismatic; true without any.
-  bool is_gantry_slide() const noexcept {
-    return n_p == 0 || chain.joints()[0].type == model::JointType::kPrismatic;
-  }
+  bool is_gantry_slide() const noexcept { return n_p == 0 || chain.joints()[0].is_slide(); }
 };
 
 /// Throws SetupError where a list has not one entry per joint or axis, where the rate is not

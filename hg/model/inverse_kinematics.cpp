@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/rotation.h"
 #include "hg/model/chain_data.h"
@@ -99,8 +98,8 @@ class Search {
     for (int i = 0; i < q.size(); ++i) {
       const bool leaves = (q[i] <= problem_.q_min[i] && step[i] < 0.0) ||
                           (q[i] >= problem_.q_max[i] && step[i] > 0.0);
-      if (!leaves || is_held[index(i)]) continue;
-      is_held[index(i)] = true;
+      if (!leaves || is_held[i]) continue;
+      is_held[i] = true;
       J.col(i).setZero();
       any = true;
     }
@@ -113,7 +112,7 @@ class Search {
     Vector6 error = error_at(q);
     for (int k = 0; k < kReachSteps && error.norm() > 0.01 * kSolved; ++k) {
       Eigen::MatrixXd J = chain_.jacobian(problem_.frame);
-      std::vector<bool> is_held(index(q.size()), false);
+      std::vector<bool> is_held(q.size(), false);
       Eigen::VectorXd step;
       do {
         Eigen::Matrix<double, 6, 6> A = J * J.transpose();
@@ -143,7 +142,7 @@ class Search {
     for (int k = 0; k < kSettleSteps; ++k) {
       const Vector6 error = error_at(q);
       Eigen::MatrixXd J = chain_.jacobian(problem_.frame);
-      std::vector<bool> is_held(index(n), false);
+      std::vector<bool> is_held(n, false);
       Eigen::VectorXd step;
       do {
         const LeastSquares rows(J);
@@ -152,7 +151,7 @@ class Search {
         Eigen::VectorXd wish = Eigen::VectorXd::Zero(n);
         Eigen::MatrixXd wished = Eigen::MatrixXd::Zero(n, n);
         for (int i = 0; i < n; ++i) {
-          if (is_held[index(i)]) N.row(i).setZero();
+          if (is_held[i]) N.row(i).setZero();
           if (!std::isfinite(problem_.goal[i])) continue;
           wish[i] = problem_.goal[i] - q[i] - step[i];
           wished.row(i) = N.row(i);
@@ -169,7 +168,7 @@ class Search {
   // Removes whole turns where that brings a joint nearer to its goal, or to 0.
   Eigen::VectorXd unwound(Eigen::VectorXd q) const {
     for (std::size_t i = 0; i < chain_.model().joints().size(); ++i) {
-      if (chain_.model().joints()[i].type == JointType::kPrismatic) continue;
+      if (chain_.model().joints()[i].is_slide()) continue;
       const auto k = static_cast<Eigen::Index>(i);
       const double goal = std::isfinite(problem_.goal[k]) ? problem_.goal[k] : 0.0;
       const double nearer = q[k] - kTurn * std::round((q[k] - goal) / kTurn);
@@ -199,7 +198,7 @@ Eigen::VectorXd start(const ChainModel& chain, const InverseProblem& problem, in
                       Sequence& sequence) {
   Eigen::VectorXd q(problem.goal.size());
   for (int i = 0; i < q.size(); ++i) {
-    const bool is_angle = chain.joints()[index(i)].type != JointType::kPrismatic;
+    const bool is_angle = !chain.joints()[i].is_slide();
     const Interval range = finite_range({problem.q_min[i], problem.q_max[i]}, is_angle);
     const double share = number < 2 ? 0.5 : sequence.next();
     q[i] = range.lb + share * (range.ub - range.lb);

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/core/nearest_name.h"
 
 namespace hg::model {
@@ -31,7 +30,7 @@ void attach(const Tool& tool, Urdf& urdf) {
   }
 
   // mass in the axes of the handle, which is a link of its own
-  UrdfLink link = {.name = tool.handle, .line = urdf.links[index(flange)].line};
+  UrdfLink link = {.name = tool.handle, .line = urdf.links[flange].line};
   if (tool.mass > 0.0) {
     const Pose T_handle_link = inverse(tool.T_link_handle);
     const Inertial inertial = {tool.mass, T_handle_link.p + T_handle_link.R * tool.p_com,

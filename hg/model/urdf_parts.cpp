@@ -35,13 +35,12 @@ std::vector<int> path_between(const Urdf& urdf, int root, int tip) {
     const int joint = joint_above(urdf, link);
     if (joint < 0) {
       if (root < 0) break;
-      throw SetupError(
-          urdf.source + ": root_link '" + urdf.links[static_cast<std::size_t>(root)].name +
-          "' does not carry tip_link '" + urdf.links[static_cast<std::size_t>(tip)].name +
-          "'; a chain goes from the root of the URDF outwards");
+      throw SetupError(urdf.source + ": root_link '" + urdf.links[root].name +
+                       "' does not carry tip_link '" + urdf.links[tip].name +
+                       "'; a chain goes from the root of the URDF outwards");
     }
     path.push_back(joint);
-    link = urdf.joints[static_cast<std::size_t>(joint)].parent;
+    link = urdf.joints[joint].parent;
   }
   return path;
 }
@@ -49,11 +48,11 @@ std::vector<int> path_between(const Urdf& urdf, int root, int tip) {
 // subtree of `urdf` below the link `root`
 Urdf hanging_on(const Urdf& urdf, int root) {
   std::vector<bool> hangs(urdf.links.size(), false);
-  hangs[static_cast<std::size_t>(root)] = true;
+  hangs[root] = true;
   for (std::size_t pass = 0; pass < urdf.joints.size(); ++pass) {
     for (const UrdfJoint& joint : urdf.joints) {
-      if (hangs[static_cast<std::size_t>(joint.parent)]) {
-        hangs[static_cast<std::size_t>(joint.child)] = true;
+      if (hangs[joint.parent]) {
+        hangs[joint.child] = true;
       }
     }
   }
@@ -66,10 +65,9 @@ Urdf hanging_on(const Urdf& urdf, int root) {
     part.links.push_back(urdf.links[i]);
   }
   for (UrdfJoint joint : urdf.joints) {
-    joint.parent = index[static_cast<std::size_t>(joint.parent)];
-    joint.child = index[static_cast<std::size_t>(joint.child)];
-    if (joint.parent >= 0 && part.links[static_cast<std::size_t>(joint.child)].name !=
-                                 urdf.links[static_cast<std::size_t>(root)].name) {
+    joint.parent = index[joint.parent];
+    joint.child = index[joint.child];
+    if (joint.parent >= 0 && part.links[joint.child].name != urdf.links[root].name) {
       part.joints.push_back(std::move(joint));
     }
   }
@@ -85,7 +83,7 @@ Urdf serial_part(const Urdf& urdf, const std::string& root, const std::string& t
     const std::vector<int> path = path_between(urdf, root_index, find_link(urdf, tip, "tip_link"));
     for (int i = 0; i < static_cast<int>(part.joints.size()); ++i) {
       if (std::ranges::find(path, i) != path.end()) continue;
-      part.joints[static_cast<std::size_t>(i)].type = UrdfJointType::kFixed;
+      part.joints[i].type = UrdfJointType::kFixed;
     }
   }
   return root_index < 0 ? part : hanging_on(part, root_index);

@@ -14,9 +14,9 @@ constexpr int kPostures = 2000;
 double best_dexterity(DeviceModel& device) {
   std::vector<Interval> ranges = generator::joint_ranges(device.chain);
   for (int i = 0; i < device.n_m; ++i) {
-    const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
-    const auto joint = static_cast<std::size_t>(device.n_p + i);
-    const bool is_angle = device.chain.joints()[joint].type != model::JointType::kPrismatic;
+    const auto& limits = device.joint_limits[i];
+    const std::size_t joint = device.n_p + i;
+    const bool is_angle = !device.chain.joints()[joint].is_slide();
     ranges[joint] = model::finite_range({limits.q_min, limits.q_max}, is_angle);
   }
   generator::PostureSampler sampler(ranges);
@@ -74,7 +74,7 @@ std::optional<viewer_server::Singularity> HandAnalysis::singularity(const CycleR
   viewer_server::Singularity singularity{std::clamp(now / best_, 0.0, 1.0)};
   double nearest = kInfinity;
   for (int i = 0; i < static_cast<int>(device_.virtual_joints.size()); ++i) {
-    const LimitReport& report = record.limits[static_cast<std::size_t>(device_.n_m + i)];
+    const LimitReport& report = record.limits[device_.n_m + i];
     const double distance = std::min(report.to_lower, report.to_upper);
     if (distance >= nearest) continue;
     nearest = distance;

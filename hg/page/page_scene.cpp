@@ -53,7 +53,7 @@ viewer_server::SceneChain device_chain(const config::DeviceConfig& device) {
     chain.joints.push_back(scene_joint(joint));
   }
   for (std::size_t i = 0; i < device.model.joint_limits.size(); ++i) {
-    viewer_server::SceneJoint& joint = chain.joints[static_cast<std::size_t>(device.model.n_p) + i];
+    viewer_server::SceneJoint& joint = chain.joints[device.model.n_p + i];
     add_limits(device.model.joint_limits[i], joint);
     if (i < device.model.actuators.size()) {
       joint.tau_max = device.model.actuators[i].torque_max;
@@ -68,7 +68,7 @@ viewer_server::SceneChain twin_chain(const config::Twin& twin) {
   chain.T_B_root = twin.T_B_root;
   for (const model::Joint& joint : twin.model.chain.joints()) {
     chain.joints.push_back(scene_joint(joint));
-    const rendering::TwinDof& dof = twin.model.dofs[static_cast<std::size_t>(joint.v_index)];
+    const rendering::TwinDof& dof = twin.model.dofs[joint.v_index];
     if (dof.q_index >= 0) add_limits(dof.limits, chain.joints.back());
   }
   return chain;

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/core/text.h"
 #include "hg/page/page_scene.h"
 #include "hg/scenario/assembly.h"
@@ -182,9 +181,9 @@ void RunPage::observe(const Sample& sample, const Note& note) {
   const int field = config::field_of(form_, sample.operator_input.change);
   if (field < 0) return;
   if (sample.record.change == ChangeStatus::kRefused) {
-    note("refused", form_[index(field)].name + " stays as it is");
+    note("refused", form_[field].name + " stays as it is");
   } else {
-    values_[index(field)] = sample.operator_input.change.value;
+    values_[field] = sample.operator_input.change.value;
   }
   server_.set_values(values_);
 }

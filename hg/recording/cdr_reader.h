@@ -38,7 +38,7 @@ class CdrReader {
   template <typename T, std::size_t kCapacity>
   void sequence(const char*, std::array<T, kCapacity>& items, int& count, const char*) {
     count = static_cast<int>(get_length(kCapacity));
-    for (int i = 0; i < count; ++i) get(items[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < count; ++i) get(items[i]);
   }
 
  private:

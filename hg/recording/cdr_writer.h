@@ -46,7 +46,7 @@ class CdrWriter {
   template <typename T, std::size_t kCapacity>
   void sequence(const char*, const std::array<T, kCapacity>& items, int count, const char*) {
     put(static_cast<std::uint32_t>(count));
-    for (int i = 0; i < count; ++i) put(items[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < count; ++i) put(items[i]);
   }
 
  private:

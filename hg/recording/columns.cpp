@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace hg::recording {
@@ -26,36 +28,39 @@ std::string npy_head(const std::vector<const Column*>& columns, std::size_t rows
   return head + text;
 }
 
-void append_padding(const Column& column, std::size_t numbers, std::string& text) {
+}  // namespace
+
+std::vector<std::byte> padded(const Column& column, std::size_t rows) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const bool is_number = column.kind == 'f' && column.bytes == sizeof kNan;
-  for (std::size_t i = 0; i < numbers; ++i) {
-    if (is_number) {
-      text.append(reinterpret_cast<const char*>(&kNan), sizeof kNan);
-    } else {
-      text.append(column.bytes, '\0');
+  const std::size_t numbers = rows * column.width();
+  std::vector<std::byte> bytes(numbers * column.bytes);
+  if (column.kind == 'f') {
+    for (std::size_t i = 0; i < numbers; ++i) {
+      std::memcpy(bytes.data() + i * sizeof kNan, &kNan, sizeof kNan);
     }
   }
+  const std::byte* from = column.data.data();
+  for (std::size_t row = 0; row < column.counts.size(); ++row) {
+    const std::size_t size = column.counts[row] * column.bytes;
+    std::copy_n(from, size, bytes.data() + row * column.width() * column.bytes);
+    from += size;
+  }
+  return bytes;
 }
-
-}  // namespace
 
 std::string to_npy(const Columns& columns) {
   std::vector<const Column*> kept;
+  std::vector<std::vector<std::byte>> all;
   for (const Column& column : columns.all()) {
-    if (column.is_kept) kept.push_back(&column);
+    if (!column.is_kept) continue;
+    kept.push_back(&column);
+    all.push_back(padded(column, columns.rows()));
   }
-  std::vector<std::size_t> widths, places(kept.size());
-  for (const Column* column : kept) widths.push_back(column->width());
   std::string text = npy_head(kept, columns.rows());
   for (std::size_t row = 0; row < columns.rows(); ++row) {
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      const Column& column = *kept[i];
-      const std::size_t count = row < column.counts.size() ? column.counts[row] : 0;
-      text.append(reinterpret_cast<const char*>(column.data.data()) + places[i],
-                  count * column.bytes);
-      places[i] += count * column.bytes;
-      append_padding(column, widths[i] - count, text);
+    for (const std::vector<std::byte>& bytes : all) {
+      const std::size_t size = bytes.size() / columns.rows();
+      text.append(reinterpret_cast<const char*>(bytes.data()) + row * size, size);
     }
   }
   return text;

@@ -71,7 +71,7 @@ class Columns {
     put(name, items[0]);
     for (int i = 1; i < count && pass == Pass::kAppend; ++i) {
       next_ = first;
-      put(name, items[static_cast<std::size_t>(i)]);
+      put(name, items[i]);
     }
     is_sequence_ = false;
     pass_ = pass;
@@ -144,8 +144,11 @@ class Columns {
   std::vector<Column> columns_;
 };
 
+/// Bytes of a column in rows of column.width() numbers; shorter rows are padded with NaN or 0.
+std::vector<std::byte> padded(const Column& column, std::size_t rows);
+
 /// The kept columns as the content of a file that numpy.load() reads: a structured array with a
-/// row per sample and a field per column. Shorter rows are padded with NaN or 0.
+/// row per sample and a field per column; see padded().
 std::string to_npy(const Columns& columns);
 
 }  // namespace hg::recording

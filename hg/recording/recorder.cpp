@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cmath>
 #include <exception>
-#include <iterator>
 #include <mutex>
 #include <thread>
 #include <utility>
 
 #include "hg/core/error.h"
 #include "hg/core/spsc_ring.h"
+#include "hg/core/text.h"
 #include "hg/recording/cdr_writer.h"
 #include "hg/recording/event.h"
 #include "hg/recording/mcap_file.h"
@@ -38,12 +37,6 @@ constexpr int kTouchPolls = 2000;
 constexpr auto kWaitForPlace = 100us;
 // Share of the budget by which a file grows between two checks
 constexpr double kBudgetStep = 0.01;
-
-std::string to_text(double value) {
-  char text[32];
-  const std::to_chars_result result = std::to_chars(std::begin(text), std::end(text), value);
-  return {text, result.ptr};
-}
 
 std::string join(const std::vector<std::string>& names) {
   std::string text;

@@ -294,7 +294,7 @@ std::size_t RecordedRun::at(double time_s) const {
       moments_.begin(), moments_.end(), after_s, [this](double t, const Moment& moment) {
         return t < 1e-9 * static_cast<double>(moment.time_ns - moments_.front().time_ns);
       });
-  return static_cast<std::size_t>(later - moments_.begin()) - 1;
+  return later - moments_.begin() - 1;
 }
 
 void RecordedRun::read(std::size_t index, Sample& sample) const {

@@ -28,7 +28,7 @@ int set_priority(int priority) noexcept {
 int stay_on(int cpu) noexcept {
   cpu_set_t only;
   CPU_ZERO(&only);
-  CPU_SET(static_cast<std::size_t>(cpu), &only);
+  CPU_SET(cpu, &only);
   return pthread_setaffinity_np(pthread_self(), sizeof(only), &only);
 }
 

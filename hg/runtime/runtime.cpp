@@ -9,6 +9,7 @@
 #include "hg/core/allocation_counter.h"
 #include "hg/core/allowed_to_wait.h"
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/core/monotonic_clock.h"
 
 namespace hg::runtime {
@@ -111,7 +112,7 @@ void Runtime::run_cycle() noexcept HG_NONBLOCKING {
 void Runtime::stage_ended(void* runtime, Stage stage) noexcept {
   auto& self = *static_cast<Runtime*>(runtime);
   const std::int64_t now = now_ns();
-  self.stage_time_ns_[static_cast<std::size_t>(stage)] += now - self.stage_ns_;
+  self.stage_time_ns_[index(stage)] += now - self.stage_ns_;
   self.stage_ns_ = now;
 }
 

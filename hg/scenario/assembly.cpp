@@ -44,7 +44,7 @@ void fill_in_start(const config::Scenario& scenario, const Start& start, person:
 // Ends of travel of a joint with these limits.
 Interval end_stops(const config::SimulationConfig& reality, const model::Joint& joint, double q_min,
                    double q_max) {
-  const bool is_slide = joint.type == model::JointType::kPrismatic;
+  const bool is_slide = joint.is_slide();
   const double beyond = is_slide ? reality.stop_distance_length : reality.stop_distance_angle;
   return {q_min - beyond, q_max + beyond};
 }
@@ -70,18 +70,17 @@ simulator::PlantConfig elastic_plant(const config::SimulatedDeviceConfig& device
     for (int i = 0; i < device.model.n_m; ++i) plant.manipulator.push_back(device.model.n_p + i);
   }
   const std::vector<model::Joint>& joints = device.model.chain.joints();
-  const auto n_p = static_cast<std::size_t>(device.model.n_p);
+  const std::size_t n_p = device.model.n_p;
   for (std::size_t axis = 0; axis < n_p; ++axis) {
     const Interval& limits = device.model.gantry_range[axis];
     plant.gantry_stops.push_back(end_stops(reality, joints[axis], limits.lb, limits.ub));
   }
   for (int i = 0; i < device.model.n_m; ++i) {
-    const auto joint = static_cast<std::size_t>(i);
-    plant.actuators.push_back(actual(device.model.actuators[joint], reality.factors));
+    plant.actuators.push_back(actual(device.model.actuators[i], reality.factors));
     plant.effects.push_back(
         effects_of(plant.actuators.back(), reality.motors, reality.gears, reality.gear_ratio[i]));
-    const limits::JointLimits& limits = device.model.joint_limits[joint];
-    plant.end_stops.push_back(end_stops(reality, joints[n_p + joint], limits.q_min, limits.q_max));
+    const limits::JointLimits& limits = device.model.joint_limits[i];
+    plant.end_stops.push_back(end_stops(reality, joints[n_p + i], limits.q_min, limits.q_max));
   }
   return plant;
 }
@@ -115,13 +114,12 @@ simulator::SimulatorConfig device_simulation(const config::SimulatedDeviceConfig
   sensed.torque_full_scale = VectorM::Ones(device.model.n_m);
   sensed.torque_rated = VectorM::Zero(is_elastic ? device.model.n_m : 0);
   for (int i = 0; i < device.model.n_m; ++i) {
-    const auto joint = static_cast<std::size_t>(i);
-    const auto in_chain = static_cast<std::size_t>(device.model.n_p + i);
-    sensed.is_endless[joint] =
+    const std::size_t in_chain = device.model.n_p + i;
+    sensed.is_endless[i] =
         device.model.chain.joints()[in_chain].type == model::JointType::kContinuous;
     if (!is_elastic) continue;
-    sensed.torque_full_scale[i] = device.model.actuators[joint].torque_max;
-    sensed.torque_rated[i] = device.model.actuators[joint].torque_rated;
+    sensed.torque_full_scale[i] = device.model.actuators[i].torque_max;
+    sensed.torque_rated[i] = device.model.actuators[i].torque_rated;
   }
   return config;
 }
@@ -145,12 +143,10 @@ simulator::Simulation simulation_of(
   const bool is_elastic = device.control.method != tracking::Method::kDrives;
   const model::ChainModel& chain =
       device.simulation.chain && is_elastic ? *device.simulation.chain : device.model.chain;
-  const std::string& handle =
-      device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)];
+  const std::string& handle = device.model.chain.frame_names()[device.model.handle];
   simulator::SimulatorConfig config = device_simulation(device, start);
   for (const int frame : device.estimation.units.frames) {
-    const auto index = static_cast<std::size_t>(frame);
-    config.link_units.push_back(chain.frame(device.model.chain.frame_names()[index]));
+    config.link_units.push_back(chain.frame(device.model.chain.frame_names()[frame]));
   }
   config.sensed.link_units = static_cast<int>(config.link_units.size());
   if (bystander) place(*bystander, chain, config);
@@ -216,7 +212,7 @@ analysis::Summary make_summary(const config::Scenario& scenario) {
   const std::vector<ActuatorModel>& actuators = scenario.device.model.actuators;
   VectorM torque_rated(static_cast<Eigen::Index>(actuators.size()));
   for (Eigen::Index i = 0; i < torque_rated.size(); ++i) {
-    torque_rated[i] = actuators[static_cast<std::size_t>(i)].torque_rated;
+    torque_rated[i] = actuators[i].torque_rated;
   }
   return {scenario.limits, std::move(positions), scenario.device.model.rate_Hz, torque_rated};
 }

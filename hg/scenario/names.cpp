@@ -8,7 +8,7 @@ namespace {
 std::vector<std::string> joint_names(const DeviceModel& device, int first, int count) {
   std::vector<std::string> names;
   for (int i = first; i < first + count; ++i) {
-    names.push_back(device.chain.joints()[static_cast<std::size_t>(i)].name);
+    names.push_back(device.chain.joints()[i].name);
   }
   return names;
 }

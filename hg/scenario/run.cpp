@@ -4,7 +4,6 @@
 #include <cstring>
 #include <string>
 
-#include "hg/core/index.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/names.h"
 
@@ -28,7 +27,7 @@ analysis::Timing timing_of(const runtime::RuntimeOptions& options,
                              .overruns_stop = report.reported_late_cycles,
                              .wake_up_us = report.wake_up_us};
   for (int i = 0; i < kStageCount; ++i) {
-    const Histogram& times = report.stage_us[index(i)];
+    const Histogram& times = report.stage_us[i];
     if (times.count() == 0) continue;
     timing.stages.push_back({to_string(static_cast<Stage>(i)), times.distribution()});
   }

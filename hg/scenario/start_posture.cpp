@@ -33,7 +33,7 @@ std::optional<Violation> find_violation(const DeviceModel& device, model::ChainD
   };
   const auto q_m = q.tail(device.n_m);
   for (int i = 0; i < device.n_m; ++i) {
-    const limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
+    const limits::JointLimits& limits = device.joint_limits[i];
     if (is_outside(q_m[i], limits)) {
       return Violation{"joint " + device.manipulator_joint(i), q_m[i], limits};
     }
@@ -46,7 +46,7 @@ std::optional<Violation> find_violation(const DeviceModel& device, model::ChainD
   for (const CartesianLimit& limit : device.cartesian_limits) {
     const Eigen::Vector3d p = chain.pose(limit.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
-      const limits::JointLimits& limits = limit.axes[static_cast<std::size_t>(axis)];
+      const limits::JointLimits& limits = limit.axes[axis];
       if (is_outside(p[axis], limits)) {
         return Violation{limit.name + " " + "xyz"[axis], p[axis], limits};
       }
@@ -88,8 +88,8 @@ void check_floor(const config::DeviceConfig& device, const config::Twin& twin, c
     return shape.frame < 0 ? Pose{} : chain.pose(shape.frame);
   };
   for (const collision::Pair& pair : device.collision.pairs.watched) {
-    const collision::Shape& a = device.collision.shapes[static_cast<std::size_t>(pair.a)];
-    const collision::Shape& b = device.collision.shapes[static_cast<std::size_t>(pair.b)];
+    const collision::Shape& a = device.collision.shapes[pair.a];
+    const collision::Shape& b = device.collision.shapes[pair.b];
     if (!a.is_surrounding && !b.is_surrounding) continue;
     if (collision::Distance(a, b)(pose(a), pose(b)) > 0.0) continue;
     refuse((a.is_surrounding ? b : a).name + " of the device");
@@ -112,7 +112,7 @@ Start closed_form_start(const config::DeviceConfig& device, const config::Twin& 
   require_solved(model::haptic_giant::inverse_at_target(start.T_B_H, q_p, q_m),
                  "the device cannot reach");
   for (int i = 0; i < 2; ++i) {
-    const Interval range = device.model.gantry_range[static_cast<std::size_t>(i)];
+    const Interval range = device.model.gantry_range[i];
     q_p[i] = std::clamp(q_p[i], range.lb, range.ub);
   }
   require_solved(model::haptic_giant::inverse(start.T_B_H, q_p, {}, q_m),
@@ -131,7 +131,7 @@ std::string joints_at_limits(const model::ChainModel& chain, const model::Invers
   std::string names;
   for (int i = 0; i < q.size(); ++i) {
     if (q[i] - problem.q_min[i] > kAtLimit && problem.q_max[i] - q[i] > kAtLimit) continue;
-    (names += names.empty() ? "" : ", ") += chain.joints()[static_cast<std::size_t>(i)].name;
+    (names += names.empty() ? "" : ", ") += chain.joints()[i].name;
   }
   return names.empty() ? "the arm is stretched or folded" : "at their limits: " + names;
 }
@@ -147,9 +147,8 @@ Start numeric_start(const DeviceModel& device, const config::Twin& twin) {
       .q_max = Eigen::VectorXd(n),
       .goal = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN())};
   for (int i = 0; i < n; ++i) {
-    const Interval range = i < n_p
-                               ? device.gantry_range[static_cast<std::size_t>(i)]
-                               : range_of(device.joint_limits[static_cast<std::size_t>(i - n_p)]);
+    const Interval range =
+        i < n_p ? device.gantry_range[i] : range_of(device.joint_limits[i - n_p]);
     problem.q_min[i] = range.lb;
     problem.q_max[i] = range.ub;
   }

@@ -29,10 +29,10 @@ class CommandDelay {
   /// Stores the command of this period and returns the one from `periods` (0..kMaxPeriods) periods
   /// ago; 0 before the first.
   double shift(double command, int periods) noexcept {
-    values_[static_cast<std::size_t>(next_)] = command;
+    values_[next_] = command;
     const int delayed = (next_ - periods + kCapacity) % kCapacity;
     next_ = (next_ + 1) % kCapacity;
-    return values_[static_cast<std::size_t>(delayed)];
+    return values_[delayed];
   }
 
  private:

@@ -1,5 +1,7 @@
 #include "hg/signals/operator_desk.h"
 
+#include "hg/core/index.h"
+
 namespace hg {
 
 void OperatorDesk::press_stop(std::uint64_t page) {
@@ -27,7 +29,7 @@ std::vector<std::uint64_t> OperatorDesk::stop_pressed_by() const {
 
 std::uint64_t OperatorDesk::set(Input input, std::uint64_t page, bool is_on,
                                 std::int64_t now_ns) noexcept {
-  const auto i = static_cast<std::size_t>(input);
+  const std::size_t i = index(input);
   if (!is_on) {
     // switch off before marking as taken: the control thread never sees it taken and still on
     bits_.fetch_and(~on(input));

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "hg/core/index.h"
+
 namespace hg {
 
 /// Inputs of a safety controller that are reported to the program, in the order of their test.
@@ -22,7 +24,7 @@ inline constexpr std::array<std::string_view, kSafetyInputCount> kSafetyInputNam
     "override key", "scanner", "dead-man switch", "emergency stop", "enabling switch"};
 
 constexpr std::string_view to_string(SafetyInput input) noexcept {
-  return kSafetyInputNames[static_cast<std::size_t>(input)];
+  return kSafetyInputNames[index(input)];
 }
 
 /// Options of the start test; set-up data, SI units.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "hg/core/index.h"
 #include "hg/core/interval.h"
 #include "hg/signals/frames.h"
 
@@ -79,13 +80,13 @@ inline constexpr std::array<ParameterFacts, 12> kParameters = {{
 
 /// Facts of a parameter other than kNone.
 constexpr const ParameterFacts& facts_of(Parameter parameter) noexcept {
-  return kParameters[static_cast<std::size_t>(parameter) - 1];
+  return kParameters[index(parameter) - 1];
 }
 
 /// Whether the table has the order of the enumeration, as facts_of() needs it.
 constexpr bool is_in_order() noexcept {
   for (std::size_t i = 0; i < kParameters.size(); ++i) {
-    if (static_cast<std::size_t>(kParameters[i].parameter) != i + 1) return false;
+    if (index(kParameters[i].parameter) != i + 1) return false;
   }
   return true;
 }

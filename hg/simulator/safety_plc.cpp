@@ -25,9 +25,7 @@ SafetyPlc::SafetyPlc(const SafetyPlcConfig& config)
     : config_(config),
       discrepancy_(periods_of(config.discrepancy, config.period)),
       stop_time_(periods_of(config.stop_time, config.period)) {
-  const auto values = [&](double time) {
-    return static_cast<std::size_t>(periods_of(time, config.period)) + 1;
-  };
+  const auto values = [&](double time) { return periods_of(time, config.period) + 1; };
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const bool is_on = i < 2;  // stop buttons and operator: initially not stopped
     inputs_[i].values.assign(values(config.response), is_on ? kFree : std::uint8_t{0});
@@ -60,13 +58,12 @@ void SafetyPlc::step(const SafetyPlcInput& input) noexcept {
 bool SafetyPlc::evaluate(int input, TwoChannels channels, const HardwareFaults& faults) noexcept {
   if (has_bit(faults.open_channels, input)) channels.is_on[0] = false;
   if (has_bit(faults.stuck_channels, input)) channels.is_on[0] = true;
-  const auto i = static_cast<std::size_t>(input);
   const auto now =
       static_cast<std::uint8_t>((channels.is_on[0] ? 1 : 0) | (channels.is_on[1] ? 2 : 0));
-  const std::uint8_t delayed = inputs_[i].shift(now);
+  const std::uint8_t delayed = inputs_[input].shift(now);
   const bool differs = delayed == 1 || delayed == 2;
-  differing_[i] = differs ? differing_[i] + 1 : 0;
-  if (differing_[i] > discrepancy_) differs_now_ = true;
+  differing_[input] = differs ? differing_[input] + 1 : 0;
+  if (differing_[input] > discrepancy_) differs_now_ = true;
   return delayed == kFree;
 }
 

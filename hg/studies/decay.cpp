@@ -6,9 +6,7 @@
 namespace hg::studies {
 namespace {
 
-std::size_t count_of(double seconds, double rate_Hz) {
-  return static_cast<std::size_t>(std::llround(seconds * rate_Hz));
-}
+std::size_t count_of(double seconds, double rate_Hz) { return std::llround(seconds * rate_Hz); }
 
 }  // namespace
 

@@ -7,7 +7,6 @@
 
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/core/random.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
@@ -144,7 +143,7 @@ faults::Injection draw(const faults::Kind& kind, const config::Scenario& scenari
   faults::Injection drawn = {.kind = &kind};
   const DeviceModel& device = scenario.device.model;
   const int parts = faults::parts_of(kind.part, device.n_m, device.n_p);
-  drawn.index = static_cast<int>(draw_index(hg::index(parts), random));
+  drawn.index = static_cast<int>(draw_index(parts, random));
   if (!kind.unit.empty()) {
     drawn.magnitude =
         std::exp(random.between(std::log(kind.magnitude.lb), std::log(kind.magnitude.ub)));
@@ -312,7 +311,7 @@ Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const Camp
   do_all(scenarios.size(),
          [&](std::size_t i) { clean[i] = std::make_unique<CleanRun>(scenarios[i]); }, {});
 
-  campaign.cases.resize(static_cast<std::size_t>(config.cases));
+  campaign.cases.resize(config.cases);
   do_all(
       campaign.cases.size(),
       [&](std::size_t i) {

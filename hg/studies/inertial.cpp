@@ -154,8 +154,7 @@ class Judge {
 
   // Top of the parabola through the three best lags, periods.
   double best_lag() const {
-    const auto best =
-        static_cast<std::size_t>(std::ranges::max_element(likeness_) - likeness_.begin());
+    const std::size_t best = std::ranges::max_element(likeness_) - likeness_.begin();
     if (best == 0 || best + 1 == kLags) return static_cast<double>(best);
     const double left = likeness_[best - 1], right = likeness_[best + 1];
     const double curvature = left - 2.0 * likeness_[best] + right;

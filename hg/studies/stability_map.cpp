@@ -48,7 +48,7 @@ double stable_from(const StabilityConfig& config, const StabilityRow& row,
   const auto first = std::ranges::find_if(
       row.outcomes, [](const KickOutcome& outcome) { return is_stable(outcome.verdict); });
   if (first == row.outcomes.end()) return kInfinity;
-  const auto index = static_cast<std::size_t>(first - row.outcomes.begin());
+  const std::size_t index = first - row.outcomes.begin();
   double stable = config.mass[index];
   double unstable = index > 0 ? config.mass[index - 1] : config.least_mass;
   if (index == 0 && is_stable(verdict_at(unstable))) return unstable;

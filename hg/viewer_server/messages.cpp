@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "hg/core/index.h"
 #include "hg/viewer_server/command_message.h"
 #include "hg/viewer_server/frame_message.h"
 #include "hg/viewer_server/json_reader.h"
@@ -118,10 +118,9 @@ HandMessage hand_message(const HandTarget& hand) {
 std::optional<FeltLimitMessage> felt_limit(const FrameMessage& frame) {
   const CycleRecord& record = frame.view.record;
   const int felt = record.felt_limit;
-  if (felt < 0 || index(felt) >= limit_count(frame)) return {};
-  const LimitInfo& limit = frame.limits[index(felt)];
-  return FeltLimitMessage{felt, limit.name, limit_text(limit, record.limits[index(felt)]),
-                          record.w_felt};
+  if (felt < 0 || std::cmp_greater_equal(felt, limit_count(frame))) return {};
+  const LimitInfo& limit = frame.limits[felt];
+  return FeltLimitMessage{felt, limit.name, limit_text(limit, record.limits[felt]), record.w_felt};
 }
 
 std::vector<ActiveLimitMessage> active_limits(const FrameMessage& frame) {

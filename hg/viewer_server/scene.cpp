@@ -25,12 +25,6 @@ void check_chain(const SceneChain& chain, std::string_view item) {
 
 }  // namespace
 
-int coordinate_count(const SceneChain& chain) {
-  int count = 0;
-  for (const SceneJoint& joint : chain.joints) count += joint.type == JointType::kFloating ? 7 : 1;
-  return count;
-}
-
 void check_scene(const Scene& scene) {
   check_chain(scene.device, "device");
   check_chain(scene.twin, "twin");

@@ -101,9 +101,6 @@ struct Scene {
   std::string stopping;               ///< duration and distance of a stop; empty: unknown
 };
 
-/// Number of coordinates of all joints of a chain.
-int coordinate_count(const SceneChain& chain);
-
 /// Throws SetupError unless the files exist, names are given and the box and rate are finite.
 void check_scene(const Scene& scene);
 

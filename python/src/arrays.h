@@ -38,12 +38,12 @@ inline ArrayOut to_numpy(std::vector<double> values, const std::vector<std::size
 template <typename Derived>
 ArrayOut to_numpy(const Eigen::MatrixBase<Derived>& matrix) {
   std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(matrix.size()));
+  values.reserve(matrix.size());
   for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
     for (Eigen::Index col = 0; col < matrix.cols(); ++col) values.push_back(matrix(row, col));
   }
-  std::vector<std::size_t> shape = {static_cast<std::size_t>(matrix.rows())};
-  if (Derived::ColsAtCompileTime != 1) shape.push_back(static_cast<std::size_t>(matrix.cols()));
+  std::vector<std::size_t> shape(1, matrix.rows());
+  if (Derived::ColsAtCompileTime != 1) shape.push_back(matrix.cols());
   return to_numpy(std::move(values), shape);
 }
 
@@ -55,8 +55,8 @@ ArrayOut to_numpy(const Eigen::MatrixBase<Derived>& matrix) {
 
 /// The `size` numbers of `in`. Throws ValueError, beginning with `name`, for another size.
 inline Eigen::Map<const Eigen::VectorXd> vector_of(const ArrayIn& in, int size, const char* name) {
-  if (in.size() != static_cast<std::size_t>(size)) {
-    refuse_size(name, static_cast<std::size_t>(size), in.size());
+  if (std::cmp_not_equal(in.size(), size)) {
+    refuse_size(name, size, in.size());
   }
   return {in.data(), size};
 }
@@ -67,14 +67,14 @@ void assign(const ArrayIn& in, const char* name,
             Eigen::Matrix<double, kRows, kCols, kOptions, kMaxRows, kMaxCols>& out) {
   static_assert(kRows != Eigen::Dynamic || kCols == 1);
   if constexpr (kRows == Eigen::Dynamic) {
-    if (in.size() > static_cast<std::size_t>(kMaxRows)) {
+    if (std::cmp_greater(in.size(), kMaxRows)) {
       throw nb::value_error((std::string(name) + ": expected at most " + std::to_string(kMaxRows) +
                              " numbers, got " + std::to_string(in.size()))
                                 .c_str());
     }
-    out.resize(static_cast<Eigen::Index>(in.size()));
-  } else if (in.size() != static_cast<std::size_t>(kRows * kCols)) {
-    refuse_size(name, static_cast<std::size_t>(kRows * kCols), in.size());
+    out.resize(in.size());
+  } else if (std::cmp_not_equal(in.size(), kRows * kCols)) {
+    refuse_size(name, kRows * kCols, in.size());
   }
   for (Eigen::Index row = 0; row < out.rows(); ++row) {
     for (Eigen::Index col = 0; col < out.cols(); ++col) {

@@ -103,7 +103,7 @@ void bind_scenario(nb::module_& module) {
 // a Python caller may leave vectors empty or make them too long, C++ code does not
 void require_size(const char* name, Eigen::Index expected, Eigen::Index got) {
   if (got != expected) {
-    refuse_size(name, static_cast<std::size_t>(expected), static_cast<std::size_t>(got));
+    refuse_size(name, expected, got);
   }
 }
 

@@ -89,7 +89,7 @@ std::span<const double> row_of(const Problem& problem, const ArrayIn& coefficien
 // `A` (rows x variables), or one row
 std::vector<int> add_rows(Problem& problem, const ArrayIn& A, const ArrayIn& lb, const ArrayIn& ub,
                           const ArrayIn& weights) {
-  const auto n = static_cast<std::size_t>(problem.variables());
+  const std::size_t n = problem.variables();
   const std::size_t columns = A.array.ndim() == 0 ? 1 : A.array.shape(A.array.ndim() - 1);
   if (columns != n) refuse_size("A: columns", n, columns);
   const std::size_t rows = A.size() / n;
@@ -104,7 +104,7 @@ std::vector<int> add_rows(Problem& problem, const ArrayIn& A, const ArrayIn& lb,
 
 std::vector<int> add_bounds(Problem& problem, const ArrayIn& lb, const ArrayIn& ub,
                             const ArrayIn& weights) {
-  const auto n = static_cast<std::size_t>(problem.variables());
+  const std::size_t n = problem.variables();
   std::vector<int> ids;
   for (std::size_t i = 0; i < n; ++i) {
     const Interval bounds = {number_of(lb, i, n, "lb"), number_of(ub, i, n, "ub")};
@@ -130,7 +130,7 @@ SolutionOut solve(const Problem& problem, const ActiveSet* active,
 std::vector<double> multipliers_of(const SolutionOut& out, int level, double& remainder) {
   require(level >= 0 && level < out.problem.levels(), "there is no level " + std::to_string(level));
   hqp::Solver solver(out.problem.capacity());
-  std::vector<double> mu(static_cast<std::size_t>(out.problem.rows()));
+  std::vector<double> mu(out.problem.rows());
   remainder = solver.multipliers(out.problem, out.options, out.solution, level, mu);
   return mu;
 }

@@ -3,12 +3,9 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -35,26 +32,12 @@ nb::dlpack::dtype type_of(const Column& column) {
   return {static_cast<std::uint8_t>(code), static_cast<std::uint8_t>(8 * column.bytes), 1};
 }
 
-// Array of shape (rows), or (rows, width) where a field has more than one number; shorter rows are
-// padded with NaN or 0.
+// Array of shape (rows), or (rows, width) where a field has more than one number.
 nb::object array_of(const Column& column, std::size_t rows) {
-  const std::size_t width = column.width();
-  auto* data = new std::vector<std::byte>(rows * width * column.bytes);
+  auto* data = new std::vector<std::byte>(recording::padded(column, rows));
   const nb::capsule owner(data,
                           [](void* p) noexcept { delete static_cast<std::vector<std::byte>*>(p); });
-  if (column.kind == 'f') {
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t i = 0; i < rows * width; ++i) {
-      std::memcpy(data->data() + i * column.bytes, &kNan, column.bytes);
-    }
-  }
-  const std::byte* from = column.data.data();
-  for (std::size_t row = 0; row < column.counts.size(); ++row) {
-    const std::size_t size = column.counts[row] * column.bytes;
-    std::copy_n(from, size, data->data() + row * width * column.bytes);
-    from += size;
-  }
-  const std::size_t shape[] = {rows, width};
+  const std::size_t shape[] = {rows, column.width()};
   const std::size_t dimensions = column.is_wide ? 2 : 1;
   return nb::cast(
       nb::ndarray<nb::numpy>(data->data(), dimensions, shape, owner, nullptr, type_of(column)));

@@ -71,7 +71,7 @@ double number_of(const nlohmann::json& value) { return value.get<double>(); }
 double coefficient(const hqp::Problem& problem, int row, int column) {
   const int variable = problem.variable(row);
   if (variable >= 0) return variable == column ? 1.0 : 0.0;
-  return problem.coefficients(row)[static_cast<std::size_t>(column)];
+  return problem.coefficients(row)[column];
 }
 
 void expect_same_problem(const hqp::Problem& got, const hqp::Problem& expected) {
@@ -99,12 +99,11 @@ void expect_same_outputs(const nlohmann::json& out, const std::vector<double>& s
   double largest = 0.0;
   const int n_a = static_cast<int>(result.ddq_a.size());
   for (int i = 0; i < 6 + n_a; ++i) {
-    largest = std::max(largest, std::abs(solution[static_cast<std::size_t>(i)]));
+    largest = std::max(largest, std::abs(solution[i]));
   }
   for (int i = 0; i < 6 + n_a; ++i) {
     const double got = i < 6 ? result.ddq_m[i] : result.ddq_a[i - 6];
-    EXPECT_NEAR(got, solution[static_cast<std::size_t>(i)], kAccelerationError * (1.0 + largest))
-        << "acceleration " << i;
+    EXPECT_NEAR(got, solution[i], kAccelerationError * (1.0 + largest)) << "acceleration " << i;
   }
   const auto flags = static_cast<std::size_t>(result.limit_count);
   for (std::size_t i = 0; i < flags; ++i) {

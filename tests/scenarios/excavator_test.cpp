@@ -25,7 +25,7 @@ class Excavator : public ::testing::Test {
   static const Trace& trace() { return *trace_; }
   static int twin_limit(int joint) { return trace_->run().limit("swing") + joint; }
   static const LimitReport& limit(const CycleRecord& record, int joint) {
-    return record.limits[static_cast<std::size_t>(twin_limit(joint))];
+    return record.limits[twin_limit(joint)];
   }
   static bool only_limit(const CycleRecord& record, int joint) {
     return limit(record, joint).state != LimitState::kInactive &&
@@ -93,7 +93,7 @@ TEST_F(Excavator, AfterTheHitTheOtherJointsObeyTheReducedModel) {
     chain.update(record.twin.q_a, record.twin.dq_a);
     VectorA load = record.tau_a - chain.c();
     for (int i = 0; i < 4; ++i) {
-      load[i] -= twin.dofs[static_cast<std::size_t>(i)].damping * record.twin.dq_a[i];
+      load[i] -= twin.dofs[i].damping * record.twin.dq_a[i];
     }
     const Eigen::Vector3d reduced =
         LeastSquares(chain.M().topLeftCorner<3, 3>()).solve(load.head<3>());

@@ -37,7 +37,7 @@ class Trace {
   double time_of(const std::string& name) const { return run_.time_of(name); }
 
   const LimitReport& limit(const CycleRecord& record, const std::string& name) const {
-    return record.limits[static_cast<std::size_t>(run_.limit(name))];
+    return record.limits[run_.limit(name)];
   }
 
   /// Largest value of a quantity from time `from` to `to`, both included.

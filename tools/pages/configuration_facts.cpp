@@ -20,7 +20,6 @@ using Json = nlohmann::ordered_json;
 Json device_table() {
   DeviceDraft draft;
   draft.joints.emplace_back();  // stands for every joint
-  draft.actuators.emplace_back();
   DocWriter writer;
   describe_chain(writer, draft);
   describe(writer, draft.part, {});

@@ -155,7 +155,7 @@ void play_experiment(const PaperExperiment& experiment, const RunArguments& argu
   facts.version = kVersion;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
   write_output((folder / "timing.json").string(),
-               watcher.summary.to_json(facts, watcher.detector.missing()) + "\n");
+               watcher.summary.to_json(facts, watcher.detector.missing()).dump(2) + "\n");
 }
 
 }  // namespace hg::apps

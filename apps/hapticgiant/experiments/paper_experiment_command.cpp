@@ -9,13 +9,16 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/hapticgiant/experiments/experiment_run.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/report.h"
+#include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/config/law_names.h"
 #include "hg/core/error.h"
 
 namespace hg::apps {
@@ -73,10 +76,10 @@ int run_paper_experiments(const PaperExperimentArguments& arguments,
 }
 
 void add_options(CLI::App& command, PaperExperimentArguments& arguments) {
-  command.add_option("--law", arguments.law, "gauss, paper or both; default: the device's")
-      ->check(CLI::IsMember({"gauss", "paper", "both"}));
-  command.add_option("--bounds", arguments.bounds, "recoverable or paper; default: the device's")
-      ->check(CLI::IsMember({"recoverable", "paper"}));
+  std::vector<std::string> laws = names_of(config::kLaws);
+  laws.emplace_back("both");
+  add_choice(command, "--law", arguments.law, laws);
+  add_choice(command, "--bounds", arguments.bounds, names_of(config::kBounds));
   command
       .add_option("--seed", arguments.seed, "of noise and tremor: the same seed, the same files")
       ->check(whole_number(0.0));

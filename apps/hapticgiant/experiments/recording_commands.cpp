@@ -81,7 +81,7 @@ class Reader final : public recording::RecordingListener {
     }
     analysis::RunFacts facts = scenario::facts_of_scenario(*scenario_);
     facts.rate_Hz = scenario_->device.model.rate_Hz;
-    run["summary"] = Json::parse(summary_->to_json(facts, {}));
+    run["summary"] = summary_->to_json(facts, {});
     make_folder(folder.string());
     write_run(folder, run, columns_);
   }

@@ -121,7 +121,7 @@ std::string first_difference(const Sample& recorded, const Sample& now) {
     const std::string name = (column.name.starts_with("command.") ? "" : "record.") + column.name;
     const auto was = numbers_of(column), is = numbers_of(after.all()[i]);
     if (was.size() != is.size()) return name + " has another number of items";
-    const auto place = static_cast<std::size_t>(std::ranges::mismatch(was, is).in1 - was.begin());
+    const std::size_t place = std::ranges::mismatch(was, is).in1 - was.begin();
     if (place == was.size()) return name + " has other bits";  // two kinds of NaN
     const std::string item = column.is_wide ? fmt::format("[{}]", place) : "";
     return fmt::format("{}{} was {} and is {}", name, item, was[place], is[place]);

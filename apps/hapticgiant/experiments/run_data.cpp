@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "apps/hapticgiant/output_file.h"
 #include "hg/core/enumerators.h"
+#include "hg/core/index.h"
 #include "hg/model/chain_data.h"
 
 namespace hg::apps {
@@ -15,24 +15,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json quantity(const std::string& name, bool is_angle, double lower, double upper) {
-  return {{"name", name},
-          {"unit", is_angle ? "rad" : "m"},
-          {"lower", number_or_null(lower)},
-          {"upper", number_or_null(upper)}};
+  return {{"name", name}, {"unit", is_angle ? "rad" : "m"}, {"lower", lower}, {"upper", upper}};
 }
-
-bool is_angle(const model::Joint& joint) { return joint.type != model::JointType::kPrismatic; }
 
 void add_device(const DeviceModel& device, Json& json) {
   for (const char* group : {"manipulator", "virtual", "gantry"}) json[group] = Json::array();
   for (int i = 0; i < device.n_m; ++i) {
-    const limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
-    const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p + i)];
+    const limits::JointLimits& limits = device.joint_limits[i];
+    const model::Joint& joint = device.chain.joints()[device.n_p + i];
     json["manipulator"].push_back(
-        quantity(joint.name, is_angle(joint), limits.q_min, limits.q_max));
+        quantity(joint.name, !joint.is_slide(), limits.q_min, limits.q_max));
   }
   for (const VirtualJoint& joint : device.virtual_joints) {
     json["virtual"].push_back(quantity(joint.name, true, joint.limits.q_min, joint.limits.q_max));
@@ -40,13 +33,12 @@ void add_device(const DeviceModel& device, Json& json) {
         std::vector<double>(joint.weights.begin(), joint.weights.end());
   }
   for (int i = 0; i < device.n_p; ++i) {
-    const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(i)];
+    const model::Joint& joint = device.chain.joints()[i];
     json["gantry"].push_back(
-        quantity(joint.name, is_angle(joint), joint.position.lb, joint.position.ub));
+        quantity(joint.name, !joint.is_slide(), joint.position.lb, joint.position.ub));
   }
   const auto box = handle_limits(device);
-  json["box"] = {{"x", {number_or_null(box[0].q_min), number_or_null(box[0].q_max)}},
-                 {"y", {number_or_null(box[1].q_min), number_or_null(box[1].q_max)}}};
+  json["box"] = {{"x", {box[0].q_min, box[0].q_max}}, {"y", {box[1].q_min, box[1].q_max}}};
   json["has_elbow"] = device.elbow >= 0;
 }
 
@@ -56,7 +48,7 @@ void add_twin(const rendering::TwinModel& twin, Json& json) {
     const rendering::TwinDof& dof = twin.dofs[i];
     if (dof.q_index < 0) continue;
     Json entry = quantity(dof.name, dof.is_angle, dof.limits.q_min, dof.limits.q_max);
-    entry["speed_max"] = number_or_null(dof.limits.dq_max);
+    entry["speed_max"] = dof.limits.dq_max;
     entry["q"] = dof.q_index;
     entry["v"] = i;
     json["twin"].push_back(entry);
@@ -65,7 +57,7 @@ void add_twin(const rendering::TwinModel& twin, Json& json) {
 
 // Limit, joint or coordinate that a condition is about, and whether that is an angle; empty: none.
 std::pair<std::string, bool> subject(const Condition& condition, const config::Scenario& scenario) {
-  const auto i = static_cast<std::size_t>(condition.index);
+  const std::size_t i = condition.index;
   const DeviceModel& device = scenario.device.model;
   switch (condition.kind) {
     case ConditionKind::kLimit:
@@ -91,8 +83,7 @@ std::pair<std::string, bool> subject(const Condition& condition, const config::S
 Json describe(const Condition& condition, const config::Scenario& scenario) {
   const auto kinds = enumerators<ConditionKind>();
   const auto [name, is_angle] = subject(condition, scenario);
-  Json json = {{"kind", words_of(kinds[static_cast<std::size_t>(condition.kind)].name)},
-               {"value", condition.value}};
+  Json json = {{"kind", words_of(kinds[index(condition.kind)].name)}, {"value", condition.value}};
   if (!name.empty()) json["of"] = name;
   if (!name.empty()) json["unit"] = is_angle ? "rad" : "m";
   if (condition.side != LimitState::kInactive) json["side"] = to_string(condition.side);

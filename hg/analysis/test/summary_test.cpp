@@ -215,8 +215,7 @@ TEST(Summary, ReportsATimedOutStop) {
   EXPECT_NE(text({.unrecorded = 8}).find("8 samples of the recording"), std::string::npos);
   EXPECT_NE(text({.recording_error = "disk full"}).find("0 samples of the recording: disk full"),
             std::string::npos);
-  const auto json = nlohmann::json::parse(
-      summary.to_json({.stop_timed_out = true, .recording_error = "disk full"}, {}));
+  const auto json = summary.to_json({.stop_timed_out = true, .recording_error = "disk full"}, {});
   EXPECT_EQ(json["recording_error"].get<std::string>(), "disk full");
   EXPECT_TRUE(json["stop_timed_out"].get<bool>());
   EXPECT_FALSE(json["real_time"].get<bool>());
@@ -228,7 +227,7 @@ TEST(Summary, NamesTheLawThatLeadsTheGantry) {
   EXPECT_NE(summary.to_text(facts, {}).find("gauss, recoverable bounds\n"), std::string::npos);
   facts.gantry = "law";
   EXPECT_NE(summary.to_text(facts, {}).find("bounds, gantry led by the law\n"), std::string::npos);
-  const auto json = nlohmann::json::parse(summary.to_json(facts, {}));
+  const auto json = summary.to_json(facts, {});
   EXPECT_EQ(json["gantry"].get<std::string>(), "law");
 }
 
@@ -238,7 +237,7 @@ TEST(Summary, ReportsWhereLimitsBrakeTogether) {
   EXPECT_NE(summary.to_text(facts, {}).find("gauss, recoverable bounds\n"), std::string::npos);
   facts.braking = "together";
   EXPECT_NE(summary.to_text(facts, {}).find("bounds, limits brake together\n"), std::string::npos);
-  const auto json = nlohmann::json::parse(summary.to_json(facts, {}));
+  const auto json = summary.to_json(facts, {});
   EXPECT_EQ(json["braking"].get<std::string>(), "together");
 }
 
@@ -255,7 +254,7 @@ TEST(Summary, ReportsHowOftenTheBudgetOfTheSolverWasSpent) {
     summary.add(sample);
   }
   EXPECT_TRUE(has("3 solved, 2 not proven, 0 not")) << summary.to_text({}, {});
-  EXPECT_NE(summary.to_json({}, {}).find("\"budget spent\": 2"), std::string::npos);
+  EXPECT_EQ(summary.to_json({}, {})["solver"]["status"]["budget spent"], 2);
 }
 
 TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
@@ -271,7 +270,7 @@ TEST(Summary, TheJsonHoldsWhatScriptsNeed) {
     summary.add(sample);
   }
   summary.add(RunEvent{"open", 0.5, "the door is open"});
-  const auto json = nlohmann::json::parse(summary.to_json({.version = "1.2.3"}, {"closed"}));
+  const auto json = summary.to_json({.version = "1.2.3"}, {"closed"});
   EXPECT_EQ(json["version"], "1.2.3");
   EXPECT_EQ(json["events"][0]["name"], "open");
   EXPECT_EQ(json["events"][0]["time_s"], 0.5);
@@ -309,7 +308,7 @@ TEST(Summary, ReportsThatHandAndDeviceShookEachOther) {
                                          "other, 0.25 s in all, first at 0.300 s: "
                                          "force above 30 Hz"),
             std::string::npos);
-  const auto json = nlohmann::json::parse(summary.to_json({}, {}));
+  const auto json = summary.to_json({}, {});
   EXPECT_NEAR(json["shaking"]["duration_s"].get<double>(), 0.25, 1e-9);
   EXPECT_EQ(json["shaking"]["what"], "force above 30 Hz");
 }

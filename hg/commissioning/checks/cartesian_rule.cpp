@@ -17,7 +17,7 @@ double low(std::vector<double>& values) {
   if (values.empty()) return kInfinity;
   const auto index = static_cast<std::ptrdiff_t>(kLow * static_cast<double>(values.size()));
   std::ranges::nth_element(values, values.begin() + index);
-  return values[static_cast<std::size_t>(index)];
+  return values[index];
 }
 
 double share_below(const std::vector<double>& values, double limit) {
@@ -55,7 +55,7 @@ std::vector<CartesianRule> cartesian_rules(const config::DeviceConfig& device,
       const model::Jacobian J = manipulator_jacobian(model, chain, limit.frame);
       double acceleration = 0.0;
       for (Eigen::Index i = 0; i < J.cols(); ++i) {
-        const auto& joint = model.joint_limits[static_cast<std::size_t>(i)];
+        const auto& joint = model.joint_limits[i];
         acceleration += kReserve * std::abs(J(axis, i)) * joint.ddq_max;
       }
       values[k].push_back(acceleration);
@@ -80,8 +80,8 @@ void inspect_cartesian_rule(const config::DeviceConfig& device, const Survey& su
   constexpr double kTolerated = 0.25, kRare = 0.01;  // shares of postures
   for (const CartesianRule& rule : cartesian_rules(device, survey)) {
     if (rule.share_too_weak < kRare) continue;
-    const auto& limit = device.model.cartesian_limits[static_cast<std::size_t>(rule.limit)];
-    const auto& range = limit.axes[static_cast<std::size_t>(rule.axis)];
+    const auto& limit = device.model.cartesian_limits[rule.limit];
+    const auto& range = limit.axes[rule.axis];
     out.add(
         rule.share_too_weak > kTolerated ? Severity::kWarning : Severity::kNote,
         fmt::format("cartesian_limits[{}].ddq_max_m_per_s2", rule.limit),

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "hg/core/index.h"
-
 namespace hg::checks {
 
 void inspect_collisions(const config::DeviceConfig& device, Collector& out) {
@@ -57,7 +55,7 @@ void inspect_floor(const config::DeviceConfig& device, const Survey& survey, Col
   for (const collision::Excluded& pair : device.collision.pairs.excluded) {
     if (pair.reason != collision::Exclusion::kAlways) continue;
     const auto at = [&](int shape) -> const collision::Shape& {
-      return device.collision.shapes[index(shape)];
+      return device.collision.shapes[shape];
     };
     if (at(pair.a).is_surrounding) inside.push_back(at(pair.b).name);
     if (at(pair.b).is_surrounding) inside.push_back(at(pair.a).name);

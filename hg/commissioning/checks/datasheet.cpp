@@ -14,7 +14,7 @@ double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::ranges::nth_element(values, values.begin() + index);
-  return values[static_cast<std::size_t>(index)];
+  return values[index];
 }
 
 template <class Value>
@@ -37,11 +37,11 @@ Bottleneck bottleneck(const config::DeviceConfig& device, const Survey& survey, 
   std::vector<int> counts(joints.size(), 0);
   for (const Posture& posture : survey.postures) {
     const int joint = (posture.*guarantee).joint;
-    if (joint >= 0) ++counts[static_cast<std::size_t>(first_joint + joint)];
+    if (joint >= 0) ++counts[first_joint + joint];
   }
   const auto most = std::ranges::max_element(counts);
   if (most == counts.end() || *most == 0) return {};
-  return {joints[static_cast<std::size_t>(most - counts.begin())].name,
+  return {joints[most - counts.begin()].name,
           static_cast<double>(*most) / static_cast<double>(survey.postures.size())};
 }
 
@@ -51,16 +51,16 @@ std::vector<JointLine> joint_lines(const config::DeviceConfig& device, const Sur
   for (std::size_t i = 0; i < model.chain.joints().size(); ++i) {
     const model::Joint& joint = model.chain.joints()[i];
     JointLine line = {.name = joint.name,
-                      .is_angle = joint.type != model::JointType::kPrismatic,
+                      .is_angle = !joint.is_slide(),
                       .effort_max = joint.effort_max,
-                      .gravity_max = survey.gravity_max[static_cast<Eigen::Index>(i)]};
+                      .gravity_max = survey.gravity_max[i]};
     if (static_cast<int>(i) < model.n_p) {
       line.is_gantry = true;
       line.range = device.model.gantry_range[i];
       line.dq_max = device.prepositioning.dq_max;
       line.ddq_max = device.model.drive.ddq_max;
     } else {
-      const auto& limits = model.joint_limits[i - static_cast<std::size_t>(model.n_p)];
+      const auto& limits = model.joint_limits[i - model.n_p];
       line.range = {limits.q_min, limits.q_max};
       line.dq_max = limits.dq_max;
       line.ddq_max = limits.ddq_max;

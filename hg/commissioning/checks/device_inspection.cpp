@@ -12,15 +12,13 @@
 #include "hg/commissioning/checks/collision_inspection.h"
 #include "hg/commissioning/checks/stopping_rule.h"
 #include "hg/commissioning/checks/workspace.h"
-#include "hg/core/index.h"
 #include "hg/model/chain_data.h"
 
 namespace hg::checks {
 namespace {
 
 std::string position_key(const model::Joint& joint, const char* end) {
-  return fmt::format("joints.{}.q_{}_{}", joint.name, end,
-                     joint.type == model::JointType::kPrismatic ? "m" : "rad");
+  return fmt::format("joints.{}.q_{}_{}", joint.name, end, joint.is_slide() ? "m" : "rad");
 }
 
 void inspect_synchronisation(const config::DeviceConfig& device, Collector& out) {
@@ -75,7 +73,7 @@ void inspect_joints(const config::DeviceConfig& device, const Survey& survey, Co
     const model::Joint& joint = model.chain.joints()[i];
     const bool is_gantry = static_cast<int>(i) < model.n_p;
     if (!is_gantry) {
-      const auto& limits = model.joint_limits[i - index(model.n_p)];
+      const auto& limits = model.joint_limits[i - model.n_p];
       if (limits.q_min >= limits.q_max) {
         out.add(Severity::kFault, position_key(joint, "max"),
                 fmt::format("the joint has no range, it may only be at {:g}", limits.q_max),
@@ -87,12 +85,11 @@ void inspect_joints(const config::DeviceConfig& device, const Survey& survey, Co
                       "has no torque rating: the datasheet cannot say what forces it bears",
                       "give <limit effort=\"...\"/> in Nm, or N for a prismatic joint");
     } else if (survey.gravity_max.size() > static_cast<Eigen::Index>(i) &&
-               survey.gravity_max[static_cast<Eigen::Index>(i)] > joint.effort_max) {
-      out.add_at_urdf(
-          Severity::kFault, "joint", joint.name,
-          fmt::format("needs {:.3g} to hold the device itself, its rating is {:g}",
-                      survey.gravity_max[static_cast<Eigen::Index>(i)], joint.effort_max),
-          "give the true effort and masses, or limit the joints to postures it bears");
+               survey.gravity_max[i] > joint.effort_max) {
+      out.add_at_urdf(Severity::kFault, "joint", joint.name,
+                      fmt::format("needs {:.3g} to hold the device itself, its rating is {:g}",
+                                  survey.gravity_max[i], joint.effort_max),
+                      "give the true effort and masses, or limit the joints to postures it bears");
     }
   }
 }
@@ -107,7 +104,7 @@ void inspect_virtual_joints(const config::DeviceConfig& device, Collector& out) 
     for (int i = 0; i < model.n_m; ++i) {
       const double weight = joint.weights[i];
       if (weight == 0.0) continue;
-      const auto& limits = model.joint_limits[index(i)];
+      const auto& limits = model.joint_limits[i];
       reach.lb += std::min(weight * limits.q_min, weight * limits.q_max);
       reach.ub += std::max(weight * limits.q_min, weight * limits.q_max);
       ddq_sum += std::abs(weight) * limits.ddq_max;
@@ -138,7 +135,7 @@ void inspect_boxes(const config::DeviceConfig& device, const Survey& survey, Col
     if (survey.cloud.frames[k].isEmpty()) continue;  // no posture was found at all
     const CartesianLimit& limit = model.cartesian_limits[k];
     for (int axis = 0; axis < 3; ++axis) {
-      const limits::JointLimits& range = limit.axes[index(axis)];
+      const limits::JointLimits& range = limit.axes[axis];
       const double lowest = survey.cloud.frames[k].min()[axis],
                    highest = survey.cloud.frames[k].max()[axis];
       if (!std::isfinite(range.q_min) && !std::isfinite(range.q_max)) continue;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/model/urdf.h"
 
 namespace hg::checks {
@@ -15,7 +14,7 @@ int take_number(std::string_view& text) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end == text.data() + text.size() || *end != ':') return 0;
-  text.remove_prefix(index(end - text.data()) + 1);
+  text.remove_prefix(end - text.data() + 1);
   return value;
 }
 

@@ -12,7 +12,6 @@
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/checks/twin_inspection.h"
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
@@ -43,7 +42,7 @@ void collect(const DeviceModel& model, const std::array<limits::JointLimits, 3>&
              const limits::JointLimits& limits, int dof, const Meeting& meeting, Collected& out) {
   const auto column = meeting.J_a.col(dof);
   for (std::size_t axis = 0; axis < hand.size(); ++axis) {
-    const double lever = std::abs(column[static_cast<Eigen::Index>(axis)]);
+    const double lever = std::abs(column[axis]);
     if (std::isfinite(limits.ddq_max)) {
       out.acceleration = std::max(out.acceleration, lever * limits.ddq_max / hand[axis].ddq_max);
     }
@@ -56,7 +55,7 @@ void collect(const DeviceModel& model, const std::array<limits::JointLimits, 3>&
   int joint = 0;
   for (int i = 0; i < model.n_m; ++i) {
     const double share = std::abs((*meeting.manipulator_of_twin)(i, dof)) * limits.ddq_max /
-                         model.joint_limits[index(i)].ddq_max;
+                         model.joint_limits[i].ddq_max;
     if (share > largest) {
       largest = share;
       joint = i;
@@ -77,7 +76,7 @@ Demand summary(const DeviceModel& model, const std::string& name, Collected& val
   const auto at = static_cast<std::ptrdiff_t>(kHigh * static_cast<double>(order.size() - 1));
   std::ranges::nth_element(order, order.begin() + at, {},
                            [&](std::size_t i) { return values.joint_acceleration[i]; });
-  const std::size_t high = order[index(at)];
+  const std::size_t high = order[at];
   demand.joint_acceleration = values.joint_acceleration[high];
   demand.device_joint = model.manipulator_joint(values.device_joint[high]);
   return demand;

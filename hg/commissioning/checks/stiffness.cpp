@@ -170,7 +170,7 @@ StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
                             .period = device.model.dt(),
                             .delay = std::max(delay_of(device), device.model.dt())};
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
-    const double speed = dq[static_cast<Eigen::Index>(i)];
+    const double speed = dq[i];
     limits.damping += twin.model.dofs[i].damping * speed * speed;
   }
   limits.acceleration = braking_of(device, twin);

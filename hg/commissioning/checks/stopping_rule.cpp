@@ -5,8 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "hg/core/index.h"
-
 namespace hg::checks {
 
 std::vector<Stopping> stopping_of(const config::DeviceConfig& device) {
@@ -14,8 +12,8 @@ std::vector<Stopping> stopping_of(const config::DeviceConfig& device) {
   const safety::MonitorConfig& monitor = device.monitor;
   std::vector<Stopping> all;
   for (int i = 0; i < model.n_p + model.n_m; ++i) {
-    const model::Joint& joint = model.chain.joints()[index(i)];
-    const bool is_angle = joint.type != model::JointType::kPrismatic;
+    const model::Joint& joint = model.chain.joints()[i];
+    const bool is_angle = !joint.is_slide();
     Stopping stopping = {.name = joint.name, .is_angle = is_angle};
     if (i < model.n_p) {
       stopping.need = safety::stopping_need(device.model.drive);
@@ -23,7 +21,7 @@ std::vector<Stopping> stopping_of(const config::DeviceConfig& device) {
       stopping.key =
           is_angle ? "monitor.gantry_stop_distance_rad" : "monitor.gantry_stop_distance_m";
     } else {
-      const auto& limits = model.joint_limits[index(i - model.n_p)];
+      const auto& limits = model.joint_limits[i - model.n_p];
       stopping.need = safety::stopping_need(limits.dq_max, limits.ddq_max);
       stopping.distance = is_angle ? monitor.stop_distance : monitor.slide_stop_distance;
       stopping.key = is_angle ? "monitor.stop_distance_rad" : "monitor.stop_distance_m";

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <span>
 
-#include "hg/core/index.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/joint_range.h"
 
@@ -40,11 +39,11 @@ Scene make_scene(const config::DeviceConfig& device) {
                  {}};
   scene.effort.resize(model.chain.nv());
   for (int i = 0; i < model.chain.nv(); ++i) {
-    scene.effort[i] = model.chain.joints()[index(i)].effort_max;
+    scene.effort[i] = model.chain.joints()[i].effort_max;
   }
   scene.ddq_max.resize(model.n_m);
   for (int i = 0; i < model.n_m; ++i) {
-    scene.ddq_max[i] = model.joint_limits[index(i)].ddq_max;
+    scene.ddq_max[i] = model.joint_limits[i].ddq_max;
   }
   return scene;
 }
@@ -107,15 +106,14 @@ void survey_postures(Scene& scene, Random& random, Survey& result) {
 
 // A gantry of prismatic joints shifts everything by J_p q_p: positions without further kinematics.
 bool gantry_only_shifts(const DeviceModel& model) {
-  const std::span joints(model.chain.joints().data(), index(model.n_p));
-  return model.n_p > 0 && std::ranges::all_of(joints, [](const model::Joint& joint) {
-           return joint.type == model::JointType::kPrismatic;
-         });
+  const std::span joints(model.chain.joints().data(), model.n_p);
+  return model.n_p > 0 &&
+         std::ranges::all_of(joints, [](const model::Joint& joint) { return joint.is_slide(); });
 }
 
 bool is_inside(const CartesianLimit& limit, const Eigen::Vector3d& p) {
   for (int axis = 0; axis < 3; ++axis) {
-    const limits::JointLimits& range = limit.axes[index(axis)];
+    const limits::JointLimits& range = limit.axes[axis];
     if (p[axis] < range.q_min || p[axis] > range.q_max) return false;
   }
   return true;
@@ -202,15 +200,15 @@ JointRanges joint_ranges(const config::DeviceConfig& device) {
   const int n = model.chain.nv();
   JointRanges ranges = {Eigen::VectorXd(n), Eigen::VectorXd(n)};
   for (int i = 0; i < n; ++i) {
-    const model::Joint& joint = model.chain.joints()[index(i)];
+    const model::Joint& joint = model.chain.joints()[i];
     Interval range = joint.position;
     if (i < model.n_p) {
-      range = device.model.gantry_range[index(i)];
+      range = device.model.gantry_range[i];
     } else {
-      const auto& limits = model.joint_limits[index(i - model.n_p)];
+      const auto& limits = model.joint_limits[i - model.n_p];
       range = {limits.q_min, limits.q_max};
     }
-    range = model::finite_range(range, joint.type != model::JointType::kPrismatic);
+    range = model::finite_range(range, !joint.is_slide());
     ranges.lower[i] = range.lb;
     ranges.upper[i] = range.ub;
   }
@@ -248,7 +246,7 @@ Cloud cloud(const config::DeviceConfig& device, int postures, bool at_limits, Ra
   const DeviceModel& model = device.model;
   Scene scene = make_scene(device);
   const int copies = gantry_only_shifts(model) ? kCopies : 1;
-  const model::Joint& first = model.chain.joints()[index(model.n_p)];
+  const model::Joint& first = model.chain.joints()[model.n_p];
   Cloud result;
   result.frames.assign(model.cartesian_limits.size(), Eigen::AlignedBox3d());
   for (int i = 0; i < postures; ++i) {
@@ -256,7 +254,7 @@ Cloud cloud(const config::DeviceConfig& device, int postures, bool at_limits, Ra
     if (!q) break;
     if (adjust && !adjust(scene.chain, *q)) continue;
     scene.chain.update(*q, scene.zero);
-    if (first.type != model::JointType::kPrismatic) {
+    if (!first.is_slide()) {
       const Eigen::Vector3d lever = scene.chain.jacobian(model.handle).col(model.n_p).head<3>();
       result.reach = std::max(result.reach, lever.norm());
     }

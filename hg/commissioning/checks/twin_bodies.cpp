@@ -23,7 +23,7 @@ void inspect_link(const model::Urdf& urdf, int index, Collector& out) {
   constexpr double kAtLeast = 1.0;                     // m; links end in tools that no joint shows
   constexpr double kSlackness = 2.0;                   // times the link's length
   constexpr double kThinnest = 1e-3, kThickest = 5.0;  // m, radius of gyration
-  const model::UrdfLink& link = urdf.links[static_cast<std::size_t>(index)];
+  const model::UrdfLink& link = urdf.links[index];
   if (!link.inertial) return;
   const double length = std::max(kAtLeast, kSlackness * extent(urdf, index));
   const double distance = link.inertial->p_com.norm();

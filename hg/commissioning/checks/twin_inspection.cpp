@@ -169,7 +169,7 @@ Findings inspect(const config::Twin& twin, double dt) {
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const rendering::TwinDof& dof = twin.model.dofs[i];
     if (dof.q_index >= 0) inspect_limits(dof, twin.model.q_start[dof.q_index], out);
-    inspect_spring(dof, figures.smallest_inertia[static_cast<Eigen::Index>(i)], dt, out);
+    inspect_spring(dof, figures.smallest_inertia[i], dt, out);
   }
   return std::move(out.findings);
 }

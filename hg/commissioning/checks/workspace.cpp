@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "hg/core/index.h"
 #include "hg/model/chain_data.h"
 
 namespace hg::checks {
@@ -87,7 +86,7 @@ VoxelGrid::VoxelGrid(const Eigen::AlignedBox3d& box, double edge) : box_(box) {
     count_[axis] = static_cast<int>(std::clamp(std::round(length / edge), 1.0, kMost));
     edge_[axis] = length / count_[axis];
   }
-  touched_.assign(hg::index(count_.prod()), 0);
+  touched_.assign(count_.prod(), 0);
 }
 
 void VoxelGrid::touch(const Eigen::Vector3d& point) {
@@ -132,7 +131,7 @@ bool VoxelGrid::is_touched(const Eigen::Vector3i& cell) const {
 }
 
 std::size_t VoxelGrid::index(const Eigen::Vector3i& cell) const {
-  return hg::index((cell[0] * count_[1] + cell[1]) * count_[2] + cell[2]);
+  return (cell[0] * count_[1] + cell[1]) * count_[2] + cell[2];
 }
 
 Eigen::AlignedBox3d handle_box(const DeviceModel& model) {

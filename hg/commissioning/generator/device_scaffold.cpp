@@ -10,7 +10,6 @@
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/model/chain_data.h"
 
 namespace hg::generator {
@@ -32,9 +31,7 @@ struct DeviceDraft {
   Eigen::VectorXd posture;
 };
 
-const model::Joint& joint(const DeviceDraft& d, int i) {
-  return d.chain.model().joints()[index(i)];
-}
+const model::Joint& joint(const DeviceDraft& d, int i) { return d.chain.model().joints()[i]; }
 
 // leading prismatic joints that six or seven others follow
 int gantry_joints(const model::ChainModel& chain, const std::string& source) {
@@ -43,7 +40,7 @@ int gantry_joints(const model::ChainModel& chain, const std::string& source) {
   for (const model::Joint& joint : chain.joints()) {
     if (joint.nv != 1)
       throw SetupError(source + ": joint " + joint.name + ": a device has no floating joints");
-    if (joint.type != model::JointType::kPrismatic) break;
+    if (!joint.is_slide()) break;
     ++leading;
   }
   const int n_p = std::min({leading, kMaxGantry, n - 6});
@@ -65,9 +62,7 @@ double acceleration_of(const model::Joint& joint) {
   return std::stod(rounded(speed_of(joint) / kRampTime));
 }
 
-std::string unit_of(const model::Joint& joint) {
-  return joint.type == model::JointType::kPrismatic ? "m" : "rad";
-}
+std::string unit_of(const model::Joint& joint) { return joint.is_slide() ? "m" : "rad"; }
 
 // the handle of a standing arm is above the plane that it stands on
 bool is_usable(const DeviceDraft& d) { return !d.stands || d.chain.pose(d.handle).p.z() >= kTable; }
@@ -92,7 +87,7 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
     const Eigen::VectorXd q = sampler.draw();
     double nearest = 1.0, sum = 0.0;  // 1 in the middle of a range, 0 at its ends
     for (int i = d.n_p; i < q.size(); ++i) {
-      const Interval range = d.ranges[index(i)];
+      const Interval range = d.ranges[i];
       const double share = (2.0 * q[i] - range.lb - range.ub) / (range.ub - range.lb);
       nearest = std::min(nearest, 1.0 - std::abs(share));
       sum += 1.0 - share * share;
@@ -104,7 +99,7 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
     }
   }
   for (int i = 0; i < d.n_p; ++i) {
-    const Interval range = d.ranges[index(i)];
+    const Interval range = d.ranges[i];
     best[i] = 0.5 * (range.lb + range.ub);
   }
   return best;
@@ -123,7 +118,7 @@ Interval without(Interval range, double singular, double value) {
 void leave_singularities(DeviceDraft& d) {
   for (const SingularValue& s : d.singular) {
     if (s.other >= 0) continue;
-    Interval& range = d.ranges[index(s.joint)];
+    Interval& range = d.ranges[s.joint];
     range = without(range, s.value, d.posture[s.joint]);
   }
 }
@@ -168,8 +163,8 @@ Reach reach_of(DeviceDraft& d) {
         speed += 0.5 * std::abs(J(axis, i)) * speed_of(joint(d, i));
         acceleration += 0.5 * std::abs(J(axis, i)) * acceleration_of(joint(d, i));
       }
-      speeds[index(axis)].push_back(speed);
-      accelerations[index(axis)].push_back(acceleration);
+      speeds[axis].push_back(speed);
+      accelerations[axis].push_back(acceleration);
     }
   }
   const auto fifth_percentile = [](std::vector<double>& values) {
@@ -197,7 +192,7 @@ std::string joint_lines(const DeviceDraft& d) {
       "\njoints:  # positions and speeds that do not stand here are those of the URDF\n";
   for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
     const model::Joint& j = joint(d, i);
-    const Interval range = d.ranges[index(i)];
+    const Interval range = d.ranges[i];
     const std::string unit = unit_of(j);
     std::string keys, why = "full speed within 0.2 s";
     if (range.lb > j.position.lb && range.lb > -M_PI)
@@ -245,7 +240,7 @@ std::string virtual_joint_lines(const DeviceDraft& d) {
 
 std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   std::string text = fmt::format("\ncartesian_limits:\n  - name: hand\n    frame: {}\n",
-                                 quoted(d.chain.model().frame_names()[index(d.handle)]));
+                                 quoted(d.chain.model().frame_names()[d.handle]));
   for (int axis = 0; axis < 3; ++axis) {
     text +=
         fmt::format("    {}: {{q_min_m: {}, q_max_m: {}}}{}\n", "xyz"[axis],
@@ -291,7 +286,7 @@ std::string device_yaml(const ChainPart& part, const std::filesystem::path& fold
     text += fmt::format("gantry: {}  # [V] the first prismatic joints\n", list_of(d, 0, d.n_p));
   text += fmt::format("manipulator: {}\n", list_of(d, d.n_p, d.chain.model().nv()));
   text += fmt::format("handle: {}  # [A] frame that is held, at the force/torque sensor\n",
-                      quoted(d.chain.model().frame_names()[index(d.handle)]));
+                      quoted(d.chain.model().frame_names()[d.handle]));
   text += "rate_Hz: 1000\n";
   return text + joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
 }

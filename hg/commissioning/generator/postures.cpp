@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/joint_range.h"
 
@@ -39,7 +38,7 @@ Eigen::VectorXd PostureSampler::draw() {
   Eigen::VectorXd q(static_cast<Eigen::Index>(ranges_.size()));
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     const double share = static_cast<double>(random_()) / kLargest;
-    q[static_cast<Eigen::Index>(i)] = std::lerp(ranges_[i].lb, ranges_[i].ub, share);
+    q[i] = std::lerp(ranges_[i].lb, ranges_[i].ub, share);
   }
   return q;
 }
@@ -47,8 +46,7 @@ Eigen::VectorXd PostureSampler::draw() {
 std::vector<Interval> joint_ranges(const model::ChainModel& chain) {
   std::vector<Interval> ranges;
   for (const model::Joint& joint : chain.joints()) {
-    ranges.push_back(
-        model::finite_range(joint.position, joint.type != model::JointType::kPrismatic));
+    ranges.push_back(model::finite_range(joint.position, !joint.is_slide()));
   }
   return ranges;
 }
@@ -69,10 +67,8 @@ std::vector<SingularValue> singular_values(const model::ChainModel& chain, int f
   model::ChainData probe(chain);
   const int n = chain.nv();
   std::vector<SingularValue> found;
-  const auto turns = [&](int joint) {
-    return chain.joints()[index(joint)].type != model::JointType::kPrismatic;
-  };
-  const auto range = [&](int joint) { return ranges[index(joint)]; };
+  const auto turns = [&](int joint) { return !chain.joints()[joint].is_slide(); };
+  const auto range = [&](int joint) { return ranges[joint]; };
 
   for (int i = first; i < n; ++i) {
     if (!turns(i)) continue;

@@ -8,7 +8,6 @@
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
@@ -37,7 +36,7 @@ struct Placement {
   bool is_upright = true;
 };
 
-const model::Joint& joint(const TwinDraft& d, int i) { return d.chain.model().joints()[index(i)]; }
+const model::Joint& joint(const TwinDraft& d, int i) { return d.chain.model().joints()[i]; }
 
 TwinDraft make_draft(const ChainPart& part) {
   TwinDraft d{.chain = model::ChainData(read_part(part)), .ranges = {}, .start = {}, .lever = {}};
@@ -102,7 +101,7 @@ Pose nominal_handle(const config::DeviceConfig& device) {
   const std::vector<Interval> ranges = joint_ranges(device.model.chain);
   Eigen::VectorXd q(chain.model().nq());
   for (int i = 0; i < q.size(); ++i) {
-    const Interval range = ranges[index(i)];
+    const Interval range = ranges[i];
     q[i] = 0.5 * (range.lb + range.ub);
     const int goal = i - device.model.n_p;
     if (goal >= 0 && goal < device.model.posture.size() &&
@@ -203,7 +202,7 @@ std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
       "\njoints:  # positions and speeds that do not stand here are those of the URDF\n";
   for (int i = 0; i < d.chain.model().nv(); ++i) {
     const model::Joint& j = joint(d, i);
-    const bool turns = j.type != model::JointType::kPrismatic;
+    const bool turns = !j.is_slide();
     const std::string unit = turns ? "rad" : "m";
     const double lever = std::max(d.lever[i], 1e-6);
     const double speed =
@@ -240,7 +239,7 @@ std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder
              "end_effector: {}  # [A] frame that the hand holds\n",
              d.chain.model().name(), part.urdf.filename().generic_string(), device.name,
              quoted(d.chain.model().name()), part_lines(part, folder),
-             quoted(d.chain.model().frame_names()[index(d.end_effector)])) +
+             quoted(d.chain.model().frame_names()[d.end_effector])) +
          placement_line(placement) +
          "gravity: false  # true: the hand carries the weight of the twin\n" +
          joint_lines(d, tip_ratings(device));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hg/core/index.h"
 #include "hg/core/interval.h"
 
 namespace hg::identification::friction {
@@ -99,7 +98,7 @@ double Fit::improve(Model& model, const Free& free, double deviation) const {
       const VectorXd step = H.ldlt().solve(normal.g);
       Model next = model;
       for (std::size_t i = 0; i < normal.of.size(); ++i) {
-        next.p[normal.of[i]] += step[static_cast<Eigen::Index>(i)];
+        next.p[normal.of[i]] += step[i];
       }
       confine(next);
       const double tried = total(next, deviation);
@@ -127,8 +126,7 @@ Parameters Fit::deviations(const Model& model, const Free& free, double deviatio
     const MatrixXd WJ = normal.w.segment(first, rows).asDiagonal() * J;
     MatrixXd H = normal.H - J.transpose() * WJ;
     H.diagonal().array() += 1e-9 * H.trace() / static_cast<double>(count);
-    steps.col(static_cast<Eigen::Index>(b)) =
-        H.ldlt().solve(normal.g - WJ.transpose() * normal.r.segment(first, rows));
+    steps.col(b) = H.ldlt().solve(normal.g - WJ.transpose() * normal.r.segment(first, rows));
   }
   const VectorXd mean = steps.rowwise().mean();
   const VectorXd sum = (steps.colwise() - mean).rowwise().squaredNorm();
@@ -185,13 +183,13 @@ Fit::Normal Fit::normal_of(const Model& model, const Free& free, double deviatio
   normal.r = residuals(model);
   normal.w = weights_of(normal.r, deviation).cwiseProduct(counts_);
   for (int i = 0; i < kParameters; ++i) {
-    if (free[index(i)]) normal.of.push_back(i);
+    if (free[i]) normal.of.push_back(i);
   }
   const auto count = static_cast<Eigen::Index>(normal.of.size());
   normal.J.resize(rows_.size(), count);
   const VectorXd dry = rows_.dry(model);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const int parameter = normal.of[index(i)];
+    const int parameter = normal.of[i];
     if (parameter >= kViscous) {
       normal.J.col(i) = linear_.col(parameter - kViscous);
       continue;
@@ -205,7 +203,7 @@ Fit::Normal Fit::normal_of(const Model& model, const Free& free, double deviatio
   normal.H = normal.J.transpose() * WJ;
   normal.g = WJ.transpose() * normal.r;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const int parameter = normal.of[index(i)];
+    const int parameter = normal.of[i];
     if (parameter != kGain && parameter != kInertia) continue;
     const double more = precision(parameter == kGain ? kGainPrior : kInertiaPrior, deviation);
     normal.H(i, i) += more;

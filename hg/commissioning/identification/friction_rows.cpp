@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "hg/core/index.h"
 #include "hg/signals/presliding.h"
 
 namespace hg::identification::friction {
@@ -20,7 +19,7 @@ constexpr double kBlock = 1.0;   // s
 std::array<double, 2 * kSmoothing + 1> window() {
   std::array<double, 2 * kSmoothing + 1> w{};
   for (int i = -kSmoothing; i <= kSmoothing; ++i) {
-    w[index(i + kSmoothing)] =
+    w[i + kSmoothing] =
         (1.0 + std::cos(std::numbers::pi * i / (kSmoothing + 1))) / (2.0 * (kSmoothing + 1));
   }
   return w;
@@ -61,7 +60,7 @@ Rows::Rows(const FrictionTrace& trace, double rotor_inertia)
   ddtheta_.resize(rows);
   slides_.resize(rows);
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const std::size_t k = at_[index(i)];
+    const std::size_t k = at_[i];
     ddtheta_[i] = smoothed(acceleration, k);
     y_[i] = smoothed(driven, k) - Jm_ * ddtheta_[i];
     v_[i] = speed_[k];
@@ -92,7 +91,7 @@ VectorXd Rows::dry(const Model& model) const {
                            model.elements;
       for (int e = 0; e < model.elements; ++e) {
         const double s = F / (x * (e + 1)), damper = d / model.elements / h;
-        double& z = way[index(e)];
+        double& z = way[e];
         const double stuck = s * (z + moved) + damper * moved;
         if (std::abs(stuck) <= bound) {
           z += moved;
@@ -106,7 +105,7 @@ VectorXd Rows::dry(const Model& model) const {
     }
   });
   VectorXd rows(size());
-  for (Eigen::Index i = 0; i < size(); ++i) rows[i] = smoothed(f, at_[index(i)]);
+  for (Eigen::Index i = 0; i < size(); ++i) rows[i] = smoothed(f, at_[i]);
   return rows;
 }
 

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 
 namespace hg::identification {
 namespace {
@@ -26,7 +25,7 @@ FrictionTraces::FrictionTraces(const DeviceModel& device, double current_lag)
         "this one follow positions");
   }
   for (FrictionTrace& joint : joints_) joint.period_s = device.dt();
-  current_ = working_ = VectorM::Zero(static_cast<Eigen::Index>(joints_.size()));
+  current_ = working_ = VectorM::Zero(joints_.size());
 }
 
 const FrictionTraces::Given* FrictionTraces::at_work(const SensorFrame& sensors) const {
@@ -38,7 +37,7 @@ const FrictionTraces::Given* FrictionTraces::at_work(const SensorFrame& sensors)
 void FrictionTraces::take(const SensorFrame& sensors, const VectorM& tau) {
   const auto n = static_cast<Eigen::Index>(joints_.size());
   for (Eigen::Index i = 0; i < n; ++i) {
-    FrictionTrace& joint = joints_[index(i)];
+    FrictionTrace& joint = joints_[i];
     double theta = sensors.theta_m[i];
     if (is_cut_) {
       joint.cuts.push_back(joint.theta.size());

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "hg/core/cross.h"
-#include "hg/core/index.h"
 #include "hg/core/interval.h"
 #include "hg/core/linear_algebra.h"
 
@@ -69,7 +68,7 @@ std::string missing_poses(const Spread& spread, std::size_t poses, const Payload
         "turned about this axis by 30 degrees and more",
         axis.x(), axis.y(), axis.z());
   }
-  if (poses < index(kFewestPoses)) {
+  if (poses < kFewestPoses) {
     return fmt::format("{} poses, at least {} are needed", poses, kFewestPoses);
   }
   if (!(result.mass > 0.0)) return "no weight was measured: is there a payload, and is w_S in N?";
@@ -90,7 +89,7 @@ PayloadEstimate identify_payload(std::span<const StaticPose> poses) {
     Eigen::MatrixXd A_f(3 * n, 4), A_n(3 * n, 6);
     Eigen::VectorXd f(3 * n), torque(3 * n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const StaticPose& pose = poses[index(i)];
+      const StaticPose& pose = poses[i];
       A_f.middleRows<3>(3 * i) << -pose.a_S, Eigen::Matrix3d::Identity();
       A_n.middleRows<3>(3 * i) << cross_matrix(pose.a_S), Eigen::Matrix3d::Identity();
       f.segment<3>(3 * i) = pose.w_S.head<3>();

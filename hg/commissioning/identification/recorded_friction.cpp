@@ -6,7 +6,6 @@
 
 #include "hg/commissioning/identification/friction_traces.h"
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::identification {
@@ -65,9 +64,9 @@ RecordedFriction identify_recorded_friction(const std::string& file,
   }
   result.used_s = static_cast<double>(traces.used()) * model.dt();
   for (int i = 0; i < model.n_m; ++i) {
-    const ActuatorModel& nominal = model.actuators[index(i)];
-    result.joints.push_back({model.chain.joints()[index(model.n_p + i)].name,
-                             identify_friction(traces.joints()[index(i)], nominal), nominal});
+    const ActuatorModel& nominal = model.actuators[i];
+    result.joints.push_back({model.chain.joints()[model.n_p + i].name,
+                             identify_friction(traces.joints()[i], nominal), nominal});
   }
   return result;
 }

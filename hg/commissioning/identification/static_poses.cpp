@@ -35,10 +35,10 @@ VectorM candidate(const DeviceModel& device, int index) {
   constexpr std::array<int, kMaxManipulator> kBases = {2, 3, 5, 7, 11, 13, 17};
   VectorM q_m(device.n_m);
   for (int i = 0; i < device.n_m; ++i) {
-    const limits::JointLimits& joint = device.joint_limits[static_cast<std::size_t>(i)];
+    const limits::JointLimits& joint = device.joint_limits[i];
     const double lowest = std::max(joint.q_min, -std::numbers::pi);
     const double highest = std::min(joint.q_max, std::numbers::pi);
-    q_m[i] = std::lerp(lowest, highest, halton(index + 1, kBases[static_cast<std::size_t>(i)]));
+    q_m[i] = std::lerp(lowest, highest, halton(index + 1, kBases[i]));
   }
   return q_m;
 }
@@ -189,11 +189,11 @@ std::vector<StaticPose> read_static_poses(const std::string& name, const std::st
                                    header.size(), values.size()));
     }
     const auto value = [&](std::size_t i) {
-      return number(values[static_cast<std::size_t>(columns[i])], where + ": " + kColumns[i]);
+      return number(values[columns[i]], where + ": " + kColumns[i]);
     };
-    Sum& sum = sums[columns[9] < 0 ? where : values[static_cast<std::size_t>(columns[9])]];
+    Sum& sum = sums[columns[9] < 0 ? where : values[columns[9]]];
     sum.pose.a_S += Eigen::Vector3d(value(0), value(1), value(2));
-    for (int i = 0; i < 6; ++i) sum.pose.w_S[i] += value(static_cast<std::size_t>(3 + i));
+    for (int i = 0; i < 6; ++i) sum.pose.w_S[i] += value(3 + i);
     ++sum.rows;
   }
   std::vector<StaticPose> poses;

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "hg/core/index.h"
 #include "hg/core/stacked.h"
 #include "hg/runtime/requests.h"
 
@@ -28,13 +27,13 @@ Setup setup_of(const config::DeviceConfig& device, bool is_simulated) {
   const std::vector<model::Joint>& joints = device.model.chain.joints();
   const std::vector<ActuatorModel>& actuators = device.model.actuators;
   for (int i = 0; i < device.model.n_p + device.model.n_m; ++i) {
-    const model::Joint& joint = joints[index(i)];
-    const bool is_slide = joint.type == model::JointType::kPrismatic;
+    const model::Joint& joint = joints[i];
+    const bool is_slide = joint.is_slide();
     const bool is_gantry = i < device.model.n_p;
     double least = is_slide ? kForce : kTorque;
     if (is_gantry) least = is_slide ? kGantryForce : kGantryTorque;
     if (!is_gantry && !actuators.empty()) {
-      const ActuatorModel& actuator = actuators[index(i - device.model.n_p)];
+      const ActuatorModel& actuator = actuators[i - device.model.n_p];
       least = std::max(least, kOverFriction * actuator.stiction * actuator.coulomb_friction);
     }
     (is_gantry ? setup.gantry : setup.manipulator).push_back({joint.name, is_slide, least});

@@ -40,11 +40,11 @@ std::vector<Position> posture_of(const config::DeviceConfig& device, const Senso
   std::vector<Position> posture;
   const std::vector<model::Joint>& joints = device.model.chain.joints();
   for (int i = 0; i < device.model.n_p + device.model.n_m; ++i) {
-    const model::Joint& joint = joints[static_cast<std::size_t>(i)];
+    const model::Joint& joint = joints[i];
     const bool is_gantry = i < device.model.n_p;
     posture.push_back({.name = joint.name,
                        .value = is_gantry ? sensors.q_p[i] : sensors.q_m[i - device.model.n_p],
-                       .is_slide = joint.type == model::JointType::kPrismatic,
+                       .is_slide = joint.is_slide(),
                        .is_endless = joint.type == model::JointType::kContinuous});
   }
   return posture;

@@ -100,9 +100,7 @@ class Procedure {
  private:
   using Seen = std::function<bool()>;
 
-  bool has(SafetyInput input) const noexcept {
-    return setup_.config.has_input[static_cast<std::size_t>(input)];
-  }
+  bool has(SafetyInput input) const noexcept { return setup_.config.has_input[index(input)]; }
 
   void advance(Wish wish) {
     seen_ = station_.advance(wish);

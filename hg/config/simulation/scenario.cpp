@@ -43,7 +43,7 @@ EventNames names_of(const DeviceConfig& device, const Twin& twin, const LimitCat
     names.manipulator.push_back(device.model.manipulator_joint(i));
   }
   for (int i = 0; i < device.model.n_p; ++i) {
-    names.gantry.push_back(device.model.chain.joints()[static_cast<std::size_t>(i)].name);
+    names.gantry.push_back(device.model.chain.joints()[i].name);
   }
   return names;
 }
@@ -162,7 +162,7 @@ void settle_law(Scenario& scenario) {
       const bool is_of_limit =
           condition.kind == kLimit || condition.kind == kSpeedLimit || condition.kind == kLocked;
       if (!is_of_limit) continue;
-      const std::string& name = before[static_cast<std::size_t>(condition.index)].name;
+      const std::string& name = before[condition.index].name;
       const auto limit = std::ranges::find(scenario.limits, name, &LimitInfo::name);
       if (limit == scenario.limits.end()) {
         throw SetupError("event '" + event.name + "': waits for '" + name +

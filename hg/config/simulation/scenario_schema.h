@@ -15,6 +15,7 @@
 #include "hg/config/sources.h"
 #include "hg/config/twin_schema.h"
 #include "hg/controller/rendering/surfaces/environment.h"
+#include "hg/core/index.h"
 #include "hg/signals/event_rule.h"
 #include "hg/signals/timed_changes.h"
 #include "hg/signals/timed_panel.h"
@@ -28,15 +29,9 @@ namespace hg::config {
 
 enum class SurfaceShape { kPlane, kBox, kSphere, kCylinder, kMesh };
 
-inline constexpr std::array<Choice<surfaces::Contact>, 2> kContacts = {
-    {{"spring", surfaces::Contact::kSpring}, {"stop", surfaces::Contact::kStop}}};
+inline constexpr auto kContacts = choices_of<surfaces::Contact>();
 
-inline constexpr std::array<Choice<SurfaceShape>, 5> kSurfaceShapes = {
-    {{"plane", SurfaceShape::kPlane},
-     {"box", SurfaceShape::kBox},
-     {"sphere", SurfaceShape::kSphere},
-     {"cylinder", SurfaceShape::kCylinder},
-     {"mesh", SurfaceShape::kMesh}}};
+inline constexpr auto kSurfaceShapes = choices_of<SurfaceShape>();
 
 /// Content of an item of `surfaces`, before it becomes a Surface.
 struct SurfaceDraft {
@@ -147,8 +142,8 @@ void describe(V& v, BystanderDraft& d, simulator::BystanderConfig& bystander) {
   v.rule(!v.is_given("facing") || bystander.facing.norm() > 1e-3, "facing",
          "must not be a zero vector");
   if (d.frames.empty()) return;  // the reference page
-  bystander.part = &simulator::kBodyParts[static_cast<std::size_t>(part)];
-  d.hit_by = d.frames[static_cast<std::size_t>(frame)];
+  bystander.part = &simulator::kBodyParts[part];
+  d.hit_by = d.frames[frame];
 }
 
 template <class V>
@@ -272,7 +267,7 @@ void describe(V& v, InjectionsDraft& d) {
   v.number("magnitude", magnitude, {.lb = -1e6, .ub = 1e6},
            "how much of it; unit and usual sizes in docs/reports/fault_campaign.md");
 
-  fault.kind = &faults::kinds()[static_cast<std::size_t>(kind)];
+  fault.kind = &faults::kinds()[kind];
   const int n_m = static_cast<int>(d.manipulator.size()), n_p = static_cast<int>(d.gantry.size());
   const bool has_parts = faults::parts_of(fault.kind->part, n_m, n_p) > 0;
   if (has_parts) fault.index = part_index(d, *fault.kind, name);
@@ -329,7 +324,7 @@ struct ChangesDraft {
 inline ChangesDraft changes_of(const rendering::TwinModel& twin) {
   ChangesDraft draft;
   for (const model::Joint& joint : twin.chain.joints()) {
-    const limits::JointLimits& limits = twin.dofs[static_cast<std::size_t>(joint.v_index)].limits;
+    const limits::JointLimits& limits = twin.dofs[joint.v_index].limits;
     draft.joint_names.push_back(joint.name);
     draft.joints.push_back({.unit = unit_of(joint.type),
                             .is_floating = joint.type == model::JointType::kFloating,
@@ -341,7 +336,7 @@ inline ChangesDraft changes_of(const rendering::TwinModel& twin) {
 
 template <class V>
 void describe_change(V& v, ChangesDraft& d, double at_s, ChangeJoint& joint) {
-  constexpr auto kNumber = [](Parameter parameter) { return static_cast<std::size_t>(parameter); };
+  constexpr auto kNumber = [](Parameter parameter) { return index(parameter); };
   std::array<double, kParameters.size() + 1> values;  // by number of the parameter
   values.fill(kNoDefault);
   for (const ParameterFacts& facts : kParameters) {
@@ -390,7 +385,7 @@ void describe(V& v, ChangesDraft& d) {
   int index = 0;
   v.name("joint", index, d.joint_names, "a joint of the twin",
          "whose values change; the other keys are those of twin.yaml");
-  ChangeJoint& joint = d.joints[static_cast<std::size_t>(index)];
+  ChangeJoint& joint = d.joints[index];
   const bool has_joint = v.is_given("joint");
   if (v.covers(has_joint && !joint.is_floating)) describe_change(v, d, at_s, joint);
   if (v.covers(has_joint && joint.is_floating)) describe_floating_change(v, d, at_s, joint.dof);
@@ -467,7 +462,7 @@ void describe_limit_conditions(V& v, const EventNames& names, EventRule& event) 
     event.all_of.push_back({.kind = ConditionKind::kSpeedLimit, .index = index, .side = side});
   }
   if (v.name("locked", index, names.twin_joints, "a joint of the twin", "a lock holds it")) {
-    const int limit = names.twin_limits[static_cast<std::size_t>(index)];
+    const int limit = names.twin_limits[index];
     event.all_of.push_back({.kind = ConditionKind::kLocked, .index = limit});
   }
 }
@@ -488,7 +483,7 @@ void describe_conditions(V& v, const EventNames& names, EventRule& event) {
         [&](int index, double value) {
           const bool is_twin =
               kind == ConditionKind::kTwinAbove || kind == ConditionKind::kTwinBelow;
-          if (is_twin) index = names.twin_coordinates[static_cast<std::size_t>(index)];
+          if (is_twin) index = names.twin_coordinates[index];
           event.all_of.push_back({.kind = kind, .index = index, .value = value});
         },
         text);

@@ -37,15 +37,9 @@ struct ScriptDraft {
   double duration_s = kNoDefault;
 };
 
-inline constexpr std::array<Choice<person::ScriptFrame>, 3> kScriptFrames = {
-    {{"base", person::ScriptFrame::kBase},
-     {"cylindrical", person::ScriptFrame::kCylindrical},
-     {"twin_joints", person::ScriptFrame::kTwinJoints}}};
+inline constexpr auto kScriptFrames = choices_of<person::ScriptFrame>();
 
-inline constexpr std::array<Choice<person::HandPreset>, 3> kHandPresets = {
-    {{"relaxed", person::HandPreset::kRelaxed},
-     {"normal", person::HandPreset::kNormal},
-     {"stiff", person::HandPreset::kStiff}}};
+inline constexpr auto kHandPresets = choices_of<person::HandPreset>();
 
 template <class V>
 void describe(V& v, person::HandImpedance& hand) {
@@ -163,8 +157,8 @@ void describe_segments(V& v, ScriptDraft& d) {
       "start",
       [&](auto& child) {
         describe_channels(child, d, [&](int channel, double value) {
-          d.start[static_cast<std::size_t>(channel)] = value;
-          d.start_given[static_cast<std::size_t>(channel)] = true;
+          d.start[channel] = value;
+          d.start_given[channel] = true;
         });
       },
       "pose channels that are not given start at the start pose of the twin");

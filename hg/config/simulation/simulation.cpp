@@ -34,7 +34,7 @@ std::vector<int> find_joints(Loader& loader, const std::vector<std::string>& wan
                 "must have all joints of the device, there is no '" + name + "'");
     if (found == draft.joint_names.end()) continue;
     indices.push_back(static_cast<int>(found - draft.joint_names.begin()));
-    loader.rule(!draft.flexible[static_cast<std::size_t>(indices.back())], "flexible",
+    loader.rule(!draft.flexible[indices.back()], "flexible",
                 "must not be a joint that the device drives", "'" + name + "'");
   }
   return indices;
@@ -98,10 +98,9 @@ void yield(Loader& loader, LoaderFile& file, const SimulationTarget& device,
     const int index = chain.model().joint(names[i] + kSuffix);
     const double inertia = draft.simulation.factors.mass * chain.M()(index, index);
     const double omega = 2.0 * std::numbers::pi * joint->frequency_Hz;
-    draft.flexible[static_cast<std::size_t>(index)] = {
-        .unit = draft.joint_units[static_cast<std::size_t>(index)],
-        .stiffness = omega * omega * inertia,
-        .damping = 2.0 * joint->damping_ratio * omega * inertia};
+    draft.flexible[index] = {.unit = draft.joint_units[index],
+                             .stiffness = omega * omega * inertia,
+                             .damping = 2.0 * joint->damping_ratio * omega * inertia};
   }
 }
 
@@ -219,13 +218,12 @@ namespace {
 
 SimulationTarget target_of(const DeviceConfig& device) {
   const DeviceModel& model = device.model;
-  SimulationTarget target = {
-      .handle = model.chain.frame_names()[static_cast<std::size_t>(model.handle)],
-      .chain = device.chain_options,
-      .urdf = device.urdf};
+  SimulationTarget target = {.handle = model.chain.frame_names()[model.handle],
+                             .chain = device.chain_options,
+                             .urdf = device.urdf};
   for (int i = 0; i < model.n_p + model.n_m; ++i) {
     std::vector<std::string>& names = i < model.n_p ? target.gantry : target.manipulator;
-    names.push_back(model.chain.joints()[static_cast<std::size_t>(i)].name);
+    names.push_back(model.chain.joints()[i].name);
   }
   return target;
 }

@@ -353,7 +353,7 @@ void describe_effects(V& v, SimulationDraft& draft, const std::vector<std::strin
   v.groups_by_name(
       "structure", joints, "a joint of the device",
       [&](auto& child, int index) {
-        auto& joint = draft.structure[static_cast<std::size_t>(index)];
+        auto& joint = draft.structure[index];
         if (!joint) joint.emplace();
         describe(child, *joint);
       },
@@ -367,7 +367,7 @@ void describe_effects(V& v, SimulationDraft& draft, const std::vector<std::strin
       "waviness", gantry, "an axis of the gantry",
       [&](auto& child, int index) {
         draft.simulation.waviness.resize(gantry.size());
-        describe(child, draft.simulation.waviness[static_cast<std::size_t>(index)]);
+        describe(child, draft.simulation.waviness[index]);
       },
       "how belt, wheels and rail lead the gantry astray");
 }
@@ -378,9 +378,8 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
   v.groups_by_name(
       "flexible", draft.joint_names, "a joint of the URDF",
       [&](auto& child, int index) {
-        const auto i = static_cast<std::size_t>(index);
-        FlexibleDraft& joint = draft.flexible[i].emplace();
-        joint.unit = draft.joint_units[i];
+        FlexibleDraft& joint = draft.flexible[index].emplace();
+        joint.unit = draft.joint_units[index];
         describe(child, joint);
       },
       "joints of 'urdf' without a drive: bending links or frames");
@@ -397,7 +396,7 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
       "buffers at the ends of all joints");
   describe_effects(v, draft, gantry, manipulator);
   VectorM& ratios = draft.simulation.gear_ratio;  // a base has given some
-  if (static_cast<std::size_t>(ratios.size()) != manipulator.size()) {
+  if (ratios.size() != std::ssize(manipulator)) {
     ratios = per_joint(manipulator.size(), 1.0);
   }
   v.numbers_by_name(

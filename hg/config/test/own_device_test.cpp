@@ -61,8 +61,7 @@ TEST(OwnDevice, AToolBringsHandleSensorMassAndItsSwitch) {
       reader_of(kGantry + "tool: tool.yaml\nflange: l7\n", arm_urdf("revolute"),
                 std::string(kTool) + "handle: {z_m: 0.2}\nsensor: {x_m: 0.01}\ndead_man: false\n");
   const DeviceConfig device = load_device("device.yaml", reader);
-  EXPECT_EQ(device.model.chain.frame_names()[static_cast<std::size_t>(device.model.handle)],
-            "handle");
+  EXPECT_EQ(device.model.chain.frame_names()[device.model.handle], "handle");
   EXPECT_EQ(device.model.T_H_S.p.x(), 0.01);
   EXPECT_FALSE(device.monitor.has_dead_man);
   EXPECT_EQ(device.sources.size(), 3u);  // a recording must hold the tool

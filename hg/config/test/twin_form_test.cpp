@@ -79,7 +79,7 @@ TEST(TwinForm, AFloatingJointChangesThreeDirectionsAtOnce) {
   const std::vector<FormField> form = twin_form(body.model);
   const FormField& field = find(form, "root.damping_Ns_per_m");
   ASSERT_EQ(field.changes.size(), 3u);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(field.changes[static_cast<std::size_t>(i)].index, i);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(field.changes[i].index, i);
 }
 
 TEST(TwinForm, RefusesWhatIsOutOfRangeNotANumberOrCrosses) {

@@ -23,8 +23,7 @@ Estimation::Estimation(const EstimationConfig& config, const DeviceModel& device
       units_(config.units, dt_, config.link_pole_Hz, config.observer_pole_Hz, device.chain, n_p_) {}
 
 bool Estimation::turns_without_end(int joint) const noexcept {
-  return chain_.model().joints()[static_cast<std::size_t>(joint)].type ==
-         model::JointType::kContinuous;
+  return chain_.model().joints()[joint].type == model::JointType::kContinuous;
 }
 
 double Estimation::unwrapped(int joint, double measured, double last) const noexcept {
@@ -69,13 +68,12 @@ RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
 void Estimation::start(const SensorFrame& sensors, EstimationState& state) const noexcept {
   state.q_m = sensors.q_m;
   for (int i = 0; i < n_m_; ++i) {
-    const auto joint = static_cast<std::size_t>(i);
-    state.link[joint].q = sensors.q_m[i];
+    state.link[i].q = sensors.q_m[i];
     if (sensors.theta_m.size() == n_m_) {
-      state.motor[joint].theta = unwrapped(n_p_ + i, sensors.theta_m[i], sensors.q_m[i]);
+      state.motor[i].theta = unwrapped(n_p_ + i, sensors.theta_m[i], sensors.q_m[i]);
     }
   }
-  for (int i = 0; i < n_p_; ++i) state.gantry[static_cast<std::size_t>(i)].q = sensors.q_p[i];
+  for (int i = 0; i < n_p_; ++i) state.gantry[i].q = sensors.q_p[i];
   state.is_started = true;
 }
 
@@ -89,16 +87,15 @@ VectorM Estimation::observe_joints(const SensorFrame& sensors, const VectorM& dd
   const bool has_motor_encoders = sensors.theta_m.size() == n_m_;
   if (has_motor_encoders) robot.theta_m = robot.dtheta_m = sensors.theta_m;
   for (int i = 0; i < n_m_; ++i) {
-    const auto joint = static_cast<std::size_t>(i);
     robot.q_m[i] = measured[i] = unwrapped(n_p_ + i, sensors.q_m[i], state.q_m[i]);
     if (!has_motor_encoders) continue;
 
-    LinkObserver& link = state.link[joint];
+    LinkObserver& link = state.link[i];
     observe(link_pole_, dt_, ddq_m_reference[i], robot.q_m[i], link);
     robot.q_m[i] = link.q;
     robot.dq_m[i] = link.dq;
 
-    MotorObserver& motor = state.motor[joint];
+    MotorObserver& motor = state.motor[i];
     const double theta = unwrapped(n_p_ + i, sensors.theta_m[i], link.q);
     observe(motor_pole_, dt_, theta, motor);
     robot.theta_m[i] = motor.theta;
@@ -116,7 +113,7 @@ VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq
   robot.dq_p.resize(n_p_);
   robot.ddq_p.resize(n_p_);
   for (int i = 0; i < n_p_; ++i) {
-    GantryObserver& axis = state.gantry[static_cast<std::size_t>(i)];
+    GantryObserver& axis = state.gantry[i];
     measured[i] = unwrapped(i, sensors.q_p[i], axis.q);
     observe(drive_, gantry_gains_, dt_, measured[i], axis.delay.shift(dq_p_cmd[i], dead_periods_),
             axis);
@@ -129,7 +126,7 @@ VectorP Estimation::observe_gantry(const SensorFrame& sensors, const VectorP& dq
 
 VectorP Estimation::gantry_disturbance(const EstimationState& state) const noexcept {
   VectorP ddq(n_p_);
-  for (int i = 0; i < n_p_; ++i) ddq[i] = state.gantry[static_cast<std::size_t>(i)].disturbance;
+  for (int i = 0; i < n_p_; ++i) ddq[i] = state.gantry[i].disturbance;
   return ddq;
 }
 

@@ -13,7 +13,6 @@
 #include "hg/controller/estimation/inertial_units.h"
 #include "hg/controller/estimation/joint_observer.h"
 #include "hg/controller/estimation/user_wrench.h"
-#include "hg/core/index.h"
 #include "hg/core/types.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
@@ -46,7 +45,7 @@ void hashed(auto& hash, const EstimationState& state) {
   const auto& [is_started, gantry, q_m, link, motor, wrench, inertial, units] = state;
   for (const GantryObserver& axis : gantry) hash.mix(axis);
   hash.mix(q_m);
-  for (std::size_t i = 0; i < index(q_m.size()); ++i) {
+  for (int i = 0; i < q_m.size(); ++i) {
     hash.mix(link[i].q, link[i].dq, motor[i].theta, motor[i].dtheta);
   }
   hash.mix(std::uint64_t{is_started} | std::uint64_t{wrench.is_started} << 1U, wrench, inertial);

@@ -54,8 +54,7 @@ InertialUnits::InertialUnits(const InertialUnitsConfig& config, double dt, doubl
   slow_Hz_ = fast_Hz_.cwiseMin(kSlow_Hz);
   variance_.resize(n_ + 6);
   for (int i = 0; i < n_; ++i) {
-    const bool is_slide =
-        chain_.model().joints()[static_cast<std::size_t>(i)].type == model::JointType::kPrismatic;
+    const bool is_slide = chain_.model().joints()[i].is_slide();
     variance_[i] = is_slide ? kGantry * kGantry : kJoint * kJoint;
   }
   variance_.segment<3>(n_).setConstant(kBendShift * kBendShift);
@@ -65,7 +64,7 @@ InertialUnits::InertialUnits(const InertialUnitsConfig& config, double dt, doubl
 const EncoderSample& InertialUnits::ago(int periods,
                                         const InertialUnitsState& state) const noexcept {
   constexpr std::size_t kPast = InertialUnitsState::kPast;
-  return state.past[(state.newest + kPast - static_cast<std::size_t>(periods)) % kPast];
+  return state.past[(state.newest + kPast - periods) % kPast];
 }
 
 // At the posture and speed of the last update of the chain.
@@ -113,7 +112,7 @@ void InertialUnits::start(const EncoderSample& encoders, InertialUnitsState& sta
   state.is_started = true;
   if (config_.known) state.units = *config_.known;
   state.past.fill(encoders);
-  state.trust.setZero(static_cast<Eigen::Index>(config_.frames.size()));
+  state.trust.setZero(config_.frames.size());
   state.found = state.carried = Unknowns::Zero(n_ + 6);
   state.variance = variance_;
   state.error.setConstant(state.trust.size(), kReading * kReading);
@@ -126,7 +125,7 @@ void InertialUnits::start(const EncoderSample& encoders, InertialUnitsState& sta
 // at once.
 bool InertialUnits::judge(std::size_t j, const UnitReading& reading, const LinkMotion& by_encoders,
                           const Eigen::Vector3d& beyond, InertialUnitsState& state) const noexcept {
-  double& trust = state.trust[static_cast<Eigen::Index>(j)];
+  double& trust = state.trust[j];
   const bool is_nonsense = trust > 0.0 && !(beyond.norm() < kNonsense);
   if (!is_alive(j, reading, state) || is_nonsense || state.seen < InertialUnitsState::kPast) {
     const bool was_in = trust > 0.0;
@@ -151,7 +150,7 @@ void InertialUnits::learn_deviations(const Unknowns& found, const Unknowns& left
   for (Eigen::Index j = 0; j < state.trust.size(); ++j) {
     if (state.trust[j] < 1.0) continue;
     double& error = state.error[j];
-    error += share * (rests[static_cast<std::size_t>(j)].squaredNorm() / 3.0 - error);
+    error += share * (rests[j].squaredNorm() / 3.0 - error);
     error = std::max(error, kLeastReading * kLeastReading);
   }
 }
@@ -188,11 +187,11 @@ void InertialUnits::step(const InertialReadings& readings, const EncoderSample& 
     const UnitReading shown = expected(unit, motion_of(frame, by_reference));
     const Eigen::Vector3d beyond = reading.a - shown.a;
     if (!judge(j, reading, motion_of(frame, by_encoders), beyond, state)) has_lost_one = true;
-    const double trust = state.trust[static_cast<Eigen::Index>(j)];
+    const double trust = state.trust[j];
     if (trust == 0.0) continue;
     const Rows& rows = all_rows[j] = effect_on(unit, frame);
     rests[j] = beyond;
-    const double weight = trust / state.error[static_cast<Eigen::Index>(j)];
+    const double weight = trust / state.error[j];
     normal.noalias() += weight * rows.transpose().lazyProduct(rows);
     sum.noalias() += weight * rows.transpose().lazyProduct(beyond);
 
@@ -211,7 +210,7 @@ void InertialUnits::step(const InertialReadings& readings, const EncoderSample& 
   factor.solveInPlace(inverse);
   state.unseen = inverse.diagonal().head(n_).cwiseQuotient(state.variance.head(n_));
   for (std::size_t j = 0; j < config_.frames.size(); ++j) {
-    if (state.trust[static_cast<Eigen::Index>(j)] > 0.0) rests[j] -= all_rows[j] * found;
+    if (state.trust[j] > 0.0) rests[j] -= all_rows[j] * found;
   }
   learn_deviations(found, inverse.diagonal(), rests, state);
   if (has_lost_one) state.carried = state.found - found;

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "hg/controller/estimation/unit_calibration.h"
-#include "hg/core/index.h"
 #include "hg/core/stacked.h"
 #include "hg/core/types.h"
 #include "hg/model/chain_data.h"
@@ -79,7 +78,7 @@ struct InertialUnitsState {
 void hashed(auto& hash, const InertialUnitsState& state) {
   const auto& [is_started, units, last, same, trust, past, newest, seen, turn, found, carried,
                variance, error, unseen, q, dq, bend_rate, bend, share] = state;
-  for (std::size_t i = 0; i < index(trust.size()); ++i) hash.mix(units[i], same[i]);
+  for (int i = 0; i < trust.size(); ++i) hash.mix(units[i], same[i]);
   hash.mix(past[newest], trust, found, carried, unseen, q, dq, variance, error, bend_rate, bend,
            share);
 }

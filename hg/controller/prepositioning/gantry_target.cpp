@@ -84,8 +84,7 @@ double GantryTarget::improve(const Pose& T_B_H, VectorPM& q) noexcept {
     if (std::isnan(goal_[i])) continue;
     const double missing = goal_[i] - q[i];
     H(i, i) += 1.0;
-    g[i] += is_free_[static_cast<std::size_t>(i)] ? std::remainder(missing, 2.0 * std::numbers::pi)
-                                                  : missing;
+    g[i] += is_free_[i] ? std::remainder(missing, 2.0 * std::numbers::pi) : missing;
   }
   q += limited_step(H, g, q);
   return error.norm();
@@ -95,7 +94,7 @@ double GantryTarget::improve(const Pose& T_B_H, VectorPM& q) noexcept {
 // it.
 VectorPM GantryTarget::limited_step(MatrixPM H, VectorPM g, const VectorPM& q) const noexcept {
   const auto limited = [&](int i, double step) {
-    const Interval range = range_[static_cast<std::size_t>(i)];
+    const Interval range = range_[i];
     return std::clamp(q[i] + step, range.lb, range.ub) - q[i];
   };
   VectorPM step = H.ldlt().solve(g);
@@ -109,7 +108,7 @@ VectorPM GantryTarget::limited_step(MatrixPM H, VectorPM g, const VectorPM& q) c
   for (int pass = 0; pass < q.size(); ++pass) {
     bool is_new = false;
     for (int i = 0; i < q.size(); ++i) {
-      bool& held = is_held[static_cast<std::size_t>(i)];
+      bool& held = is_held[i];
       const double end = limited(i, step[i]);
       if (held || std::abs(end - step[i]) < kRounding) continue;
       held = is_new = true;

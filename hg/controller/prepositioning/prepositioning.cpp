@@ -42,7 +42,7 @@ GantryCommand Prepositioning::step(const RobotState& robot, const VectorP& q_tar
   const auto n_p = static_cast<int>(range_.size());
   GantryCommand command = {q_target, VectorP::Zero(n_p), VectorP::Zero(n_p), VectorP::Zero(n_p)};
   for (int i = 0; i < n_p; ++i) {
-    const Interval q_limits = range_[static_cast<std::size_t>(i)];
+    const Interval q_limits = range_[i];
     command.q_target[i] = std::clamp(command.q_target[i], q_limits.lb, q_limits.ub);
     Interval bounds = limits::braking_velocity_bounds(q_limits, response_, robot.q_p[i]);
     if (room.up.size() > 0) {

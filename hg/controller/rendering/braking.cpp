@@ -19,7 +19,7 @@ double rating(const DeviceModel& device, const Eigen::Vector3d& direction) {
   double least = kInfinity;
   const auto limits = handle_limits(device);
   for (std::size_t axis = 0; axis < limits.size(); ++axis) {
-    const double share = std::abs(direction[static_cast<Eigen::Index>(axis)]);
+    const double share = std::abs(direction[axis]);
     if (share > 0.0) least = std::min(least, limits[axis].ddq_max / share);
   }
   return least;
@@ -41,7 +41,7 @@ double largest_acceleration(const DeviceModel& device, const DeviceMotion& motio
   hqp::Problem problem({.variables = n_m + 1, .levels = 3, .rows = 6 + n_m + 1});
   problem.clear(n_m + 1);
   Eigen::VectorXd row(n_m + 1);
-  const std::span<const double> coefficients(row.data(), static_cast<std::size_t>(row.size()));
+  const std::span<const double> coefficients(row.data(), row.size());
   problem.add_level();
   for (int i = 0; i < 6; ++i) {
     row << J.row(i).transpose(), i < 3 ? -direction[i] : 0.0;
@@ -49,7 +49,7 @@ double largest_acceleration(const DeviceModel& device, const DeviceMotion& motio
   }
   problem.add_level();
   for (int i = 0; i < n_m; ++i) {
-    const ActuatorModel& motor = device.motors()[static_cast<std::size_t>(i)];
+    const ActuatorModel& motor = device.motors()[i];
     row << chain.M().row(n_p + i).tail(n_m).transpose(), 0.0;
     row[i] += motor.rotor_inertia;
     const Interval torque = allowed_torque(motor, motion.dq_m[i]);
@@ -61,9 +61,9 @@ double largest_acceleration(const DeviceModel& device, const DeviceMotion& motio
   hqp::Solution solution(problem.capacity());
   hqp::ActiveSet active;
   solver.solve(problem, {}, active, solution);
-  const bool holds = std::ranges::none_of(
-      std::span(solution.state).subspan(6, static_cast<std::size_t>(n_m)), hqp::is_violated);
-  return holds ? std::max(0.0, solution.x[static_cast<std::size_t>(n_m)]) : 0.0;
+  const bool holds =
+      std::ranges::none_of(std::span(solution.state).subspan(6, n_m), hqp::is_violated);
+  return holds ? std::max(0.0, solution.x[n_m]) : 0.0;
 }
 
 }  // namespace hg::rendering

@@ -14,19 +14,16 @@ Interval range_of(const limits::JointLimits& limits) { return {limits.q_min, lim
 LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin) {
   LimitCatalogue catalogue;
   for (int i = 0; i < device.n_m; ++i) {
-    const auto index = static_cast<std::size_t>(i);
-    const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p) + index];
-    catalogue.push_back({LimitKind::kManipulatorJoint, joint.name,
-                         joint.type != model::JointType::kPrismatic,
-                         range_of(device.joint_limits[index])});
+    const model::Joint& joint = device.chain.joints()[device.n_p + i];
+    catalogue.push_back({LimitKind::kManipulatorJoint, joint.name, !joint.is_slide(),
+                         range_of(device.joint_limits[i])});
   }
   for (const VirtualJoint& joint : device.virtual_joints) {
     catalogue.push_back({LimitKind::kVirtualJoint, joint.name, true, range_of(joint.limits)});
   }
   for (std::size_t i = 0; i < device.motors().size(); ++i) {
-    const model::Joint& joint = device.chain.joints()[static_cast<std::size_t>(device.n_p) + i];
-    catalogue.push_back(
-        {LimitKind::kMotor, "motor " + joint.name, joint.type != model::JointType::kPrismatic, {}});
+    const model::Joint& joint = device.chain.joints()[device.n_p + i];
+    catalogue.push_back({LimitKind::kMotor, "motor " + joint.name, !joint.is_slide(), {}});
   }
   for (const CartesianLimit& limit : device.cartesian_limits) {
     for (std::size_t axis = 0; axis < limit.axes.size(); ++axis) {

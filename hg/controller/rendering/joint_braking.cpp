@@ -58,7 +58,7 @@ JointBraking::JointBraking(const hqp::Problem& tasks, int fixed, int limits, int
       problem_({.variables = tasks.variables() + 1, .levels = 4, .rows = fixed + limits + 1}),
       solver_(problem_.capacity()),
       solution_(problem_.capacity()),
-      coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
+      coefficients_(problem_.capacity().variables, 0.0) {
   problem_.clear(problem_.capacity().variables);
   problem_.add_level();
   for (int i = 0; i < fixed; ++i) problem_.add_row(coefficients_, {});
@@ -75,7 +75,7 @@ void JointBraking::copy(const hqp::Problem& tasks, int from, int to, double need
   const std::span<const double> row = tasks.coefficients(from);
   if (row.empty()) {
     std::ranges::fill(coefficients_, 0.0);
-    coefficients_[static_cast<std::size_t>(tasks.variable(from))] = 1.0;
+    coefficients_[tasks.variable(from)] = 1.0;
   } else {
     std::ranges::copy(row, coefficients_.begin());
   }
@@ -92,16 +92,15 @@ double JointBraking::reserve(const hqp::Problem& tasks, std::span<const Interval
   }
   int motor_row = fixed_, row = fixed_ + motors_;
   for (int limit = 0; limit < limits_; ++limit) {
-    const auto k = static_cast<std::size_t>(limit);
     const int motor = limit - first_motor_;
     if (motor >= 0 && motor < motors_) {
       copy(tasks, fixed_ + limit, motor_row, 0.0);
-      problem_.set_bounds(motor_row++, torque[static_cast<std::size_t>(motor)]);
+      problem_.set_bounds(motor_row++, torque[motor]);
       continue;
     }
-    copy(tasks, fixed_ + limit, row, approaches[k].need);
-    const Interval room = approaches[k].room;
-    problem_.set_bounds(row++, {room.lb - known[k], room.ub - known[k]});
+    copy(tasks, fixed_ + limit, row, approaches[limit].need);
+    const Interval room = approaches[limit].room;
+    problem_.set_bounds(row++, {room.lb - known[limit], room.ub - known[limit]});
   }
   hqp::ActiveSet active;
   solver_.solve(problem_, {}, active, solution_);

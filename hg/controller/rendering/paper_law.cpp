@@ -10,7 +10,7 @@ constexpr double kTouchTolerance = 1e-7;
 
 double value_of(const hqp::Problem& problem, int row, std::span<const double> x) noexcept {
   const int variable = problem.variable(row);
-  if (variable >= 0) return x[static_cast<std::size_t>(variable)];
+  if (variable >= 0) return x[variable];
   const std::span<const double> c = problem.coefficients(row);
   double value = 0.0;
   for (std::size_t i = 0; i < c.size(); ++i) value += c[i] * x[i];
@@ -36,7 +36,7 @@ PaperLaw::PaperLaw(const DeviceModel& device, const TwinModel& twin)
       n_a_(twin.chain.nv()),
       device_limits_(device.limit_count()),
       response_(n_a_, n_a_ + device_limits_ + 1),
-      coefficients_(static_cast<std::size_t>(n_m_ + 2 * n_a_ + device_limits_), 0.0) {}
+      coefficients_(n_m_ + 2 * n_a_ + device_limits_, 0.0) {}
 
 int PaperLaw::alpha(int limit) const noexcept {
   const int first = n_m_ + n_a_;

@@ -109,9 +109,8 @@ void Reactions::find_active(const Tasks& tasks, const hqp::Solution& solution) n
             .tail(n_a_);
   }
   for (int limit = 0; limit < count_; ++limit) {
-    const bool acts =
-        solution.state[index(tasks.acting_row(limit, solution))] != hqp::RowState::kInactive;
-    if (acts || of(limit) != 0.0) active_[index(active_count_++)] = limit;
+    const bool acts = solution.state[tasks.acting_row(limit, solution)] != hqp::RowState::kInactive;
+    if (acts || of(limit) != 0.0) active_[active_count_++] = limit;
   }
   for (const int limit : active()) {
     if (limit >= device_limits_) break;
@@ -125,7 +124,7 @@ void Reactions::split(const Tasks& tasks, const hqp::Solution& solution,
   rest_.setZero();
   const bool is_paper = tasks.alpha(0) >= 0;
   for (int limit = 0; is_paper && limit < device_limits_ + n_a_; ++limit) {
-    value_[index(limit)] = solution.x[index(tasks.alpha(limit))];
+    value_[limit] = solution.x[tasks.alpha(limit)];
   }
   find_active(tasks, solution);
   if (!is_paper && active_count_ > 0) split_active(tasks, solution, tau_constraint);
@@ -141,20 +140,20 @@ void Reactions::split_active(const Tasks& tasks, const hqp::Solution& solution,
   add_sum(tau_constraint);
   problem_.add_level();
   for (int j = 0; j < active_count_; ++j) {
-    const int row = tasks.acting_row(active_[index(j)], solution);
-    if (hqp::is_violated(solution.state[index(row)])) problem_.add_bound(j, {0.0, 0.0});
+    const int row = tasks.acting_row(active_[j], solution);
+    if (hqp::is_violated(solution.state[row])) problem_.add_bound(j, {0.0, 0.0});
   }
   std::fill_n(active_set_.state.begin(), problem_.rows(), hqp::RowState::kInactive);
   std::fill_n(active_set_.before.begin(), problem_.rows(), hqp::RowState::kInactive);
   solver_.solve(problem_, {}, active_set_, solution_);
   for (std::size_t j = 0; j < active().size(); ++j) {
-    value_[index(active_[j])] = solution_.x[j] * scale_[j];
+    value_[active_[j]] = solution_.x[j] * scale_[j];
   }
 }
 
 void Reactions::add_signs(const Tasks& tasks, const hqp::Solution& solution) noexcept {
   const auto state_of = [&](int limit) {
-    return solution.state[index(tasks.acting_row(limit, solution))];
+    return solution.state[tasks.acting_row(limit, solution)];
   };
   // a row above one that could not be met may be held for that row's sake, against its own sign
   int last_violated = -1;
@@ -163,8 +162,8 @@ void Reactions::add_signs(const Tasks& tasks, const hqp::Solution& solution) noe
   }
   problem_.add_level();
   for (int j = 0; j < active_count_; ++j) {
-    const int limit = active_[index(j)];
-    scale_[index(j)] = 1.0 / tasks.limit_rows()[index(limit)].rating;
+    const int limit = active_[j];
+    scale_[j] = 1.0 / tasks.limit_rows()[limit].rating;
     const hqp::RowState state = state_of(limit);
     const bool has_sign = limit > last_violated;
     Interval sign;
@@ -188,7 +187,7 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
   problem_.add_level();
   double largest = 0.0;
   for (int j = 0; j < active_count_; ++j) {
-    columns_.col(j) = torque(active_[index(j)]) * scale_[index(j)];
+    columns_.col(j) = torque(active_[j]) * scale_[j];
     largest = std::max(largest, columns_.col(j).cwiseAbs().maxCoeff());
   }
   for (int i = 0; i < n_a_; ++i) {
@@ -208,20 +207,19 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
   const auto& rows = tasks.limit_rows();
   result.limit_count = device_limits_ + n_a_;
   for (int limit = 0; limit < result.limit_count; ++limit) {
-    const auto i = index(limit);
     const int acting_row = tasks.acting_row(limit, solution);
-    const auto row = index(acting_row);
     const Interval ddq =
-        acting_row == rows[i].rating_row ? tasks.problem().bounds(acting_row) : rows[i].ddq;
-    LimitReport& report = result.limits[i];
-    report.state = limit_state(solution.state[row], value_[i]);
-    report.cause = cause_of(rows[i], ddq, solution.state[row], value_[i], felt.dt);
-    report.position = rows[i].q;
-    report.to_lower = rows[i].q - rows[i].limits.q_min;
-    report.to_upper = rows[i].limits.q_max - rows[i].q;
-    report.excess = std::max({0.0, rows[i].q - rows[i].range.ub, rows[i].range.lb - rows[i].q});
-    report.slack = solution.slack[row];
-    report.reaction = value_[i];
+        acting_row == rows[limit].rating_row ? tasks.problem().bounds(acting_row) : rows[limit].ddq;
+    LimitReport& report = result.limits[limit];
+    report.state = limit_state(solution.state[acting_row], value_[limit]);
+    report.cause = cause_of(rows[limit], ddq, solution.state[acting_row], value_[limit], felt.dt);
+    report.position = rows[limit].q;
+    report.to_lower = rows[limit].q - rows[limit].limits.q_min;
+    report.to_upper = rows[limit].limits.q_max - rows[limit].q;
+    report.excess =
+        std::max({0.0, rows[limit].q - rows[limit].range.ub, rows[limit].range.lb - rows[limit].q});
+    report.slack = solution.slack[acting_row];
+    report.reaction = value_[limit];
   }
   report_felt(felt.L, result);
   result.budget.structure = bearing_wrench(felt.J_a, felt.w_H);
@@ -246,7 +244,7 @@ void Reactions::report_felt(const MatrixA& L, LawResult& result) const noexcept 
       budget.surface -= tau;
       continue;
     }
-    if (result.limits[index(limit)].state == LimitState::kViolated) {
+    if (result.limits[limit].state == LimitState::kViolated) {
       budget.conflict -= tau;
     } else {
       budget.limits -= tau;

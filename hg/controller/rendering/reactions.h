@@ -17,7 +17,6 @@
 #include "hg/controller/rendering/constraint_directions.h"
 #include "hg/controller/rendering/law_result.h"
 #include "hg/controller/rendering/tasks.h"
-#include "hg/core/index.h"
 #include "hg/hqp/solver.h"
 #include "hg/signals/state.h"
 
@@ -41,7 +40,7 @@ class Reactions {
 
   /// Constraint force or torque of a limit in its own coordinate; stop i has the index catalogue
   /// size + i.
-  double of(int limit) const noexcept { return value_[index(limit)]; }
+  double of(int limit) const noexcept { return value_[limit]; }
 
   /// Torque of all limits of the device on the twin (n_a).
   VectorA torque_of_device() const noexcept;
@@ -61,9 +60,7 @@ class Reactions {
 
  private:
   /// Limits that may have a reaction.
-  std::span<const int> active() const noexcept {
-    return std::span(active_).first(index(active_count_));
-  }
+  std::span<const int> active() const noexcept { return std::span(active_).first(active_count_); }
   void find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept;
   void split_active(const Tasks& tasks, const hqp::Solution& solution,
                     const VectorA& tau_constraint) noexcept;

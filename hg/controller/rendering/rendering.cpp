@@ -50,8 +50,8 @@ int smaller_budget(int a, int b) noexcept {
 VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
   VectorA torque = VectorA::Zero(dq_a.size());
   for (int i = 0; i < dq_a.size(); ++i) {
-    const double friction = inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction;
-    bool& sticks = inner.sticks[static_cast<std::size_t>(i)];
+    const double friction = inner.parameters.now.dofs[i].friction;
+    bool& sticks = inner.sticks[i];
     if (friction <= 0.0) continue;
     if (std::abs(dq_a[i]) <= kStandstill) sticks = true;
     if (!sticks) torque[i] = std::copysign(friction, dq_a[i]);
@@ -62,9 +62,9 @@ VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
 // a slipping joint that would turn round within the sample sticks from the next one on
 void catch_reversals(const TwinState& state, double dt, TwinInnerState& inner) noexcept {
   for (int i = 0; i < state.dq_a.size(); ++i) {
-    if (inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction <= 0.0) continue;
+    if (inner.parameters.now.dofs[i].friction <= 0.0) continue;
     if (state.dq_a[i] * (state.dq_a[i] + dt * state.ddq_a[i]) < 0.0) {
-      inner.sticks[static_cast<std::size_t>(i)] = true;
+      inner.sticks[i] = true;
     }
   }
 }
@@ -80,9 +80,8 @@ void copy(const RowStates& from, int rows, RowStates& to) noexcept {
 int changed_rows(const RowStates& a, const RowStates& b, int first, int count) noexcept {
   int changes = 0;
   for (int i = first; i < first + count; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    const bool acted = a[row] != hqp::RowState::kInactive;
-    if (acted != (b[row] != hqp::RowState::kInactive)) ++changes;
+    const bool acted = a[i] != hqp::RowState::kInactive;
+    if (acted != (b[i] != hqp::RowState::kInactive)) ++changes;
   }
   return changes;
 }
@@ -109,8 +108,7 @@ void check_rendering(const DeviceModel& device, const TwinModel& twin,
           "rendering: T_C must not be below the period");
   require(device.handle >= 0, "device: a handle frame is needed");
   for (int i = 0; i < device.n_m; ++i) {
-    limits::check_joint_limits(device.joint_limits[static_cast<std::size_t>(i)],
-                               "joint " + device.manipulator_joint(i));
+    limits::check_joint_limits(device.joint_limits[i], "joint " + device.manipulator_joint(i));
   }
   for (const VirtualJoint& joint : device.virtual_joints) {
     require(joint.weights.size() == device.n_m, joint.name + ": one weight per manipulator joint");
@@ -285,7 +283,7 @@ void Rendering::add_stops(ContactReport& contact) const noexcept {
   const int first = device_.limit_count() + twin_.chain.nv();
   double most = contact.force.norm();
   for (int i = 0; i < tasks_.stop_count(); ++i) {
-    const surfaces::Facing& stop = stops_[static_cast<std::size_t>(i)];
+    const surfaces::Facing& stop = stops_[i];
     const double force = reactions_.of(first + i);
     if (stop.surface < 0 || force == 0.0) continue;
     contact.force += force * stop.normal;
@@ -407,10 +405,10 @@ void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& r
 
     bool released = false;
     for (int i = 0; i < n_a; ++i) {
-      bool& sticks = state.inner.sticks[static_cast<std::size_t>(i)];
-      const auto limit = static_cast<std::size_t>(first_twin_limit + i);
+      bool& sticks = state.inner.sticks[i];
+      const std::size_t limit = first_twin_limit + i;
       const double holding = reactions_.of(first_twin_limit + i);
-      const double most = state.inner.parameters.now.dofs[static_cast<std::size_t>(i)].friction;
+      const double most = state.inner.parameters.now.dofs[i].friction;
       if (!sticks || std::abs(holding) <= most) continue;
       sticks = false;
       budget.friction[i] = -std::copysign(most, holding);
@@ -442,7 +440,7 @@ void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept
 bool Rendering::is_blocked() const noexcept {
   const int count = device_.n_m + static_cast<int>(device_.virtual_joints.size());
   for (int i = 0; i < count; ++i) {
-    const auto row = static_cast<std::size_t>(tasks_.first_limit_row() + i);
+    const std::size_t row = tasks_.first_limit_row() + i;
     if (hqp::is_violated(solution_.state[row])) return true;
   }
   return false;
@@ -455,7 +453,7 @@ void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
     const model::Jacobian& J = device_now_.jacobian(frame.frame);
     const Eigen::Vector3d position = device_now_.pose(frame.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
-      const limits::JointLimits& range = frame.axes[static_cast<std::size_t>(axis)];
+      const limits::JointLimits& range = frame.axes[axis];
       const double to_lower = position[axis] - range.q_min, to_upper = range.q_max - position[axis];
       for (int i = 0; i < device_.n_p; ++i) {
         const double per = J(axis, i);  // of the frame, per motion of the gantry

@@ -87,7 +87,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOp
       has_torques_(!device.motors().empty()),
       first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
       problem_(capacity_of(device, twin, options, stop_count_)),
-      coefficients_(static_cast<std::size_t>(problem_.capacity().variables), 0.0) {
+      coefficients_(problem_.capacity().variables, 0.0) {
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
   problem_.clear(problem_.capacity().variables);
   add_levels(device, twin);
@@ -104,7 +104,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   const double margin = has_torques_ ? kTrackingMargin : 0.0;
   problem_.add_level();
   for (int i = 0; i < n_m_; ++i) {
-    add_limit(device.joint_limits[static_cast<std::size_t>(i)], i, margin);
+    add_limit(device.joint_limits[i], i, margin);
   }
   problem_.add_level();
   for (const VirtualJoint& joint : device.virtual_joints) {
@@ -113,7 +113,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   if (has_torques_) {
     problem_.add_level();
     for (int i = 0; i < n_m_; ++i) {
-      add_limit({.ddq_max = device.joint_limits[static_cast<std::size_t>(i)].ddq_max}, -1, 0.0);
+      add_limit({.ddq_max = device.joint_limits[i].ddq_max}, -1, 0.0);
       limit_rows_.back().is_motor = true;
     }
   }
@@ -129,7 +129,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   }
   problem_.add_level();
   for (int i = 0; i < n_a_; ++i) {
-    add_limit(twin.dofs[static_cast<std::size_t>(i)].limits, n_m_ + i, 0.0);
+    add_limit(twin.dofs[i].limits, n_m_ + i, 0.0);
   }
   for (int i = 0; i < stop_count_; ++i) {
     add_limit({.q_min = 0.0, .ddq_max = stop_rating(device)}, -1, 0.0);
@@ -147,8 +147,8 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
     const int limits = device.limit_count();
     lasting_.resize(device.motors().size());
     joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
-    approaches_.resize(static_cast<std::size_t>(limits));
-    known_.resize(static_cast<std::size_t>(limits));
+    approaches_.resize(limits);
+    known_.resize(limits);
   }
 
   if (paper_) {
@@ -182,7 +182,7 @@ void Tasks::add_limit(const limits::JointLimits& limits, int variable, double ma
 }
 
 void Tasks::add_rating(int limit, int variable) {
-  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  LimitRow& row = limit_rows_[limit];
   row.rating_row = problem_.add_bound(variable, {}, weight_of(row));
 }
 
@@ -237,7 +237,7 @@ void Tasks::fill_coupling(const DeviceModel& device, const TwinModel& twin,
 
 void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
                       double known_acceleration) noexcept {
-  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  LimitRow& row = limit_rows_[limit];
   row.limits = limits;
   row.q = q;
   row.dq = dq;
@@ -257,7 +257,7 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
 
 // a joint that is held by a lock or by friction
 void Tasks::hold(int limit, double ddq) noexcept {
-  LimitRow& row = limit_rows_[static_cast<std::size_t>(limit)];
+  LimitRow& row = limit_rows_[limit];
   row.ddq = {ddq, ddq};
   problem_.set_bounds(first_limit_row() + limit, row.ddq);
   if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, row.ddq);
@@ -267,8 +267,7 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   const ReferenceState& reference = input.reference;
   int limit = 0;
   for (; limit < n_m_; ++limit) {
-    set_limit(limit, limit_rows_[static_cast<std::size_t>(limit)].limits, reference.q_m[limit],
-              reference.dq_m[limit], 0.0);
+    set_limit(limit, limit_rows_[limit].limits, reference.q_m[limit], reference.dq_m[limit], 0.0);
   }
 
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
@@ -276,8 +275,8 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   for (const VirtualJoint& joint : device.virtual_joints) {
     row.head(n_m_) = joint.weights;
     problem_.set_row(first_limit_row() + limit, coefficients_);
-    set_limit(limit, limit_rows_[static_cast<std::size_t>(limit)].limits,
-              joint.weights.dot(reference.q_m), joint.weights.dot(reference.dq_m), 0.0);
+    set_limit(limit, limit_rows_[limit].limits, joint.weights.dot(reference.q_m),
+              joint.weights.dot(reference.dq_m), 0.0);
     ++limit;
   }
 
@@ -294,8 +293,8 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
       row.head(n_m_) = J.row(axis).segment(device.n_p, n_m_);
       row.tail(n_g_) = J.row(axis).head(n_g_);
       problem_.set_row(first_limit_row() + limit, coefficients_);
-      limits::JointLimits limits = limit_rows_[static_cast<std::size_t>(limit)].limits;
-      limits.dq_max = frame.axes[static_cast<std::size_t>(axis)].dq_max;
+      limits::JointLimits limits = limit_rows_[limit].limits;
+      limits.dq_max = frame.axes[axis].dq_max;
       if (frame.frame == device.handle) limits.dq_max = std::min(limits.dq_max, input.handle_speed);
       set_limit(limit, limits, position[axis], twist[axis], known[axis]);
       ++limit;
@@ -315,7 +314,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   // a joint faster than any motor has jumped: its torques are unknown
   are_torques_known_ = known.allFinite();
   for (int i = 0; i < n_m_; ++i) {
-    const double fastest = kJumped * device.motors()[static_cast<std::size_t>(i)].speed_no_load;
+    const double fastest = kJumped * device.motors()[i].speed_no_load;
     if (std::abs(input.reference.dq_m[i]) > fastest) are_torques_known_ = false;
   }
 
@@ -326,7 +325,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
       problem_.set_bounds(first_limit_row() + first_motor_ + i, {});
       continue;
     }
-    const ActuatorModel& motor = device.motors()[static_cast<std::size_t>(i)];
+    const ActuatorModel& motor = device.motors()[i];
     const double dq = input.reference.dq_m[i];
     const double inertia = M(i, device.n_p + i) + motor.rotor_inertia;
     row.head(n_m_) = M.row(i).segment(device.n_p, n_m_) / inertia;
@@ -335,13 +334,12 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     problem_.set_row(first_limit_row() + first_motor_ + i, coefficients_);
     Interval torque = allowed_torque(motor, dq);
     if (joint_braking_) {
-      lasting_[static_cast<std::size_t>(i)] = {(torque.lb - known[i]) / inertia,
-                                               (torque.ub - known[i]) / inertia};
+      lasting_[i] = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     }
     if (input.motor_torque.size() > 0) {
       torque = reached_torque(torque, input.motor_torque[i], dt_);
     }
-    LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
+    LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     limit.inertia = inertia;
@@ -375,23 +373,23 @@ void Tasks::brake_together() noexcept {
 void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept {
   const int first = static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_;
   for (int i = 0; i < n_a_; ++i) {
-    const TwinDof& dof = twin.dofs[static_cast<std::size_t>(i)];
+    const TwinDof& dof = twin.dofs[i];
     const double q = dof.q_index >= 0 ? input.twin.q_a[dof.q_index] : 0.0;
     const double dq = input.twin.dq_a[i];
     EffectiveLimits effective = effective_limits(twin, i, dq, input.inner);
-    LimitRow& row = limit_rows_[static_cast<std::size_t>(first + i)];
+    LimitRow& row = limit_rows_[first + i];
     row.held_by = effective.held_by;
     const bool is_locked = row.held_by.upper == LimitCause::kLock;
     if (is_locked && options_.bounds == Bounds::kPaper) {
       effective.limits.q_min = effective.limits.q_max = q;
     }
-    row.range = input.inner.parameters.moving[static_cast<std::size_t>(i)].q;
+    row.range = input.inner.parameters.moving[i].q;
     row.options = limits::recoverable_options(effective.limits, dt_, dt_);
     if (has_torques_) row.options.tau_onset = kTwinBrakingOnset;
     const bool is_held =
         row.held_by.lower != LimitCause::kNone || row.held_by.upper != LimitCause::kNone;
     row.is_recoverable = options_.bounds == Bounds::kRecoverable || is_held ||
-                         input.inner.parameters.may_be_overrun[static_cast<std::size_t>(i)];
+                         input.inner.parameters.may_be_overrun[i];
     set_limit(first + i, effective.limits, q, dq, 0.0);
 
     // [HG] (31): a lock of bounds paper stops the joint, as fast as its rating allows
@@ -406,7 +404,7 @@ void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noex
     }
 
     // stick: the joint stands still at the end of the sample, as far as its limits allow
-    if (input.inner.sticks[static_cast<std::size_t>(i)] && !is_locked) {
+    if (input.inner.sticks[i] && !is_locked) {
       hold(first + i, std::clamp(ddq_stop, row.ddq.lb, row.ddq.ub));
       row.held_by = {LimitCause::kFriction, LimitCause::kFriction};
     }
@@ -436,16 +434,16 @@ void Tasks::fill_stops(const TaskInput& input, const Vector6& bias) noexcept {
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < stop_count_; ++i) {
-    const surfaces::Facing& stop = input.stops[static_cast<std::size_t>(i)];
+    const surfaces::Facing& stop = input.stops[i];
     if (stop.surface < 0) {
-      limit_rows_[static_cast<std::size_t>(first + i)].ddq = {};
+      limit_rows_[first + i].ddq = {};
       problem_.set_bounds(first_limit_row() + first + i, {});
       continue;
     }
     row.segment(n_m_, n_a_) = J.transpose() * stop.normal;
     problem_.set_row(first_limit_row() + first + i, coefficients_);
-    set_limit(first + i, limit_rows_[static_cast<std::size_t>(first + i)].limits, stop.distance,
-              stop.normal.dot(velocity), stop.normal.dot(bias.head<3>()));
+    set_limit(first + i, limit_rows_[first + i].limits, stop.distance, stop.normal.dot(velocity),
+              stop.normal.dot(bias.head<3>()));
   }
 }
 
@@ -488,7 +486,7 @@ void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
   const Eigen::Map<const Eigen::VectorXd> x(solution.x.data(), problem_.variables());
   motor_torque_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    LimitRow& limit = limit_rows_[static_cast<std::size_t>(first_motor_ + i)];
+    LimitRow& limit = limit_rows_[first_motor_ + i];
     const std::span<const double> row = problem_.coefficients(first_limit_row() + first_motor_ + i);
     const double ddq = Eigen::Map<const Eigen::VectorXd>(row.data(), problem_.variables()).dot(x);
     limit.q = motor_torque_[i] = known_torque_[i] + limit.inertia * ddq;
@@ -508,10 +506,9 @@ bool Tasks::keeps_joints(const hqp::Solution& solution) const noexcept {
 // the first `count` limits
 bool Tasks::keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept {
   for (int limit = 0; limit < count; ++limit) {
-    for (const int row :
-         {first_limit_row() + limit, limit_rows_[static_cast<std::size_t>(limit)].rating_row}) {
+    for (const int row : {first_limit_row() + limit, limit_rows_[limit].rating_row}) {
       if (row < 0 || problem_.level_of(row) < solution.completed_levels) continue;
-      if (!(std::abs(solution.slack[static_cast<std::size_t>(row)]) <= tolerance)) return false;
+      if (!(std::abs(solution.slack[row]) <= tolerance)) return false;
     }
   }
   return true;

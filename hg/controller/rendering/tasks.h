@@ -114,8 +114,8 @@ class Tasks {
   /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
   int acting_row(int limit, const hqp::Solution& solution) const noexcept {
     const int row = first_limit_row() + limit;
-    const int rating_row = limit_rows_[static_cast<std::size_t>(limit)].rating_row;
-    const bool acts = solution.state[static_cast<std::size_t>(row)] != hqp::RowState::kInactive;
+    const int rating_row = limit_rows_[limit].rating_row;
+    const bool acts = solution.state[row] != hqp::RowState::kInactive;
     return acts || rating_row < 0 ? row : rating_row;
   }
   /// Computes the motor torques of `solution`, which solves problem().

@@ -10,12 +10,11 @@ namespace {
 // without locks
 limits::JointLimits free_limits(const TwinModel& twin, int dof, double dq,
                                 const TwinParameters& parameters) noexcept {
-  const auto index = static_cast<std::size_t>(dof);
-  limits::JointLimits limits = twin.dofs[index].limits;
-  limits.q_min = parameters.moving[index].q.lb;
-  limits.q_max = parameters.moving[index].q.ub;
-  limits.dq_max = parameters.now.dofs[index].dq_max;
-  if (dq < 0.0) limits.dq_max = std::min(limits.dq_max, twin.dofs[index].closer.speed);
+  limits::JointLimits limits = twin.dofs[dof].limits;
+  limits.q_min = parameters.moving[dof].q.lb;
+  limits.q_max = parameters.moving[dof].q.ub;
+  limits.dq_max = parameters.now.dofs[dof].dq_max;
+  if (dq < 0.0) limits.dq_max = std::min(limits.dq_max, twin.dofs[dof].closer.speed);
   for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
     const ConditionalLimit& limit = twin.conditional_limits[i];
     if (limit.dof != dof || !parameters.holds[i]) continue;
@@ -64,7 +63,7 @@ EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
                                  const TwinInnerState& inner) noexcept {
   EffectiveLimits result{free_limits(twin, dof, dq, inner.parameters), {}};
   constexpr Holds kContradiction = {LimitCause::kContradiction, LimitCause::kContradiction};
-  if (inner.parameters.moving[static_cast<std::size_t>(dof)].is_crossed) {
+  if (inner.parameters.moving[dof].is_crossed) {
     result.held_by = kContradiction;
   }
   for (std::size_t i = 0; i < twin.locks.size(); ++i) {
@@ -94,14 +93,13 @@ VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
                       const TwinParameters& parameters) noexcept {
   VectorA torque = VectorA::Zero(twin.chain.nv());
   for (int i = 0; i < twin.chain.nv(); ++i) {
-    const auto index = static_cast<std::size_t>(i);
-    const TwinDof& dof = twin.dofs[index];
+    const TwinDof& dof = twin.dofs[i];
     if (dof.q_index < 0) continue;
-    const DofValues& spring = parameters.now.dofs[index];
+    const DofValues& spring = parameters.now.dofs[i];
     const double q = q_a[dof.q_index];
     torque[i] = spring.preload + spring.stiffness * (q - spring.rest) + dof.closer.torque;
     if (dof.closer.stiffness > 0.0) {
-      torque[i] += dof.closer.stiffness * (q - parameters.moving[index].q.lb);
+      torque[i] += dof.closer.stiffness * (q - parameters.moving[i].q.lb);
     }
   }
   return torque;
@@ -117,7 +115,7 @@ VectorA damping_torque(const MatrixA& L, const VectorA& dq_a, double dt,
   const Eigen::Index n = dq_a.size();
   VectorA D(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const DofValues& dof = values.dofs[static_cast<std::size_t>(i)];
+    const DofValues& dof = values.dofs[i];
     D[i] = dof.damping + dof.quadratic_damping * std::abs(dq_a[i]);
   }
   VectorA torque = D.cwiseProduct(dq_a);

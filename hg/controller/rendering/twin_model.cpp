@@ -14,7 +14,7 @@ void check_twin_model(const TwinModel& twin) {
   const auto require = [](bool ok, const std::string& text) {
     if (!ok) throw SetupError("twin" + text);
   };
-  const auto n_a = static_cast<std::size_t>(twin.chain.nv());
+  const std::size_t n_a = twin.chain.nv();
   require(n_a <= kMaxTwin, ": at most " + std::to_string(kMaxTwin) + " degrees of freedom, got " +
                                std::to_string(n_a));
   require(twin.end_effector >= 0, ": an end effector is needed");
@@ -25,9 +25,8 @@ void check_twin_model(const TwinModel& twin) {
     require(dof.closer.stiffness == 0.0 || std::isfinite(dof.limits.q_min),
             " joint " + dof.name + ": a closer with stiffness needs a lower limit");
   }
-  require(twin.locks.size() <= static_cast<std::size_t>(kMaxLocks),
-          ": at most " + std::to_string(kMaxLocks) + " locks");
-  require(twin.conditional_limits.size() <= static_cast<std::size_t>(kMaxConditionalLimits),
+  require(std::ssize(twin.locks) <= kMaxLocks, ": at most " + std::to_string(kMaxLocks) + " locks");
+  require(std::ssize(twin.conditional_limits) <= kMaxConditionalLimits,
           ": at most " + std::to_string(kMaxConditionalLimits) + " conditional limits");
   require(kMassScale.contains(twin.mass_scale), ": mass_scale must be 0.1..10");
 }
@@ -50,7 +49,7 @@ FeltMass felt_mass(const TwinModel& twin) {
 }
 
 double position_of(const TwinModel& twin, int dof, const ConfigurationA& q_a) noexcept {
-  return q_a[twin.dofs[static_cast<std::size_t>(dof)].q_index];
+  return q_a[twin.dofs[dof].q_index];
 }
 
 bool are_true(const TwinModel& twin, const std::vector<JointCondition>& conditions,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/core/index.h"
 #include "hg/signals/twin_parameter.h"
 
 namespace hg::rendering {
@@ -52,7 +53,7 @@ double* place_of(Parameter parameter, std::size_t index, TwinValues& values) noe
     case Parameter::kSpeedLimit:
       return &dof.dq_max;
     case Parameter::kReferenceWrench:
-      return &values.w_ref[static_cast<Eigen::Index>(std::min<std::size_t>(index, 5))];
+      return &values.w_ref[std::min<std::size_t>(index, 5)];
     case Parameter::kGravity:
       return &values.loads.gravity;
     case Parameter::kMassScale:
@@ -73,7 +74,7 @@ bool is_index(const TwinModel& twin, const ParameterChange& change) noexcept {
     case ParameterOwner::kDof:
       return is_dof;
     case ParameterOwner::kJoint:
-      return is_dof && twin.dofs[static_cast<std::size_t>(change.index)].q_index >= 0;
+      return is_dof && twin.dofs[change.index].q_index >= 0;
     case ParameterOwner::kWrench:
       return change.index >= 0 && change.index < 6;
     case ParameterOwner::kTwin:
@@ -84,7 +85,7 @@ bool is_index(const TwinModel& twin, const ParameterChange& change) noexcept {
 
 // the range of a joint and of the conditional limits that hold
 Interval target_range(const TwinModel& twin, int dof, const TwinParameters& parameters) noexcept {
-  Interval range = parameters.range[static_cast<std::size_t>(dof)];
+  Interval range = parameters.range[dof];
   for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
     const ConditionalLimit& limit = twin.conditional_limits[i];
     if (limit.dof != dof || !parameters.holds[i]) continue;
@@ -96,8 +97,7 @@ Interval target_range(const TwinModel& twin, int dof, const TwinParameters& para
 
 // the smallest speed limit that holds now, in whichever direction
 double slowest(const TwinModel& twin, int dof, const TwinParameters& parameters) noexcept {
-  const auto index = static_cast<std::size_t>(dof);
-  double speed = std::min(parameters.now.dofs[index].dq_max, twin.dofs[index].closer.speed);
+  double speed = std::min(parameters.now.dofs[dof].dq_max, twin.dofs[dof].closer.speed);
   for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
     const ConditionalLimit& limit = twin.conditional_limits[i];
     if (limit.dof != dof || !parameters.holds[i]) continue;
@@ -117,7 +117,7 @@ TwinParameters initial_parameters(const TwinModel& twin) noexcept {
     parameters.moving[i].q = parameters.range[i];
   }
   for (const ConditionalLimit& limit : twin.conditional_limits) {
-    parameters.may_be_overrun[static_cast<std::size_t>(limit.dof)] = true;
+    parameters.may_be_overrun[limit.dof] = true;
   }
   parameters.target.w_ref = twin.w_ref;
   parameters.target.loads = {.mass = twin.mass_scale,
@@ -129,11 +129,11 @@ TwinParameters initial_parameters(const TwinModel& twin) noexcept {
 ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
                    TwinParameters& parameters) noexcept {
   if (change.parameter == Parameter::kNone) return ChangeStatus::kNone;
-  const bool is_known = static_cast<std::size_t>(change.parameter) <= kParameters.size();
+  const bool is_known = index(change.parameter) <= kParameters.size();
   if (!is_known || !is_index(twin, change) || !allows(facts_of(change.parameter), change.value)) {
     return ChangeStatus::kRefused;
   }
-  const auto index = static_cast<std::size_t>(std::max<int>(change.index, 0));
+  const std::size_t index = std::max<int>(change.index, 0);
   if (double* place = place_of(change.parameter, index, parameters.target)) {
     *place = change.value;
     if (change.parameter == Parameter::kSpeedLimit) parameters.may_be_overrun[index] = true;

@@ -12,7 +12,6 @@
 #include <array>
 
 #include "hg/controller/rendering/twin_model.h"
-#include "hg/core/index.h"
 #include "hg/limits/moving_limits.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/state.h"
@@ -62,7 +61,7 @@ void hashed(auto& hash, const TwinParameters& parameters, int dofs) {
   const auto& [now, target, range, moving, holds, may_be_overrun] = parameters;
   hashed(hash, now, dofs);
   hashed(hash, target, dofs);
-  for (std::size_t i = 0; i < index(dofs); ++i) {
+  for (int i = 0; i < dofs; ++i) {
     hash.mix(range[i], moving[i].q, moving[i].is_crossed);
   }
   hash.mix(holds);

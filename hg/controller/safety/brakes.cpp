@@ -23,7 +23,7 @@ Axis axis_of(const MonitorConfig& config, const DeviceModel& device, int i) noex
   }
   const int joint = (i - device.n_p) % device.n_m;
   const bool is_slide = device.is_slide(joint);
-  return {joint, is_slide, device.joint_limits[static_cast<std::size_t>(joint)].dq_max,
+  return {joint, is_slide, device.joint_limits[joint].dq_max,
           config.stop_distance_of_joint(is_slide)};
 }
 

@@ -23,8 +23,6 @@ constexpr double kMotorMemory_s = 0.02;     // time constant of the motor torque
 constexpr double kShakingPatience_s = 3.0;  // as in passivity/
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 Fault make_fault(FaultCode code, int index, double value, double limit) noexcept {
   return {code, static_cast<std::int16_t>(index), value, limit};
 }
@@ -158,7 +156,7 @@ bool Monitor::has_jumped(const SensorFrame& sensors, const MonitorState& state) 
   if (!state.has_sample) return false;
   const double far = config_.jump_factor * dt_;
   for (int i = 0; i < n_m_; ++i) {
-    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * joint_limits_[at(i)].dq_max) {
+    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * joint_limits_[i].dq_max) {
       return true;
     }
   }
@@ -193,10 +191,9 @@ MonitorResult Monitor::watch(const SensorFrame& sensors, const Rendered& rendere
 
 void Monitor::check_joint(int joint, const Rendered& rendered, const Watched& watched,
                           MonitorState& state) noexcept {
-  const std::size_t i = at(joint);
   const double q = rendered.robot.q_m[joint], dq = rendered.robot.dq_m[joint];
   const bool is_on = is_powered(watched.state);
-  const limits::JointLimits& limits = joint_limits_[i];
+  const limits::JointLimits& limits = joint_limits_[joint];
   follow({limits.q_min, limits.q_max}, q, is_on, state.lowest[joint], state.highest[joint]);
   double& pulled = state.pulled_back[joint];
   const bool is_pulled = watched.pulled_back.size() > 0 && watched.pulled_back[joint] != 0.0;
@@ -205,10 +202,10 @@ void Monitor::check_joint(int joint, const Rendered& rendered, const Watched& wa
     pulled = 0.0;
     return;
   }
-  const bool is_slide = is_slide_[i];
+  const bool is_slide = is_slide_[joint];
   const double beyond = is_slide ? config_.slide_tolerance : config_.position_tolerance;
   const double apart = is_slide ? config_.slide_tracking_tolerance : config_.tracking_tolerance;
-  const double fastest = config_.speed_tolerance * joint_limits_[i].dq_max;
+  const double fastest = config_.speed_tolerance * joint_limits_[joint].dq_max;
   const ReferenceState& reference = rendered.reference;
   const double q_r = reference.q_m[joint];
   look<FaultCode::kLimitExceeded>(joint,
@@ -217,8 +214,9 @@ void Monitor::check_joint(int joint, const Rendered& rendered, const Watched& wa
                                   beyond);
   look<FaultCode::kSpeedExceeded>(joint, std::abs(dq), fastest);
   look<FaultCode::kSpeedExceeded>(joint, std::abs(reference.dq_m[joint]), fastest);
-  look<FaultCode::kAccelerationExceeded>(joint, std::abs(reference.ddq_m[joint]),
-                                         config_.acceleration_tolerance * joint_limits_[i].ddq_max);
+  look<FaultCode::kAccelerationExceeded>(
+      joint, std::abs(reference.ddq_m[joint]),
+      config_.acceleration_tolerance * joint_limits_[joint].ddq_max);
   look<FaultCode::kTrackingLost>(joint, std::abs(q_r - q + pulled), apart);
 }
 
@@ -235,7 +233,7 @@ void Monitor::check_motors(const RobotState& robot, const Watched& watched,
   const bool is_new = state.momentum.size() != n_m_;
   if (is_new) state.momentum.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = actuators_[at(i)];
+    const ActuatorModel& actuator = actuators_[i];
     const double dtheta = robot.dtheta_m[i], tau_J = robot.tau_m[i];
     const double p = actuator.rotor_inertia * dtheta;
     if (is_new) state.momentum[i] = p;
@@ -255,9 +253,8 @@ void Monitor::check_motors(const RobotState& robot, const Watched& watched,
 void Monitor::check_torques(const Watched& watched) noexcept {
   if (mode_of(watched.state) != Mode::kRunning || watched.unexplained.size() != n_m_) return;
   for (int i = 0; i < n_m_ && !actuators_.empty(); ++i) {
-    look<FaultCode::kTorqueUnexplained>(
-        i, std::abs(watched.unexplained[i]),
-        config_.unexplained_tolerance * actuators_[at(i)].torque_max);
+    look<FaultCode::kTorqueUnexplained>(i, std::abs(watched.unexplained[i]),
+                                        config_.unexplained_tolerance * actuators_[i].torque_max);
   }
 }
 
@@ -284,7 +281,7 @@ void Monitor::check_gantry(const SensorFrame& sensors, const Rendered& rendered,
   for (int axis = 0; axis < n_p_; ++axis) {
     const double q = robot.q_p[axis], dq = robot.dq_p[axis];
     double& model = state.dq_p_model[axis];
-    follow(gantry_range_[at(axis)], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
+    follow(gantry_range_[axis], q, is_on, state.lowest_p[axis], state.highest_p[axis]);
     if (!is_on) {
       model = dq;
       state.gantry_gap[axis] = state.gantry_drift[axis] = state.gantry_way[axis] = 0.0;
@@ -329,7 +326,7 @@ void Monitor::check_braking(const Rendered& rendered, const Watched& watched,
     state.braking_ramp_p += dt_ * state.dq_p_model;
   }
   for (int i = 0; i < n_m_; ++i) {
-    const bool is_slide = is_slide_[at(i)];
+    const bool is_slide = is_slide_[i];
     look<FaultCode::kBrakingPosition>(i, std::abs(robot.q_m[i] - state.braking_ramp[i]),
                                       is_slide ? config_.slide_braking_gap : config_.braking_gap);
     look<FaultCode::kBrakingSpeed>(
@@ -360,7 +357,7 @@ void Monitor::check_frames(const Rendered& rendered, const Watched& watched) noe
     // sums of joints, then motors, which have no range and so no excess, then frames
     const bool is_sum = i < first_cartesian_;
     look<FaultCode::kLimitExceeded>(
-        i, rendered.limits[at(i)].excess,
+        i, rendered.limits[i].excess,
         is_sum ? config_.virtual_tolerance : config_.cartesian_tolerance);
   }
   look<FaultCode::kSyncLost>(-1, rendered.sync_error, config_.sync_tolerance);
@@ -421,7 +418,7 @@ void Monitor::check_sensor_values(const SensorFrame& sensors, MonitorState& stat
   for (int i = 0; i < sensors.tau_m.size(); ++i) {
     const double tau = sensors.tau_m[i];
     if (actuators_.empty()) break;
-    const ActuatorModel& actuator = actuators_[at(i)];
+    const ActuatorModel& actuator = actuators_[i];
     look<FaultCode::kJointTorqueExceeded>(i, std::abs(tau),
                                           config_.torque_tolerance * actuator.torque_max);
     if (sensors.theta_m.size() == 0) continue;
@@ -433,7 +430,7 @@ void Monitor::check_sensor_values(const SensorFrame& sensors, MonitorState& stat
     const double far = config_.jump_factor * dt_;
     for (int i = 0; i < n_m_; ++i) {
       look<FaultCode::kSensorJump>(i, std::abs(turned(sensors.q_m[i] - state.q_m[i])),
-                                   far * joint_limits_[at(i)].dq_max);
+                                   far * joint_limits_[i].dq_max);
     }
     for (int i = 0; i < n_p_; ++i) {
       look<FaultCode::kSensorJump>(n_m_ + i, std::abs(sensors.q_p[i] - state.q_p[i]),
@@ -451,7 +448,7 @@ void Monitor::check_noise(const SensorFrame& sensors, MonitorState& state) noexc
   const auto compare = [&](int first, const auto& now, const auto& before) {
     const bool can_compare = state.has_sample && now.size() == before.size();
     for (int i = 0; i < now.size(); ++i) {
-      std::uint16_t& same = state.same[at(first + i)];
+      std::uint16_t& same = state.same[first + i];
       same = can_compare && now[i] == before[i] ? count_up(same) : std::uint16_t{0};
       look<FaultCode::kSensorFrozen>(first + i, same, config_.frozen_samples);
     }

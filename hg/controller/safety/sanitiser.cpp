@@ -61,7 +61,7 @@ Sanitised Sanitiser::step(const SanitiserInput& input, CommandFrame& command) co
   const RobotState& robot = input.robot;
   const bool has_torques = command.tau_m.size() > 0;
   for (int i = 0; command.enable && i < command.q_m.size(); ++i) {
-    const Joint& joint = joints_[static_cast<std::size_t>(i)];
+    const Joint& joint = joints_[i];
     const bool was_on = input.was_on;
     bool is_changed = false;
     if (has_torques) {
@@ -79,10 +79,10 @@ Sanitised Sanitiser::step(const SanitiserInput& input, CommandFrame& command) co
   for (int axis = 0; axis < command.dq_p.size(); ++axis) {
     double dq = std::clamp(command.dq_p[axis], -gantry_speed_, gantry_speed_);
     const bool has_range = axis < robot.q_p.size() && command.enable;
-    if (has_range && robot.q_p[axis] >= gantry_range_[static_cast<std::size_t>(axis)].ub) {
+    if (has_range && robot.q_p[axis] >= gantry_range_[axis].ub) {
       dq = std::min(dq, 0.0);
     }
-    if (has_range && robot.q_p[axis] <= gantry_range_[static_cast<std::size_t>(axis)].lb) {
+    if (has_range && robot.q_p[axis] <= gantry_range_[axis].lb) {
       dq = std::max(dq, 0.0);
     }
     if (dq == command.dq_p[axis]) continue;

@@ -1,5 +1,7 @@
 #include "hg/controller/safety/transitions.h"
 
+#include "hg/core/index.h"
+
 namespace hg::safety {
 namespace {
 
@@ -157,7 +159,7 @@ static_assert(refused_stay(), "a refused request changes nothing");
 }  // namespace
 
 const Transition& transition(SafetyState state, SafetyEvent event) noexcept {
-  return kTable[static_cast<std::size_t>(state)][static_cast<std::size_t>(event)];
+  return kTable[index(state)][index(event)];
 }
 
 std::string_view to_string(SafetyState state) noexcept {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "hg/core/index.h"
 #include "hg/signals/state.h"
 
 namespace hg::safety {
@@ -58,7 +59,7 @@ constexpr Mode mode_of(SafetyState state) noexcept {
   constexpr std::array<Mode, kStateCount> kModes = {
       Mode::kOff,      Mode::kReady,    Mode::kArmed,    Mode::kRunning, Mode::kRunning,
       Mode::kStopping, Mode::kStopping, Mode::kStopping, Mode::kFault};
-  return kModes[static_cast<std::size_t>(state)];
+  return kModes[index(state)];
 }
 
 /// Whether drives are on and brakes open.

@@ -78,11 +78,10 @@ struct Loop {
       if (sensors.theta_m.size() > 0) sensors.theta_m = command.q_m;
     }
     for (int i = 0; i < 2; ++i) {
-      const auto axis = static_cast<std::size_t>(i);
       const double ddq =
-          drive_acceleration({}, gantry_speed[axis], delay[axis].shift(command.dq_p[i], 4));
-      sensors.q_p[i] += 1e-3 * gantry_speed[axis] + 0.5e-6 * ddq;
-      gantry_speed[axis] += 1e-3 * ddq;
+          drive_acceleration({}, gantry_speed[i], delay[i].shift(command.dq_p[i], 4));
+      sensors.q_p[i] += 1e-3 * gantry_speed[i] + 0.5e-6 * ddq;
+      gantry_speed[i] += 1e-3 * ddq;
     }
     ++sensors.sequence;
     sensors.time_s += 1e-3;
@@ -502,7 +501,7 @@ int cycles_until_latency_fault(std::uint64_t before, const std::vector<std::uint
   loop.run(200);
   loop.start_running();
   for (int k = 0; k < 1000; ++k) {
-    loop.latency = after[static_cast<std::size_t>(k) % after.size()];
+    loop.latency = after[k % after.size()];
     loop.step();
     if (loop.record.mode != Mode::kFault) continue;
     EXPECT_EQ(loop.record.fault.code, FaultCode::kLatencyGrew);
@@ -669,7 +668,7 @@ TEST(Cycle, ASnapshotContinuesBitForBit) {
   loop.delay = delay;
   for (int k = 0; k < 100; ++k) {
     loop.step();
-    ASSERT_EQ(loop.record.state_hash, hashes[static_cast<std::size_t>(k)]) << k;
+    ASSERT_EQ(loop.record.state_hash, hashes[k]) << k;
   }
 }
 
@@ -684,8 +683,7 @@ TEST(Cycle, ASnapshotInContactContinuesBitForBitInAnotherCycle) {
   const Eigen::Vector3d handle = chain.pose(device.handle).p;
   CartesianLimit wall = {.name = "elbow", .frame = device.elbow};
   for (int axis = 0; axis < 3; ++axis) {
-    wall.axes[static_cast<std::size_t>(axis)] = {
-        .q_min = elbow[axis] - 0.01, .q_max = elbow[axis] + 0.01, .ddq_max = 5.0};
+    wall.axes[axis] = {.q_min = elbow[axis] - 0.01, .q_max = elbow[axis] + 0.01, .ddq_max = 5.0};
   }
   device.cartesian_limits = {wall};
   CycleConfig config;

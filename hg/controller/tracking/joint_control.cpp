@@ -82,9 +82,9 @@ JointControl::JointControl(const ControlConfig& config, const DeviceModel& devic
   Jm_.resize(n_m_);
   feed_max_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    K_[i] = actuators_[static_cast<std::size_t>(i)].stiffness;
-    Jm_[i] = actuators_[static_cast<std::size_t>(i)].rotor_inertia;
-    feed_max_[i] = kFeedforwardShare * actuators_[static_cast<std::size_t>(i)].torque_max;
+    K_[i] = actuators_[i].stiffness;
+    Jm_[i] = actuators_[i].rotor_inertia;
+    feed_max_[i] = kFeedforwardShare * actuators_[i].torque_max;
   }
   sqrt_K_ = K_.cwiseSqrt();
   has_feet_ = std::ranges::any_of(actuators_, has_presliding);
@@ -171,7 +171,7 @@ void JointControl::step(const ReferenceState& now, const ReferenceState& next,
   state.is_saturated = false;
   report.torque_share.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[i];
     double& tau = command.tau_m[i];
     const double available = tau * robot.dtheta_m[i] > 0.0
                                  ? torque_available(actuator, robot.dtheta_m[i])
@@ -295,7 +295,7 @@ VectorM JointControl::timely(const VectorM& tau, const RobotState& robot,
 void JointControl::follow_torque(const VectorM& tau, ControlState& state) const noexcept {
   const double w = 2.0 * std::numbers::pi * config_.flatness_Hz;
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[i];
     const double peak = feed_max_[i];
     const double per_torque = actuator.stiffness / actuator.rotor_inertia;
     const double braking = 0.5 * peak * per_torque;
@@ -360,7 +360,7 @@ VectorM JointControl::motor_pd_torque(const Errors& errors,
 void JointControl::dry_friction(const ReferenceState& reference, ControlState& state,
                                 Feedforward& forward) const noexcept {
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[i];
     const double dtheta = forward.dtheta[i];
     forward.dry[i] = coulomb_torque(actuator, dtheta, forward.tau[i]);
     if (has_presliding(actuator)) {
@@ -376,7 +376,7 @@ VectorM JointControl::friction(const Feedforward& forward,
                                const ControlState& state) const noexcept {
   VectorM tau(n_m_);
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[i];
     tau[i] = state.friction[i] * forward.dry[i] * forward.along[i] +
              actuator.viscous_friction * forward.dtheta[i];
   }
@@ -390,7 +390,7 @@ void JointControl::learn_friction(const Feedforward& forward, const VectorM& fee
                                   const RobotState& robot, ControlState& state) const noexcept {
   if (state.is_saturated) return;
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = actuators_[i];
     const double along = forward.along[i];
     const double slides = std::tanh(robot.dtheta_m[i] / config_.friction_speed) * along;
     if (!(slides >= kSlides)) continue;

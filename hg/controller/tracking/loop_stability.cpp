@@ -85,7 +85,7 @@ class SampledLoop {
     Eigen::VectorXd seen(5 * n);  // theta, theta', q, q', joint torque
     seen << theta, next.segment(at.observers() + n, 3 * n), Eigen::VectorXd::Zero(n);
     for (int i = 0; i < n; ++i) {
-      const ActuatorModel& actuator = actuators_[static_cast<std::size_t>(i)];
+      const ActuatorModel& actuator = actuators_[i];
       seen[4 * n + i] =
           actuator.stiffness * (theta[i] - q[i]) + actuator.damping * (dtheta[i] - dq[i]);
     }

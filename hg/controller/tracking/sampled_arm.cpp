@@ -14,7 +14,7 @@ Eigen::MatrixXd plant_with_input(const TruePlant& plant, const MatrixM& M) {
   Eigen::VectorXd Jm(n), K(n), D(n), viscous(n), bristles = Eigen::VectorXd::Zero(n);
   if (plant.bristles.size() > 0) bristles = plant.bristles;
   for (int i = 0; i < n; ++i) {
-    const ActuatorModel& actuator = plant.actuators[static_cast<std::size_t>(i)];
+    const ActuatorModel& actuator = plant.actuators[i];
     Jm[i] = actuator.rotor_inertia;
     K[i] = actuator.stiffness;
     D[i] = actuator.damping;
@@ -77,7 +77,7 @@ RobotState standing(const std::vector<ActuatorModel>& actuators, const Eigen::Ve
   robot.q_m = robot.theta_m = q.tail(n);
   robot.tau_m = weight;
   for (Eigen::Index i = 0; i < n; ++i) {
-    robot.theta_m[i] += weight[i] / actuators[static_cast<std::size_t>(i)].stiffness;
+    robot.theta_m[i] += weight[i] / actuators[i].stiffness;
   }
   robot.dq_m = robot.dtheta_m = VectorM::Zero(n);
   robot.q_p = q.head(n_p);

@@ -74,7 +74,7 @@ CommandFrame off_command(const Description& agreed) {
   CommandFrame command;
   command.q_m = command.dq_m = command.ddq_m = VectorM::Zero(n_m);
   if (agreed.interface == Interface::kTorque) command.tau_m = VectorM::Zero(n_m);
-  command.dq_p = VectorP::Zero(static_cast<Eigen::Index>(agreed.n_p));
+  command.dq_p = VectorP::Zero(agreed.n_p);
   return command;
 }
 

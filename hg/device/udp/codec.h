@@ -32,7 +32,7 @@ class Encoder {
  public:
   static constexpr bool kIgnoresText = true;
   explicit Encoder(std::byte* to) : begin_(to), at_(to) {}
-  std::size_t size() const noexcept { return static_cast<std::size_t>(at_ - begin_); }
+  std::size_t size() const noexcept { return at_ - begin_; }
 
   template <typename T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
@@ -73,7 +73,7 @@ class Decoder {
  public:
   static constexpr bool kIgnoresText = true;
   explicit Decoder(const std::byte* from) : begin_(from), at_(from) {}
-  std::size_t size() const noexcept { return static_cast<std::size_t>(at_ - begin_); }
+  std::size_t size() const noexcept { return at_ - begin_; }
   /// Whether every count, truth value and unused field had an allowed value.
   bool is_good() const noexcept { return is_good_; }
 

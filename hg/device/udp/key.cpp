@@ -48,7 +48,7 @@ Key Key::from_file(const std::string& name) {
   do {
     more = read(file.descriptor(), bytes.data() + size, bytes.size() - size);
     if (more < 0) refuse(fmt::format("the key must be readable: {}", std::strerror(errno)));
-    size += static_cast<std::size_t>(more);
+    size += more;
   } while (more > 0);
   if (size < kLeastSize || size > kMostSize) {
     refuse(fmt::format("a key has {} to {} bytes, got {}{}", kLeastSize, kMostSize,

@@ -49,8 +49,7 @@ struct Text {
   }
   /// Text as received; use printable() for display.
   std::string_view view() const noexcept {
-    return {bytes.data(),
-            static_cast<std::size_t>(std::find(bytes.begin(), bytes.end(), '\0') - bytes.begin())};
+    return {bytes.begin(), std::find(bytes.begin(), bytes.end(), '\0')};
   }
   std::string printable() const { return udp::printable(view()); }
 };

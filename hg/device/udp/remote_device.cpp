@@ -168,7 +168,7 @@ void RemoteDevice::stop(FaultCode fault, SensorFrame& sensors) noexcept {
   if (!is_started_) {
     const auto n_m = static_cast<Eigen::Index>(config_.expected.n_m);
     sensors.q_m = sensors.dq_m = sensors.theta_m = sensors.tau_m = VectorM::Zero(n_m);
-    sensors.q_p = VectorP::Zero(static_cast<Eigen::Index>(config_.expected.n_p));
+    sensors.q_p = VectorP::Zero(config_.expected.n_p);
   }
   ++sensors.sequence;
   sensors.driver_fault = fault;

@@ -114,7 +114,7 @@ bool UdpSocket::receive(Datagram& datagram, Peer& from) noexcept {
   const auto size = recvfrom(file_, datagram.bytes.data(), datagram.bytes.size(), MSG_DONTWAIT,
                              reinterpret_cast<sockaddr*>(&from.address), &from.length);
   was_refused_ = was_refused_ || (size < 0 && errno == ECONNREFUSED);
-  datagram.size = size > 0 ? static_cast<std::size_t>(size) : 0;
+  datagram.size = size > 0 ? size : 0;
   return size >= 0;
 }
 

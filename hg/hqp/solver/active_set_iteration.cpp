@@ -31,7 +31,7 @@ void collect_active(const Problem& problem, int level, const std::vector<RowStat
                     std::vector<TargetRow>& targets) noexcept {
   targets.clear();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    const RowState state = states[index(row)];
+    const RowState state = states[row];
     if (state == RowState::kInactive || problem.norm(row) == 0.0) continue;
     targets.push_back({row, bound_of(problem.bounds(row), state)});
   }
@@ -47,18 +47,18 @@ bool eliminate_by_gauss(const Problem& problem, const SolverOptions& options, in
   if (factors.gauss_levels == 0) {
     gauss.reset(problem);
   } else {
-    gauss.truncate(ranks[index(factors.gauss_levels)]);
+    gauss.truncate(ranks[factors.gauss_levels]);
   }
   for (int& level = factors.gauss_levels; level < levels; ++level) {
-    ranks[index(level)] = gauss.rank();
-    factors.fit[index(level)] = Fit::kNoFreedom;
+    ranks[level] = gauss.rank();
+    factors.fit[level] = Fit::kNoFreedom;
     if (gauss.freedom() == 0) continue;
     collect_active(problem, level, iterate.state, targets);
     if (!gauss.add_least_squares(problem, targets, options.rank_tolerance)) return false;
-    factors.fit[index(level)] = gauss.is_met() ? Fit::kMet : Fit::kLeastSquares;
+    factors.fit[level] = gauss.is_met() ? Fit::kMet : Fit::kLeastSquares;
   }
-  ranks[index(levels)] = gauss.rank();
-  factors.fit[index(levels)] = gauss.freedom() > 0 ? Fit::kLeastSquares : Fit::kNoFreedom;
+  ranks[levels] = gauss.rank();
+  factors.fit[levels] = gauss.freedom() > 0 ? Fit::kLeastSquares : Fit::kNoFreedom;
   if (gauss.freedom() > 0) {
     if (!wants_smallest_norm(problem, options, levels)) return false;
     gauss.add_smallest_norm(problem);
@@ -81,14 +81,14 @@ bool eliminate_by_householder(const Problem& problem, const SolverOptions& optio
   iterate.x_norm = 0.0;
 
   for (int level = 0; level < levels; ++level) {
-    iterate.rank_at_level[index(level)] = householder.rank();
+    iterate.rank_at_level[level] = householder.rank();
     if (householder.freedom() == 0) continue;
     collect_active(problem, level, iterate.state, targets);
     if (targets.empty()) continue;
     householder.add_least_squares(problem, targets, iterate.x.data(), options.rank_tolerance);
     if (!move(problem, householder.step(), 1.0, iterate)) return false;
   }
-  iterate.rank_at_level[index(levels)] = householder.rank();
+  iterate.rank_at_level[levels] = householder.rank();
   if (wants_smallest_norm(problem, options, levels) && householder.freedom() > 0) {
     householder.project_to_free(iterate.x.data(), direction.data());
     if (!move(problem, direction, -1.0, iterate)) return false;
@@ -97,7 +97,7 @@ bool eliminate_by_householder(const Problem& problem, const SolverOptions& optio
 }
 
 bool is_inequality_pivot(const Factors& factors, const Iterate& iterate, int t) noexcept {
-  return is_at_bound(iterate.state[index(factors.pivot_row(t))]);
+  return is_at_bound(iterate.state[factors.pivot_row(t)]);
 }
 
 // Computes multipliers of the first `rank` pivots that cancel duals.gradient, and writes those from
@@ -131,19 +131,19 @@ int check_multipliers(const Problem& problem, const LevelGradient& size, int lev
   int row_to_release = -1;
   double largest = 0.0;
   double most_negative = size.surely_negative();
-  for (int t = work.iterate.rank_at_level[index(level)] - 1; t >= first_inequality; --t) {
+  for (int t = work.iterate.rank_at_level[level] - 1; t >= first_inequality; --t) {
     if (!is_inequality_pivot(work.factors, work.iterate, t)) continue;
     const int row = work.factors.pivot_row(t);
-    const double sign = work.iterate.state[index(row)] == RowState::kUpper ? 1.0 : -1.0;
+    const double sign = work.iterate.state[row] == RowState::kUpper ? 1.0 : -1.0;
     const double multiplier = sign * work.duals.mu[t] * problem.norm(row);
     if (multiplier > largest) {
       largest = multiplier;
-      work.iterate.blocking_row[index(level)] = row;
+      work.iterate.blocking_row[level] = row;
     }
-    if (work.duals.is_fixed_pivot[index(t)]) continue;
-    if (multiplier > (work.steps.must_stay_active[index(row)] ? size.surely_negative()
-                                                              : size.surely_positive())) {
-      work.duals.is_fixed_pivot[index(t)] = true;
+    if (work.duals.is_fixed_pivot[t]) continue;
+    if (multiplier >
+        (work.steps.must_stay_active[row] ? size.surely_negative() : size.surely_positive())) {
+      work.duals.is_fixed_pivot[t] = true;
     } else if (-multiplier > most_negative) {
       most_negative = -multiplier;
       row_to_release = row;
@@ -159,7 +159,7 @@ LevelGradient guess_gradient(const Problem& problem, const SolverOptions& option
   LevelGradient result = {.is_zero = true, .scale = 0.0, .rounding = 0.0};
   gradient.head(problem.variables()).setZero();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-    const RowState state = iterate.state[index(row)];
+    const RowState state = iterate.state[row];
     if (state == RowState::kInactive || is_at_bound(state) || problem.norm(row) == 0.0) continue;
     const double bound = bound_of(problem.bounds(row), state);
     if (add_residual(problem, row, bound, iterate, gradient, result) >
@@ -173,7 +173,7 @@ LevelGradient guess_gradient(const Problem& problem, const SolverOptions& option
 // Changes the guessed state of a row; factors of the levels above it remain valid.
 void set_guess(const Problem& problem, int row, RowState state, Iterate& iterate,
                Factors& factors) noexcept {
-  iterate.state[index(row)] = state;
+  iterate.state[row] = state;
   factors.gauss_levels = std::min(factors.gauss_levels, problem.level_of(row));
 }
 
@@ -185,10 +185,10 @@ bool activate_blocking_row(const Problem& problem, const SolverOptions& options,
   double distance_there = 0.0;
   length = kInfinity;
   for (int row = 0; row < rows; ++row) {
-    if (work.iterate.state[index(row)] != RowState::kInactive) continue;
+    if (work.iterate.state[row] != RowState::kInactive) continue;
     const double distance = violation(problem, options, work.iterate, row);
     if (distance == 0.0 || problem.norm(row) == 0.0) continue;
-    const double step = work.iterate.value[index(row)] - work.steps.last_value[index(row)];
+    const double step = work.iterate.value[row] - work.steps.last_value[row];
     const bool was_inside = distance * step > 0.0;
     const double length_of_row = was_inside ? std::max(0.0, 1.0 - distance / step) : 0.0;
     if (length_of_row >= length) continue;
@@ -198,7 +198,7 @@ bool activate_blocking_row(const Problem& problem, const SolverOptions& options,
   }
   if (blocking_row < 0) return false;
   if (blocking_row == work.steps.released_row && length <= kZeroStep) {
-    work.steps.must_stay_active[index(blocking_row)] = true;
+    work.steps.must_stay_active[blocking_row] = true;
   }
   set_guess(problem, blocking_row, distance_there > 0.0 ? RowState::kUpper : RowState::kLower,
             work.iterate, work.factors);
@@ -212,7 +212,7 @@ RowState found_state(const Problem& problem, const SolverOptions& options, int r
   if (distance != 0.0) return distance > 0.0 ? RowState::kAbove : RowState::kBelow;
   const Interval bounds = problem.bounds(row);
   if (is_equality(bounds)) return RowState::kEqual;
-  const double bound = bound_of(bounds, iterate.state[index(row)]);
+  const double bound = bound_of(bounds, iterate.state[row]);
   if (problem.norm(row) == 0.0 || !reaches(problem, options, iterate, row, bound)) {
     return RowState::kInactive;
   }
@@ -227,7 +227,7 @@ bool release_inner_rows(const Problem& problem, const SolverOptions& options, in
   for (int level = 0; level < levels; ++level) {
     bool has_violated = false;
     for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
-      RowState& state = work.iterate.state[index(row)];
+      RowState& state = work.iterate.state[row];
       const bool is_zero = !(problem.norm(row) > 0.0);
       if (state == RowState::kInactive && !is_zero) continue;
       const RowState found = found_state(problem, options, row, work.iterate);
@@ -241,7 +241,7 @@ bool release_inner_rows(const Problem& problem, const SolverOptions& options, in
       }
       has_violated |= is_violated(found) && !is_zero;
     }
-    work.levels.has_violated[index(level)] = has_violated;
+    work.levels.has_violated[level] = has_violated;
   }
   return is_changed;
 }
@@ -250,7 +250,7 @@ bool release_inner_rows(const Problem& problem, const SolverOptions& options, in
 // row with the most negative one is released.
 GuessResult check_levels(const Problem& problem, const SolverOptions& options, int levels,
                          Workspace& work) noexcept {
-  const int rank = work.iterate.rank_at_level[index(levels)];
+  const int rank = work.iterate.rank_at_level[levels];
   int first_inequality = 0;
   while (first_inequality < rank &&
          !is_inequality_pivot(work.factors, work.iterate, first_inequality))
@@ -259,24 +259,24 @@ GuessResult check_levels(const Problem& problem, const SolverOptions& options, i
 
   const int end = wants_smallest_norm(problem, options, levels) ? levels + 1 : levels;
   for (int level = 0; level < end; ++level) {
-    work.iterate.blocking_row[index(level)] = -1;
+    work.iterate.blocking_row[level] = -1;
     // a level that should be met is not: Gauss elimination has lost digits
-    const Fit fit = work.factors.is_gauss ? work.factors.fit[index(level)] : Fit::kLeastSquares;
+    const Fit fit = work.factors.is_gauss ? work.factors.fit[level] : Fit::kLeastSquares;
     if (work.outcome.is_last_guess) work.outcome.proven_levels = std::min(level, levels);
-    if (fit == Fit::kMet && work.levels.has_violated[index(level)]) return GuessResult::kInDoubt;
-    const bool has_inequality_pivots = work.iterate.rank_at_level[index(level)] > first_inequality;
+    if (fit == Fit::kMet && work.levels.has_violated[level]) return GuessResult::kInDoubt;
+    const bool has_inequality_pivots = work.iterate.rank_at_level[level] > first_inequality;
     if (!has_inequality_pivots && fit != Fit::kLeastSquares) continue;
     const LevelGradient size =
         guess_gradient(problem, options, level, work.iterate, work.duals.gradient);
     if (size.is_zero) continue;
-    if (!find_multipliers(problem, options, size, work.iterate.rank_at_level[index(level)],
+    if (!find_multipliers(problem, options, size, work.iterate.rank_at_level[level],
                           first_inequality, work.factors, work.duals)) {
       return GuessResult::kInDoubt;
     }
     const int row_to_release = check_multipliers(problem, size, level, first_inequality, work);
     if (row_to_release < 0) continue;
     work.steps.released_row = row_to_release;
-    work.steps.released_state = work.iterate.state[index(row_to_release)];
+    work.steps.released_state = work.iterate.state[row_to_release];
     set_guess(problem, row_to_release, RowState::kInactive, work.iterate, work.factors);
     return GuessResult::kCorrected;
   }
@@ -299,8 +299,8 @@ GuessResult check_guess(const Problem& problem, const SolverOptions& options, in
   if (!is_early) {
     if (activate_blocking_row(problem, options, rows, length, work)) {
       for (int row = 0; row < rows; ++row) {
-        work.steps.last_value[index(row)] +=
-            length * (work.iterate.value[index(row)] - work.steps.last_value[index(row)]);
+        work.steps.last_value[row] +=
+            length * (work.iterate.value[row] - work.steps.last_value[row]);
       }
       return GuessResult::kCorrected;
     }
@@ -319,7 +319,7 @@ void read_states(const Problem& problem, const SolverOptions& options, int level
                  Iterate& iterate) noexcept {
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
-    RowState& state = iterate.state[index(row)];
+    RowState& state = iterate.state[row];
     if (state != RowState::kInactive) {
       state = found_state(problem, options, row, iterate);
     } else if (const double distance = violation(problem, options, iterate, row); distance != 0.0) {
@@ -334,7 +334,7 @@ GuessResult check_last_guess(const Problem& problem, const SolverOptions& option
                              Workspace& work) noexcept {
   int consistent = levels;
   for (int row = 0; row < rows_of(problem, consistent); ++row) {
-    const RowState state = work.iterate.state[index(row)];
+    const RowState state = work.iterate.state[row];
     if (problem.norm(row) == 0.0 || is_equality(problem.bounds(row))) continue;
     const bool is_right =
         state == RowState::kInactive
@@ -346,7 +346,7 @@ GuessResult check_last_guess(const Problem& problem, const SolverOptions& option
                      work);  // releases nothing here; determines states
   const GuessResult result = check_levels(problem, options, consistent, work);
   if (result == GuessResult::kCorrected) {
-    work.iterate.state[index(work.steps.released_row)] = work.steps.released_state;
+    work.iterate.state[work.steps.released_row] = work.steps.released_state;
   }
   read_states(problem, options, levels, work.iterate);
   if (consistent == levels || result == GuessResult::kInDoubt) return result;
@@ -376,12 +376,12 @@ bool load_guess(const Problem& problem, int levels, std::span<const RowState> gu
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
     const Interval bounds = problem.bounds(row);
-    RowState& state = states[index(row)];
+    RowState& state = states[row];
     if (is_equality(bounds)) {
       state = RowState::kEqual;
       continue;
     }
-    state = as_guess(guess[index(row)]);
+    state = as_guess(guess[row]);
     if (state == RowState::kInactive) continue;
     // an equality that has become an interval: where |c x| is smaller
     if (state == RowState::kEqual) {
@@ -396,16 +396,7 @@ bool load_guess(const Problem& problem, int levels, std::span<const RowState> gu
 
 void guess_from_zero(const Problem& problem, int levels, std::vector<RowState>& states) noexcept {
   const int rows = rows_of(problem, levels);
-  for (int row = 0; row < rows; ++row) states[index(row)] = state_at_zero(problem, row);
-}
-
-bool is_guess_from_zero(const Problem& problem, int levels,
-                        const std::vector<RowState>& states) noexcept {
-  const int rows = rows_of(problem, levels);
-  for (int row = 0; row < rows; ++row) {
-    if (states[index(row)] != state_at_zero(problem, row)) return false;
-  }
-  return true;
+  for (int row = 0; row < rows; ++row) states[row] = state_at_zero(problem, row);
 }
 
 void start_from_zero(const Problem& problem, Workspace& work) noexcept {
@@ -419,7 +410,7 @@ void start_from_zero_with(const Problem& problem, std::vector<RowState>& guess,
   int common = work.factors.gauss_levels;
   for (int row = 0; row < rows_of(problem, common); ++row) {
     const bool is_same = is_equality(problem.bounds(row)) ||
-                         as_guess(guess[index(row)]) == as_guess(work.iterate.state[index(row)]);
+                         as_guess(guess[row]) == as_guess(work.iterate.state[row]);
     if (!is_same) common = problem.level_of(row);
   }
   work.iterate.state.swap(guess);
@@ -448,7 +439,7 @@ int choose_better_point(const Problem& problem, const SolverOptions& options, in
     for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
       const Interval bounds = problem.bounds(row);
       const double weight = problem.weight(row);
-      const double slack = weight * excess(bounds, work.iterate.value[index(row)]);
+      const double slack = weight * excess(bounds, work.iterate.value[row]);
       const double dual_slack = weight * excess(bounds, dot(problem, row, x));
       at_guess += slack * slack;
       at_dual += dual_slack * dual_slack;
@@ -509,16 +500,16 @@ void expect_violated(const Problem& problem, const SolverOptions& options, int l
                      std::span<const RowState> last, Workspace& work) noexcept {
   bool has_any = false;
   for (int level = 0; level < levels; ++level) {
-    work.levels.expected_violated[index(level)] = has_violated_inequality(
-        problem, level, [&](int row) { return is_violated(last[index(row)]); });
-    has_any |= work.levels.expected_violated[index(level)] != 0;
+    work.levels.expected_violated[level] =
+        has_violated_inequality(problem, level, [&](int row) { return is_violated(last[row]); });
+    has_any |= work.levels.expected_violated[level] != 0;
   }
   if (has_any) return;
   for (int level = 0; level < levels; ++level) {
     const bool has = has_violated_inequality(problem, level, [&](int row) {
       return violation(problem, options, work.iterate, row) != 0.0;
     });
-    work.levels.expected_violated[index(level)] = has && has_any;
+    work.levels.expected_violated[level] = has && has_any;
     has_any |= has;
   }
 }
@@ -530,8 +521,8 @@ bool expect_violated_now(const Problem& problem, const SolverOptions& options, i
     const bool has = has_violated_inequality(problem, level, [&](int row) {
       return violation(problem, options, work.iterate, row) != 0.0;
     });
-    is_new |= has != (work.levels.expected_violated[index(level)] != 0);
-    work.levels.expected_violated[index(level)] = has;
+    is_new |= has != (work.levels.expected_violated[level] != 0);
+    work.levels.expected_violated[level] = has;
   }
   return is_new;
 }
@@ -543,7 +534,7 @@ bool start_from_dual(const Problem& problem, const SolverOptions& options, int l
   if (top == 0) {
     work.factors.gauss.reset(problem);
   } else {
-    work.factors.gauss.truncate(work.factors.gauss_rank_at_level[index(top)]);
+    work.factors.gauss.truncate(work.factors.gauss_rank_at_level[top]);
   }
   work.factors.gauss_levels = top;
   work.outcome.has_dual_point = false;  // the point of an earlier run is overwritten
@@ -558,8 +549,8 @@ bool start_from_dual(const Problem& problem, const SolverOptions& options, int l
   work.steps.released_row = -1;
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
-    work.steps.last_value[index(row)] = dot(problem, row, work.dual.point().data());
-    work.steps.must_stay_active[index(row)] = work.dual.has_positive_multiplier(row);
+    work.steps.last_value[row] = dot(problem, row, work.dual.point().data());
+    work.steps.must_stay_active[row] = work.dual.has_positive_multiplier(row);
   }
   return true;
 }
@@ -568,9 +559,9 @@ bool start_from_dual(const Problem& problem, const SolverOptions& options, int l
 // Returns false if there is no such row.
 bool restore_released_row(const Problem& problem, Workspace& work) noexcept {
   const int row = work.steps.released_row;
-  if (row < 0 || work.steps.must_stay_active[index(row)]) return false;
-  if (work.iterate.state[index(row)] != RowState::kInactive) return false;
-  work.steps.must_stay_active[index(row)] = true;
+  if (row < 0 || work.steps.must_stay_active[row]) return false;
+  if (work.iterate.state[row] != RowState::kInactive) return false;
+  work.steps.must_stay_active[row] = true;
   set_guess(problem, row, work.steps.released_state, work.iterate, work.factors);
   return true;
 }

@@ -24,8 +24,6 @@ bool load_guess(const Problem& problem, int levels, std::span<const RowState> gu
 
 /// Writes the guess whose active rows are the equalities and the rows that x = 0 violates.
 void guess_from_zero(const Problem& problem, int levels, std::vector<RowState>& states) noexcept;
-bool is_guess_from_zero(const Problem& problem, int levels,
-                        const std::vector<RowState>& states) noexcept;
 
 /// Sets the last point to x = 0; work.iterate.state may have any content.
 void start_from_zero(const Problem& problem, Workspace& work) noexcept;

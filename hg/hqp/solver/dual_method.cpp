@@ -32,27 +32,27 @@ void add(int n, double factor, const double* __restrict x, double* __restrict y)
 }  // namespace
 
 DualMethod::DualMethod(const Capacity& c)
-    : rank_at_level_(index(c.levels) + 1),
-      has_positive_multiplier_(index(c.rows)),
-      side_(index(c.rows)),
+    : rank_at_level_(c.levels + 1),
+      has_positive_multiplier_(c.rows),
+      side_(c.rows),
       max_active_(2 * c.variables + kMoreActive),
-      objective_(index((std::max(c.rows, c.variables) + c.variables) * c.variables)),
-      objective_rhs_(index(std::max(c.rows, c.variables) + c.variables)),
-      candidate_rows_(index(c.rows * padded(c.variables))),
+      objective_((std::max(c.rows, c.variables) + c.variables) * c.variables),
+      objective_rhs_(std::max(c.rows, c.variables) + c.variables),
+      candidate_rows_(c.rows * padded(c.variables)),
       x_(c.variables),
       reduced_(padded(c.variables)),
-      is_slot_used_(index(max_active_)),
-      Q_(index(max_active_ * (padded(c.variables) + padded(max_active_)))),
-      R_(index(max_active_ * max_active_)),
+      is_slot_used_(max_active_),
+      Q_(max_active_ * (padded(c.variables) + padded(max_active_))),
+      R_(max_active_ * max_active_),
       u_(padded(c.variables) + padded(max_active_)),
       a_(u_.size()),
       z_(u_.size()),
       d_(max_active_),
       ratio_(max_active_) {
-  free_.reserve(index(c.variables));
-  candidates_.reserve(index(c.rows));
-  active_.reserve(index(max_active_));
-  targets_.reserve(index(c.rows));
+  free_.reserve(c.variables);
+  candidates_.reserve(c.rows);
+  active_.reserve(max_active_);
+  targets_.reserve(c.rows);
 }
 
 // Takes equalities of level after level as pivots, up to the first level s that contradicts itself
@@ -60,7 +60,7 @@ DualMethod::DualMethod(const Capacity& c)
 bool DualMethod::choose_level(GaussElimination& direct) noexcept {
   for (; level_ < last_; ++level_) {
     const int rank = direct.rank();
-    rank_at_level_[index(level_)] = rank;
+    rank_at_level_[level_] = rank;
     collect_targets();
     if (targets_.empty()) continue;
     if (2 * static_cast<int>(targets_.size()) >= direct.freedom()) return true;
@@ -69,7 +69,7 @@ bool DualMethod::choose_level(GaussElimination& direct) noexcept {
     direct.truncate(rank);
     return true;
   }
-  rank_at_level_[index(level_)] = direct.rank();
+  rank_at_level_[level_] = direct.rank();
   return true;
 }
 
@@ -81,7 +81,7 @@ void DualMethod::collect_candidates() noexcept {
   for (int level = 0; level < levels; ++level) {
     for (int row = problem_->first_row(level); row < problem_->end_row(level); ++row) {
       const auto [lb, ub] = problem_->bounds(row);
-      if (side_[index(row)] != 0 || lb == ub || problem_->norm(row) == 0.0) continue;
+      if (side_[row] != 0 || lb == ub || problem_->norm(row) == 0.0) continue;
       if (!std::isfinite(lb) && !std::isfinite(ub)) continue;
       candidates_.push_back({.row = row,
                              .is_soft = level == level_,
@@ -94,13 +94,13 @@ void DualMethod::collect_candidates() noexcept {
 
 // Reduces a candidate by the equalities, in the metric of the program.
 void DualMethod::reduce(int i, GaussElimination& direct) noexcept {
-  Candidate& candidate = candidates_[index(i)];
+  Candidate& candidate = candidates_[i];
   candidate.slot = reduced_rows_++;
   direct.reduce_to_free(*problem_, candidate.row, reduced_.data());
   double* y = candidate_row(i);
   double largest = 0.0;
   for (int k = 0; k < freedom_; ++k) {
-    y[k] = reduced_[free_[index(k)]];
+    y[k] = reduced_[free_[k]];
     largest = std::max(largest, std::abs(y[k]));
   }
   std::fill(y + freedom_, y + stride_, 0.0);
@@ -145,7 +145,7 @@ int DualMethod::collect_objective(GaussElimination& direct, bool is_regular) noe
     if (is_norm) {
       offset = direct.reduce_to_free(i, reduced_.data());
     } else {
-      const TargetRow& row = targets_[index(i)];
+      const TargetRow& row = targets_[i];
       offset = direct.reduce_to_free(*problem_, row.row, reduced_.data());
       weight = problem_->weight(row.row);
       norm = problem_->norm(row.row);
@@ -153,14 +153,14 @@ int DualMethod::collect_objective(GaussElimination& direct, bool is_regular) noe
     }
     double largest_of_row = 0.0;
     for (int k = 0; k < freedom_; ++k) {
-      const double number = weight * reduced_[free_[index(k)]];
-      objective_[index(k * rows + i)] = number;
+      const double number = weight * reduced_[free_[k]];
+      objective_[k * rows + i] = number;
       largest_of_row = std::max(largest_of_row, std::abs(number));
     }
-    objective_rhs_[index(i)] = weight * (target - offset);
+    objective_rhs_[i] = weight * (target - offset);
     if (largest_of_row <= options_->rank_tolerance * weight * norm) {  // nothing can change it
-      for (int k = 0; k < freedom_; ++k) objective_[index(k * rows + i)] = 0.0;
-      objective_rhs_[index(i)] = 0.0;
+      for (int k = 0; k < freedom_; ++k) objective_[k * rows + i] = 0.0;
+      objective_rhs_[i] = 0.0;
       continue;
     }
     largest = std::max(largest, largest_of_row);
@@ -178,7 +178,7 @@ int DualMethod::collect_objective(GaussElimination& direct, bool is_regular) noe
     double* column = objective_.data() + k * rows + wanted;
     std::fill_n(column, freedom_, 0.0);
     column[k] = regularisation_;
-    objective_rhs_[index(wanted + k)] = 0.0;
+    objective_rhs_[wanted + k] = 0.0;
   }
   return rows;
 }
@@ -253,7 +253,7 @@ int DualMethod::most_violated() const noexcept {
   int best = -1;
   double largest = 0.0;
   for (int i = 0; i < static_cast<int>(candidates_.size()); ++i) {
-    const Candidate& candidate = candidates_[index(i)];
+    const Candidate& candidate = candidates_[i];
     if (candidate.is_excluded) continue;
     const Interval bounds = problem_->bounds(candidate.row);
     const double distance = excess(bounds, dot(*problem_, candidate.row, x_.data()));
@@ -272,7 +272,7 @@ int DualMethod::most_violated() const noexcept {
 // The entering row a = N ratio + z, z orthogonal to N. Returns |z|^2, 0 when a depends on N.
 double DualMethod::project(const Active& entering) noexcept {
   const int size = stride_ + used_slots_;
-  const Candidate& candidate = candidates_[index(entering.candidate)];
+  const Candidate& candidate = candidates_[entering.candidate];
   const double* y = candidate_row(entering.candidate);
   double* a = a_.data();
   double* z = z_.data();
@@ -312,15 +312,15 @@ void DualMethod::append(const Active& entering, double z_squared) noexcept {
   std::copy_n(d_.data(), j, r(j));
   r(j)[j] = length;
   active_.push_back(entering);
-  candidates_[index(entering.candidate)].is_excluded = true;
+  candidates_[entering.candidate].is_excluded = true;
 }
 
 // Releases the active row j: removes its column of R; rotations restore the triangle.
 void DualMethod::remove(int j) noexcept {
   const int size = stride_ + used_slots_;
-  const Active row = active_[index(j)];
+  const Active row = active_[j];
   active_.erase(active_.begin() + j);
-  candidates_[index(row.candidate)].is_excluded = false;
+  candidates_[row.candidate].is_excluded = false;
   const int active = static_cast<int>(active_.size());
   for (int k = j; k < active; ++k) {
     std::copy_n(r(k + 1), k + 2, r(k));
@@ -347,7 +347,7 @@ void DualMethod::remove(int j) noexcept {
     }
   }
   if (row.slot < 0) return;
-  is_slot_used_[index(row.slot)] = false;
+  is_slot_used_[row.slot] = false;
   for (int k = 0; k < active; ++k) q(k)[stride_ + row.slot] = 0.0;
   u_[stride_ + row.slot] = 0.0;
 }
@@ -358,7 +358,7 @@ DualMethod::Outcome DualMethod::run(GaussElimination& direct) noexcept {
     const int best = most_violated();
     if (best < 0) return Outcome::kOptimal;
     if (static_cast<int>(active_.size()) == max_active_) return Outcome::kGivenUp;
-    Candidate& candidate = candidates_[index(best)];
+    Candidate& candidate = candidates_[best];
     if (candidate.slot < 0) reduce(best, direct);
     const Interval bounds = problem_->bounds(candidate.row);
     double rest = excess(bounds, dot(*problem_, candidate.row, x_.data()));
@@ -370,7 +370,7 @@ DualMethod::Outcome DualMethod::run(GaussElimination& direct) noexcept {
           std::find(is_slot_used_.begin(), is_slot_used_.begin() + slots_, std::uint8_t{0});
       entering_.slot = static_cast<int>(free_slot - is_slot_used_.begin());
       if (entering_.slot == slots_) return Outcome::kGivenUp;
-      is_slot_used_[index(entering_.slot)] = true;
+      is_slot_used_[entering_.slot] = true;
       used_slots_ = std::max(used_slots_, entering_.slot + 1);
     }
 
@@ -383,7 +383,7 @@ DualMethod::Outcome DualMethod::run(GaussElimination& direct) noexcept {
       int leaving = -1;
       for (int j = 0; j < active; ++j) {
         if (!(ratio_[j] > kTurns)) continue;
-        const double length_j = active_[index(j)].multiplier / ratio_[j];
+        const double length_j = active_[j].multiplier / ratio_[j];
         if (length_j >= length) continue;
         length = length_j;
         leaving = j;
@@ -399,7 +399,7 @@ DualMethod::Outcome DualMethod::run(GaussElimination& direct) noexcept {
         add(stride_ + used_slots_, -length, z_.data(), u_.data());
         rest -= length * z_squared;
       }
-      for (int j = 0; j < active; ++j) active_[index(j)].multiplier -= length * ratio_[j];
+      for (int j = 0; j < active; ++j) active_[j].multiplier -= length * ratio_[j];
       entering_.multiplier += length;
       is_full = leaving < 0;
       if (is_full) {
@@ -415,18 +415,18 @@ DualMethod::Outcome DualMethod::run(GaussElimination& direct) noexcept {
 // The lowest level among the entering row, the active ones and the equalities that contradict it.
 int DualMethod::level_of_contradiction(GaussElimination& direct) noexcept {
   const int n = problem_->variables();
-  const Candidate& entering = candidates_[index(entering_.candidate)];
+  const Candidate& entering = candidates_[entering_.candidate];
   Eigen::VectorXd& rest = z_;
   rest.head(n).setZero();
   add_multiple(*problem_, entering.row, entering_.sign, rest.data());
   int lowest = problem_->level_of(entering.row);
   for (int j = 0; j < static_cast<int>(active_.size()); ++j) {
-    const Candidate& candidate = candidates_[index(active_[index(j)].candidate)];
+    const Candidate& candidate = candidates_[active_[j].candidate];
     if (std::abs(ratio_[j]) * candidate.length <= kTakesPart * entering.length) continue;
-    add_multiple(*problem_, candidate.row, -ratio_[j] * active_[index(j)].sign, rest.data());
+    add_multiple(*problem_, candidate.row, -ratio_[j] * active_[j].sign, rest.data());
     lowest = std::max(lowest, problem_->level_of(candidate.row));
   }
-  const int first = rank_at_level_[index(first_)];
+  const int first = rank_at_level_[first_];
   direct.find_multipliers(rest.data(), direct.rank(), first, a_.data());
   const double norm = problem_->norm(entering.row);
   for (int t = first; t < direct.rank(); ++t) {
@@ -440,13 +440,13 @@ int DualMethod::level_of_contradiction(GaussElimination& direct) noexcept {
 // Computes x from u_.
 void DualMethod::find_point(GaussElimination& direct) noexcept {
   Eigen::VectorXd& y = z_;
-  for (int j = 0; j < freedom_; ++j) y[j] = objective_rhs_[index(j)] + u_[j];
+  for (int j = 0; j < freedom_; ++j) y[j] = objective_rhs_[j] + u_[j];
   for (int j = freedom_ - 1; j >= 0; --j) {
     const double* column = objective_.data() + j * freedom_;
     y[j] /= column[j];
     add(j, -y[j], column, y.data());
   }
-  for (int k = 0; k < freedom_; ++k) x_[free_[index(k)]] = y[k];
+  for (int k = 0; k < freedom_; ++k) x_[free_[k]] = y[k];
   direct.complete(x_.data());
 }
 
@@ -474,11 +474,11 @@ void DualMethod::fix_level(GaussElimination& direct) noexcept {
   for (const int v : free_) x_free = std::max(x_free, std::abs(x_[v]));
   const double threshold = kPositive * scale + 10.0 * regularisation_ * regularisation_ * x_free;
   for (const Active& active : active_) {
-    const Candidate& candidate = candidates_[index(active.candidate)];
+    const Candidate& candidate = candidates_[active.candidate];
     const double multiplier = active.multiplier * problem_->norm(candidate.row);
     if (is_met || multiplier <= threshold) continue;
-    if (!candidate.is_soft) has_positive_multiplier_[index(candidate.row)] = true;
-    side_[index(candidate.row)] = active.sign > 0.0 ? 1 : -1;
+    if (!candidate.is_soft) has_positive_multiplier_[candidate.row] = true;
+    side_[candidate.row] = active.sign > 0.0 ? 1 : -1;
     const Interval bounds = problem_->bounds(candidate.row);
     const double target = candidate.is_soft ? dot(*problem_, candidate.row, x_.data())
                                             : (active.sign > 0.0 ? bounds.ub : bounds.lb);
@@ -496,10 +496,10 @@ void DualMethod::write(std::vector<RowState>& guess) const noexcept {
   for (int level = 0; level < levels_; ++level) {
     for (int row = problem_->first_row(level); row < problem_->end_row(level); ++row) {
       const Interval bounds = problem_->bounds(row);
-      RowState& state = guess[index(row)];
+      RowState& state = guess[row];
       state = is_equality(bounds) ? RowState::kEqual : RowState::kInactive;
       if (state == RowState::kEqual || problem_->norm(row) == 0.0) continue;
-      int side = side_[index(row)];
+      int side = side_[row];
       if (side == 0) {
         const double distance = excess(bounds, dot(*problem_, row, x_.data()));
         const double bound = distance > 0.0 ? bounds.ub : bounds.lb;
@@ -515,7 +515,7 @@ void DualMethod::write(std::vector<RowState>& guess) const noexcept {
 // The first level from first_ on that is expected to have violated inequalities.
 int DualMethod::expected_level() const noexcept {
   int level = first_;
-  while (level < levels_ && expected_violated_[index(level)] == 0) ++level;
+  while (level < levels_ && expected_violated_[level] == 0) ++level;
   return level;
 }
 
@@ -540,7 +540,7 @@ bool DualMethod::find_guess(const Problem& problem, const SolverOptions& options
     const Outcome outcome = run(direct);
     if (outcome == Outcome::kGivenUp) return false;
     if (outcome == Outcome::kContradiction) {
-      direct.truncate(rank_at_level_[index(contradiction_)]);
+      direct.truncate(rank_at_level_[contradiction_]);
       level_ = last_ = contradiction_;
       continue;
     }
@@ -550,7 +550,7 @@ bool DualMethod::find_guess(const Problem& problem, const SolverOptions& options
     last_ = expected_level();
   }
   for (const Active& active : active_) {
-    side_[index(candidates_[index(active.candidate)].row)] = active.sign > 0.0 ? 1 : -1;
+    side_[candidates_[active.candidate].row] = active.sign > 0.0 ? 1 : -1;
   }
   write(guess);
   return true;

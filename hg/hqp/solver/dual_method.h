@@ -37,9 +37,7 @@ class DualMethod {
   /// Point of the guess, all variables.
   const Eigen::VectorXd& point() const noexcept { return x_; }
   /// Whether the row is active because its multiplier for some level is surely positive.
-  bool has_positive_multiplier(int row) const noexcept {
-    return has_positive_multiplier_[index(row)];
-  }
+  bool has_positive_multiplier(int row) const noexcept { return has_positive_multiplier_[row]; }
 
  private:
   enum class Outcome : std::uint8_t { kOptimal, kContradiction, kGivenUp };
@@ -62,7 +60,7 @@ class DualMethod {
   };
 
   double* candidate_row(int i) noexcept {
-    return candidate_rows_.data() + candidates_[index(i)].slot * stride_;
+    return candidate_rows_.data() + candidates_[i].slot * stride_;
   }
   double* q(int j) noexcept { return Q_.data() + j * q_stride_; }
   double* r(int j) noexcept { return R_.data() + j * max_active_; }

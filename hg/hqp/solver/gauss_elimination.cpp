@@ -59,8 +59,8 @@ int find_size(int n, const double* y, double size) noexcept {
 }  // namespace
 
 GaussElimination::GaussElimination(int max_variables, int max_rows)
-    : pivots_(index(max_variables)),
-      pivot_of_variable_(index(max_variables)),
+    : pivots_(max_variables),
+      pivot_of_variable_(max_variables),
       preference_(padded(max_variables)),
       R_((max_variables + 1) * padded(max_variables)),
       L_((max_variables + 1) * padded(max_variables)),
@@ -74,7 +74,7 @@ GaussElimination::GaussElimination(int max_variables, int max_rows)
       change_(max_variables),
       order_(max_variables + max_rows),
       scratch_(padded(max_variables)) {
-  deferred_.reserve(index(max_rows));
+  deferred_.reserve(max_rows);
 }
 
 void GaussElimination::reset(const Problem& problem) noexcept {
@@ -94,7 +94,7 @@ void GaussElimination::reset(const Problem& problem) noexcept {
 }
 
 void GaussElimination::truncate(int rank) noexcept {
-  while (rank_ > rank) pivot_of_variable_[index(pivots_[index(--rank_)].variable)] = -1;
+  while (rank_ > rank) pivot_of_variable_[pivots_[--rank_].variable] = -1;
 }
 
 void GaussElimination::load(const double* c, double* y) const noexcept {
@@ -106,7 +106,7 @@ void GaussElimination::load(const double* c, double* y) const noexcept {
 void GaussElimination::subtract_pivots(int first, int end, double* y, double* factors,
                                        Rest& rest) const noexcept {
   for (int s = first; s < end; ++s) {
-    const Pivot& pivot = pivots_[index(s)];
+    const Pivot& pivot = pivots_[s];
     const double factor = y[pivot.variable] * pivot.inverse;
     factors[s] = factor;
     if (factor == 0.0) continue;
@@ -121,7 +121,7 @@ void GaussElimination::subtract_pivots(int first, int end, double* y, double* fa
 void GaussElimination::reduce_unit(int variable, double target) noexcept {
   rest_ = {.value = target, .value_scale = std::abs(target)};
   variable_ = variable;
-  const int t = pivot_of_variable_[index(variable)];
+  const int t = pivot_of_variable_[variable];
   is_unit_ = t < 0;
   if (is_unit_) {
     largest_ = 1.0;
@@ -129,9 +129,9 @@ void GaussElimination::reduce_unit(int variable, double target) noexcept {
   }
   double* factor = factors(rank_);
   std::fill_n(factor, rank_, 0.0);
-  if (pivots_[index(t)].is_unit) {
+  if (pivots_[t].is_unit) {
     factor[t] = 1.0;
-    rest_.subtract(1.0, pivots_[index(t)]);
+    rest_.subtract(1.0, pivots_[t]);
     largest_ = 0.0;
   } else {
     double* y = reduced_row(rank_);
@@ -187,7 +187,7 @@ GaussElimination::Outcome GaussElimination::decide_rank_closely(double norm,
   z.setZero();
   z[variable_] = 1.0;
   for (int s = rank_ - 1; s >= 0; --s) {
-    const Pivot& pivot = pivots_[index(s)];
+    const Pivot& pivot = pivots_[s];
     if (pivot.is_unit) continue;
     z[pivot.variable] = -dot(n_, reduced_row(s), z.data()) * pivot.inverse;
   }
@@ -197,13 +197,13 @@ GaussElimination::Outcome GaussElimination::decide_rank_closely(double norm,
 
 void GaussElimination::append(int row) noexcept {
   const double inverse = is_unit_ ? 1.0 : 1.0 / reduced_row(rank_)[variable_];
-  pivots_[index(rank_)] = {.row = row,
-                           .variable = variable_,
-                           .is_unit = is_unit_,
-                           .inverse = inverse,
-                           .size = is_unit_ ? 1.0 : largest_,
-                           .value = rest_.value};
-  pivot_of_variable_[index(variable_)] = rank_;
+  pivots_[rank_] = {.row = row,
+                    .variable = variable_,
+                    .is_unit = is_unit_,
+                    .inverse = inverse,
+                    .size = is_unit_ ? 1.0 : largest_,
+                    .value = rest_.value};
+  pivot_of_variable_[variable_] = rank_;
   ++rank_;
 }
 
@@ -221,7 +221,7 @@ void GaussElimination::keep_dependent(double weight, double smallest, int first)
   if (std::abs(rest_.value) > kRoundOff * rest_.value_scale) is_met_ = false;
   const double* factor = factors(rank_);
   double share = 0.0;
-  for (int s = first; s < rank_; ++s) share += std::abs(factor[s]) * pivots_[index(s)].size;
+  for (int s = first; s < rank_; ++s) share += std::abs(factor[s]) * pivots_[s].size;
   if (share <= smallest) return;
   double* dependent = dependent_rows_.data() + dependents_ * n_;
   std::copy(factor + first, factor + rank_, dependent);
@@ -302,19 +302,19 @@ void GaussElimination::add_smallest_norm(const Problem& problem) noexcept {
   const int first = rank_;
   dependents_ = 0;
   for (int v = 0; v < n_; ++v) {
-    if (pivot_of_variable_[index(v)] >= 0) continue;
+    if (pivot_of_variable_[v] >= 0) continue;
     reduce_unit(v, 0.0);
     append(-1);
   }
   for (int s = 0; s < first; ++s) {
-    reduce_unit(pivots_[index(s)].variable, 0.0);
+    reduce_unit(pivots_[s].variable, 0.0);
     keep_dependent(1.0, 0.0, first);
   }
   solve_level(problem, first);
 }
 
 double GaussElimination::weight_of_pivot(const Problem& problem, int t) const noexcept {
-  const int row = pivots_[index(t)].row;
+  const int row = pivots_[t].row;
   return row < 0 ? 1.0 : problem.weight(row);
 }
 
@@ -323,7 +323,7 @@ double GaussElimination::weight_of_pivot(const Problem& problem, int t) const no
 // dependent rows.
 void GaussElimination::solve_level(const Problem& problem, int first) noexcept {
   if (!solve_for_residuals(problem, first)) solve_by_reflections(problem, first);
-  for (int t = first; t < rank_; ++t) pivots_[index(t)].value += change_[t - first];
+  for (int t = first; t < rank_; ++t) pivots_[t].value += change_[t - first];
 }
 
 // Few dependent rows: the residuals z = (W L u, V (D u - rest)) are the smallest with [E -I] z = V
@@ -342,7 +342,7 @@ bool GaussElimination::solve_for_residuals(const Problem& problem, int first) no
     row[r + k] = -1.0;
     for (int i = r - 1; i >= 0; --i) {
       const int t = first + i;
-      if (!pivots_[index(t)].is_unit) row.head(i) -= row[i] * VectorView(factors(t) + first, i);
+      if (!pivots_[t].is_unit) row.head(i) -= row[i] * VectorView(factors(t) + first, i);
     }
     for (int i = 0; i < r; ++i) row[i] /= weight_of_pivot(problem, first + i);
     if (!(row.cwiseAbs().maxCoeff() < kLargestResidualFactor)) return false;
@@ -363,7 +363,7 @@ bool GaussElimination::solve_for_residuals(const Problem& problem, int first) no
   for (int i = 0; i < r; ++i) {
     const int t = first + i;
     change_[i] /= weight_of_pivot(problem, t);
-    if (!pivots_[index(t)].is_unit) {
+    if (!pivots_[t].is_unit) {
       change_[i] -= VectorView(factors(t) + first, i).dot(change_.head(i));
     }
   }
@@ -379,7 +379,7 @@ void GaussElimination::solve_by_reflections(const Problem& problem, int first) n
     const double weight = weight_of_pivot(problem, t);
     A.row(i).setZero();
     A(i, i) = weight;
-    if (pivots_[index(t)].is_unit) continue;
+    if (pivots_[t].is_unit) continue;
     A.row(i).head(i) = weight * VectorView(factors(t) + first, i).transpose();
   }
   rhs_.head(r).setZero();
@@ -395,7 +395,7 @@ bool GaussElimination::find_point(double* x) const noexcept {
   std::fill_n(x, n_, 0.0);
   double largest_term = 0.0;
   for (int t = rank_ - 1; t >= 0; --t) {
-    const Pivot& pivot = pivots_[index(t)];
+    const Pivot& pivot = pivots_[t];
     const double others = pivot.is_unit ? 0.0 : dot(n_, reduced_row(t), x);
     x[pivot.variable] = (pivot.value - others) * pivot.inverse;
     largest_term = std::max(largest_term, std::abs(pivot.value * pivot.inverse));
@@ -415,7 +415,7 @@ double GaussElimination::reduce_to_free(const Problem& problem, int row, double*
 double GaussElimination::reduce_to_free(int variable, double* y) noexcept {
   std::fill_n(y, stride_, 0.0);
   y[variable] = 1.0;
-  const int t = pivot_of_variable_[index(variable)];
+  const int t = pivot_of_variable_[variable];
   if (t < 0) return 0.0;
   Rest rest;
   subtract_pivots(t, rank_, y, factors(rank_), rest);
@@ -423,9 +423,9 @@ double GaussElimination::reduce_to_free(int variable, double* y) noexcept {
 }
 
 void GaussElimination::complete(double* x) const noexcept {
-  for (int t = 0; t < rank_; ++t) x[pivots_[index(t)].variable] = 0.0;  // 0 * NaN is not 0
+  for (int t = 0; t < rank_; ++t) x[pivots_[t].variable] = 0.0;  // 0 * NaN is not 0
   for (int t = rank_ - 1; t >= 0; --t) {
-    const Pivot& pivot = pivots_[index(t)];
+    const Pivot& pivot = pivots_[t];
     const double others = pivot.is_unit ? 0.0 : dot(n_, reduced_row(t), x);
     x[pivot.variable] = (pivot.value - others) * pivot.inverse;
   }
@@ -440,7 +440,7 @@ double GaussElimination::find_multipliers(const double* g, int rank, int first,
   subtract_pivots(0, rank, y, factor.data(), unused);
   for (int t = rank - 1; t >= first; --t) {
     mu[t] = -factor[t];
-    if (!pivots_[index(t)].is_unit) factor.head(t) += mu[t] * VectorView(factors(t), t);
+    if (!pivots_[t].is_unit) factor.head(t) += mu[t] * VectorView(factors(t), t);
   }
   return VectorView(y, n_).cwiseAbs().maxCoeff();
 }

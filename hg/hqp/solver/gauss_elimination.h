@@ -33,7 +33,7 @@ class GaussElimination {
   int rank() const noexcept { return rank_; }
   int freedom() const noexcept { return n_ - rank_; }
   /// Row id of pivot t; -1: a variable that add_smallest_norm() took.
-  int pivot_row(int t) const noexcept { return pivots_[index(t)].row; }
+  int pivot_row(int t) const noexcept { return pivots_[t].row; }
 
   /// Adds the row as next pivot, with c x = target, unless it depends on the others.
   Outcome add_row(const Problem& problem, TargetRow row, double tolerance) noexcept;
@@ -53,7 +53,7 @@ class GaussElimination {
   /// doubt: the point is so much larger than the targets that a rank may be wrong.
   [[nodiscard]] bool find_point(double* x) const noexcept;
 
-  bool is_free(int variable) const noexcept { return pivot_of_variable_[index(variable)] < 0; }
+  bool is_free(int variable) const noexcept { return pivot_of_variable_[variable] < 0; }
 
   /// Reduces a row to the free variables: c x = y x + the result, with the pivots at their values.
   /// y has n numbers and zeros up to a multiple of 4, and meets only free variables.

@@ -89,7 +89,7 @@ int HouseholderQr::choose_pivots(std::span<const TargetRow> rows, double toleran
     int best = -1;
     double best_share = tolerance;
     for (int i = r; i < m; ++i) {
-      const int row = rows[index(order_[i])].row;
+      const int row = rows[order_[i]].row;
       const double share =
           reduced.col(order_[i]).tail(size - r).norm() / (problem.norm(row) * problem.weight(row));
       if (share > best_share) {
@@ -100,7 +100,7 @@ int HouseholderQr::choose_pivots(std::span<const TargetRow> rows, double toleran
     if (best < 0) break;
     std::swap(order_[r], order_[best]);
 
-    const int row = rows[index(order_[r])].row;
+    const int row = rows[order_[r]].row;
     const double pivot = reflect(reduced.col(order_[r]).data() + r, size - r);
     const auto h = reflection_.head(size - r);
     for (int i = r; i < m; ++i) {
@@ -120,7 +120,7 @@ void HouseholderQr::add_least_squares(const Problem& problem, std::span<const Ta
   const int size = freedom();
   const int first = rank_;
   for (int i = 0; i < m; ++i) {
-    const auto [row, target] = rows[index(i)];
+    const auto [row, target] = rows[i];
     const double weight = problem.weight(row);
     Eigen::Map<Eigen::VectorXd> y(reduced_.data() + i * size, size);
     reduce(problem, row, weight, y.data());

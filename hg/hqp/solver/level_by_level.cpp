@@ -125,7 +125,7 @@ void LevelByLevel::collect_unmet(int level) noexcept {
   targets_.clear();
   for (int row = problem_.first_row(level); row < problem_.end_row(level); ++row) {
     const auto [lb, ub] = problem_.bounds(row);
-    const double value = iterate_.value[index(row)];
+    const double value = iterate_.value[row];
     const bool is_unmet = problem_.norm(row) > 0.0 && (lb == ub || value < lb || value > ub);
     if (is_unmet) targets_.push_back({row, value < lb ? lb : ub});
   }
@@ -158,7 +158,7 @@ bool LevelByLevel::gains(int level, double length) const noexcept {
            share * options_.feasibility_tolerance * iterate_.x_norm;
   }
   return std::any_of(targets_.begin(), targets_.end(), [&](const TargetRow& t) {
-    return std::abs(length * search_.slope[index(t.row)]) >
+    return std::abs(length * search_.slope[t.row]) >
            share * tolerance(problem_, options_, iterate_, t.row, t.target);
   });
 }
@@ -172,7 +172,7 @@ void LevelByLevel::find_slopes(int level) noexcept {
     const double slope = dot(problem_, row, search_.direction.data());
     const double parallel = row < end_of_levels_above(level) ? kParallel : options_.rank_tolerance;
     const bool is_rounding = std::abs(slope) <= parallel * problem_.norm(row) * direction_norm;
-    search_.slope[index(row)] = is_rounding ? 0.0 : slope;
+    search_.slope[row] = is_rounding ? 0.0 : slope;
   }
 }
 
@@ -181,12 +181,11 @@ double LevelByLevel::length_to_blocking_row(int level, int& blocking_row) const 
   double length = kInfinity;
   blocking_row = -1;
   for (int row = 0; row < end_of_levels_above(level); ++row) {
-    const double slope = search_.slope[index(row)];
-    if (search_.is_fixed[index(row)] || slope == 0.0) continue;
-    if (search_.skipped_sides[index(row)] & (slope > 0.0 ? kUpperSide : kLowerSide)) continue;
+    const double slope = search_.slope[row];
+    if (search_.is_fixed[row] || slope == 0.0) continue;
+    if (search_.skipped_sides[row] & (slope > 0.0 ? kUpperSide : kLowerSide)) continue;
     const auto [lb, ub] = problem_.bounds(row);
-    const double distance =
-        slope > 0.0 ? ub - iterate_.value[index(row)] : iterate_.value[index(row)] - lb;
+    const double distance = slope > 0.0 ? ub - iterate_.value[row] : iterate_.value[row] - lb;
     const double length_of_row = std::max(0.0, distance) / std::abs(slope);
     if (length_of_row < length) {
       length = length_of_row;
@@ -211,9 +210,9 @@ double LevelByLevel::best_length(int level, double longest) const noexcept {
     double curvature = 0.0;
     double kink = kInfinity;
     for (int row = first; row < end; ++row) {
-      const double slope = search_.slope[index(row)];
+      const double slope = search_.slope[row];
       if (slope == 0.0) continue;
-      const double value = iterate_.value[index(row)];
+      const double value = iterate_.value[row];
       const auto [lb, ub] = problem_.bounds(row);
       const double to_lb = (lb - value) / slope;
       const double to_ub = (ub - value) / slope;
@@ -242,7 +241,7 @@ void LevelByLevel::factorise_working_set(int level) noexcept {
   householder_.truncate(base_);
   std::fill_n(search_.skipped_sides.begin(), end_of_levels_above(level), std::uint8_t{0});
   std::erase_if(working_set_, [&](const RowAtBound& t) {
-    search_.skipped_sides[index(t.row)] = kBothSides;
+    search_.skipped_sides[t.row] = kBothSides;
     return !householder_.add_row(problem_, t.row, options_.rank_tolerance);
   });
 }
@@ -254,7 +253,7 @@ int LevelByLevel::find_row_to_release(bool take_first) noexcept {
   int released = -1;
   double most_negative = size_.surely_negative();
   for (int i = static_cast<int>(working_set_.size()) - 1; i >= 0; --i) {
-    const auto [row, sign] = working_set_[index(i)];
+    const auto [row, sign] = working_set_[i];
     const int t = base_ + i;
     const double mu = -VectorView(householder_.column(t), n_).dot(search_.direction.head(n_)) /
                       householder_.pivot(t);
@@ -262,8 +261,8 @@ int LevelByLevel::find_row_to_release(bool take_first) noexcept {
     duals_.mu[i] = sign * mu;
     const double negative = -sign * mu * problem_.norm(row);
     if (negative <= size_.surely_negative()) continue;
-    const bool is_better = take_first ? released < 0 || row < working_set_[index(released)].row
-                                      : negative > most_negative;
+    const bool is_better =
+        take_first ? released < 0 || row < working_set_[released].row : negative > most_negative;
     if (!is_better) continue;
     most_negative = negative;
     released = i;
@@ -276,7 +275,7 @@ int LevelByLevel::blocking_row_at_bound(int level) const noexcept {
   int blocking_row = -1;
   length_to_blocking_row(level, blocking_row);
   if (blocking_row < 0) return -1;
-  const double side = search_.slope[index(blocking_row)] > 0.0 ? 1.0 : -1.0;
+  const double side = search_.slope[blocking_row] > 0.0 ? 1.0 : -1.0;
   const auto found =
       std::find_if(rows_at_bounds_.begin(), rows_at_bounds_.end(),
                    [&](const RowAtBound& t) { return t.row == blocking_row && t.sign == side; });
@@ -297,8 +296,8 @@ LevelByLevel::DirectionResult LevelByLevel::find_feasible_direction(int level) n
     bool has_gain = find_direction(level);
     for (int blocking_row = blocking_row_at_bound(level); has_gain && blocking_row >= 0;
          blocking_row = blocking_row_at_bound(level)) {
-      const RowAtBound t = rows_at_bounds_[index(blocking_row)];
-      search_.skipped_sides[index(t.row)] = kBothSides;
+      const RowAtBound t = rows_at_bounds_[blocking_row];
+      search_.skipped_sides[t.row] = kBothSides;
       if (!householder_.add_row(problem_, t.row, options_.rank_tolerance)) continue;
       working_set_.push_back(t);
       has_gain = find_direction(level);
@@ -315,7 +314,7 @@ LevelByLevel::DirectionResult LevelByLevel::find_feasible_direction(int level) n
 
   // a cycle: the steepest feasible descent leads out of the corner
   std::fill_n(search_.skipped_sides.begin(), end_of_levels_above(level), std::uint8_t{0});
-  for (const RowAtBound& t : rows_at_bounds_) search_.skipped_sides[index(t.row)] |= side_of(t);
+  for (const RowAtBound& t : rows_at_bounds_) search_.skipped_sides[t.row] |= side_of(t);
   search_.direction.head(n_) = work_.nnls.descent().head(n_);
   find_slopes(level);
   if (!gains(level, best_length(level, kInfinity))) return DirectionResult::kOptimal;
@@ -325,8 +324,8 @@ LevelByLevel::DirectionResult LevelByLevel::find_feasible_direction(int level) n
 
 LevelOutcome LevelByLevel::optimise(int level) noexcept {
   base_ = householder_.rank();
-  iterate_.rank_at_level[index(level)] = base_;
-  iterate_.blocking_row[index(level)] = -1;
+  iterate_.rank_at_level[level] = base_;
+  iterate_.blocking_row[level] = -1;
   steps_ = 0;
   while (true) {
     if (iterations_ >= options_.max_iterations) return LevelOutcome::kIterationLimit;
@@ -359,7 +358,7 @@ LevelOutcome LevelByLevel::optimise(int level) noexcept {
     update_values(problem_, levels_, iterate_);
     ++steps_;
     if (length == longest && static_cast<int>(working_set_.size()) < n_ - base_) {
-      working_set_.push_back({blocking_row, search_.slope[index(blocking_row)] > 0.0 ? 1.0 : -1.0});
+      working_set_.push_back({blocking_row, search_.slope[blocking_row] > 0.0 ? 1.0 : -1.0});
     }
   }
 }
@@ -380,18 +379,18 @@ void LevelByLevel::fix(int level) noexcept {
   if (!is_norm_level(level)) collect_targets(problem_, options_, level, iterate_, targets_);
   householder_.add_least_squares(problem_, targets_, iterate_.x.data(), options_.rank_tolerance);
   for (const TargetRow& t : targets_) {
-    search_.is_fixed[index(t.row)] = true;
-    iterate_.state[index(t.row)] = state_of_fixed(t.row);
+    search_.is_fixed[t.row] = true;
+    iterate_.state[t.row] = state_of_fixed(t.row);
   }
   if (!is_constrained_) return;
   double largest = 0.0;
   for (int i = 0; i < static_cast<int>(working_set_.size()); ++i) {
-    const auto [row, sign] = working_set_[index(i)];
+    const auto [row, sign] = working_set_[i];
     const double multiplier = duals_.mu[i] * problem_.norm(row);
-    iterate_.state[index(row)] = sign > 0.0 ? RowState::kUpper : RowState::kLower;
+    iterate_.state[row] = sign > 0.0 ? RowState::kUpper : RowState::kLower;
     if (multiplier > largest) {
       largest = multiplier;
-      iterate_.blocking_row[index(level)] = row;
+      iterate_.blocking_row[level] = row;
     }
   }
 }
@@ -400,7 +399,7 @@ void LevelByLevel::fix(int level) noexcept {
 void LevelByLevel::release_rows_off_bounds() noexcept {
   const int end = rows_of(problem_, levels_);
   for (int row = 0; row < end; ++row) {
-    RowState& state = iterate_.state[index(row)];
+    RowState& state = iterate_.state[row];
     const auto [lb, ub] = problem_.bounds(row);
     if ((state == RowState::kUpper && !reaches(problem_, options_, iterate_, row, ub)) ||
         (state == RowState::kLower && !reaches(problem_, options_, iterate_, row, lb))) {

@@ -15,11 +15,11 @@ constexpr int kChangesPerRow = 4;    // bound on the loop; convergence mostly ne
 }  // namespace
 
 Nnls::Nnls(int max_variables, int max_candidates)
-    : rows_(index(max_variables)),
+    : rows_(max_variables),
       mu_(max_variables),
       mu_new_(max_variables),
-      is_excluded_(index(max_candidates)),
-      candidate_(index(max_variables)),
+      is_excluded_(max_candidates),
+      candidate_(max_variables),
       descent_(max_variables),
       rest_(max_variables) {}
 
@@ -28,8 +28,8 @@ int Nnls::most_opposed(const Problem& problem, const std::vector<RowAtBound>& ca
   int best = -1;
   double best_cosine = kParallel;
   for (int i = 0; i < static_cast<int>(candidates.size()); ++i) {
-    if (is_excluded_[index(i)]) continue;
-    const auto [row, sign] = candidates[index(i)];
+    if (is_excluded_[i]) continue;
+    const auto [row, sign] = candidates[i];
     const double cosine =
         sign * dot(problem, row, descent_.data()) / (problem.norm(row) * descent_norm);
     if (cosine > best_cosine) {
@@ -50,7 +50,7 @@ void Nnls::solve_passive(const Problem& problem, const double* g, int base,
     const double multiplier =
         -VectorView(elimination.column(t), n).dot(rest_.head(n)) / elimination.pivot(t);
     add_multiple(problem, elimination.pivot_row(t), multiplier, rest_.data());
-    mu_new_[i] = rows_[index(i)].sign * multiplier;
+    mu_new_[i] = rows_[i].sign * multiplier;
   }
 }
 
@@ -73,12 +73,12 @@ void Nnls::remove_non_positive(const Problem& problem, int base, double rank_tol
   elimination.truncate(base);
   int count = 0;
   for (int i = 0; i < size_; ++i) {
-    if (mu_[i] > 0.0 && elimination.add_row(problem, rows_[index(i)].row, rank_tolerance)) {
-      rows_[index(count)] = rows_[index(i)];
-      candidate_[index(count)] = candidate_[index(i)];
+    if (mu_[i] > 0.0 && elimination.add_row(problem, rows_[i].row, rank_tolerance)) {
+      rows_[count] = rows_[i];
+      candidate_[count] = candidate_[i];
       mu_[count++] = mu_[i];
     } else {
-      is_excluded_[index(candidate_[index(i)])] = false;
+      is_excluded_[candidate_[i]] = false;
     }
   }
   size_ = count;
@@ -100,11 +100,11 @@ void Nnls::solve(const Problem& problem, const std::vector<RowAtBound>& candidat
 
     const int entering = most_opposed(problem, candidates, descent_norm);
     if (entering < 0) break;
-    is_excluded_[index(entering)] = true;
-    const RowAtBound candidate = candidates[index(entering)];
+    is_excluded_[entering] = true;
+    const RowAtBound candidate = candidates[entering];
     if (!elimination.add_row(problem, candidate.row, rank_tolerance)) continue;
-    rows_[index(size_)] = candidate;
-    candidate_[index(size_)] = entering;
+    rows_[size_] = candidate;
+    candidate_[size_] = entering;
     mu_[size_++] = 0.0;
 
     solve_passive(problem, g, base, elimination);

@@ -34,7 +34,7 @@ class Nnls {
 
   /// Number of rows with positive multipliers, these rows, and their multipliers.
   int size() const noexcept { return size_; }
-  RowAtBound row(int i) const noexcept { return rows_[index(i)]; }
+  RowAtBound row(int i) const noexcept { return rows_[i]; }
   double mu(int i) const noexcept { return mu_[i]; }
   /// Steepest feasible descent, minus the residual.
   const Eigen::VectorXd& descent() const noexcept { return descent_; }

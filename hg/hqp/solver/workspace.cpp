@@ -10,32 +10,26 @@ constexpr double kRoundOff = 1e-14;  // error of c x relative to norm(c) |x|, wi
 }  // namespace
 
 Point::Point(const Capacity& c)
-    : x(c.variables),
-      state(index(c.rows)),
-      rank_at_level(index(c.levels) + 1),
-      blocking_row(index(c.levels) + 1) {}
+    : x(c.variables), state(c.rows), rank_at_level(c.levels + 1), blocking_row(c.levels + 1) {}
 
-Iterate::Iterate(const Capacity& c) : Point(c), value(index(c.rows)) {}
+Iterate::Iterate(const Capacity& c) : Point(c), value(c.rows) {}
 
 Factors::Factors(const Capacity& c)
     : householder(c.variables, c.rows),
       gauss(c.variables, c.rows),
-      gauss_rank_at_level(index(c.levels) + 1),
-      fit(index(c.levels) + 1) {}
+      gauss_rank_at_level(c.levels + 1),
+      fit(c.levels + 1) {}
 
 Duals::Duals(const Capacity& c)
-    : gradient(c.variables), mu(c.variables), is_fixed_pivot(index(c.variables)) {}
+    : gradient(c.variables), mu(c.variables), is_fixed_pivot(c.variables) {}
 
-Steps::Steps(const Capacity& c) : last_value(index(c.rows)), must_stay_active(index(c.rows)) {}
+Steps::Steps(const Capacity& c) : last_value(c.rows), must_stay_active(c.rows) {}
 
 ViolatedLevels::ViolatedLevels(const Capacity& c)
-    : has_violated(index(c.levels) + 1), expected_violated(index(c.levels) + 1) {}
+    : has_violated(c.levels + 1), expected_violated(c.levels + 1) {}
 
 LineSearch::LineSearch(const Capacity& c)
-    : direction(c.variables),
-      slope(index(c.rows)),
-      is_fixed(index(c.rows)),
-      skipped_sides(index(c.rows)) {}
+    : direction(c.variables), slope(c.rows), is_fixed(c.rows), skipped_sides(c.rows) {}
 
 Workspace::Workspace(const Capacity& c)
     : iterate(c),
@@ -47,10 +41,10 @@ Workspace::Workspace(const Capacity& c)
       dual(c),
       nnls(c.variables, 2 * c.rows),
       saved(c),
-      second_guess(index(c.rows)) {
-  targets.reserve(index(c.rows));
-  rows_at_bounds.reserve(2 * index(c.rows));
-  working_set.reserve(index(c.variables));
+      second_guess(c.rows) {
+  targets.reserve(c.rows);
+  rows_at_bounds.reserve(2 * c.rows);
+  working_set.reserve(c.variables);
 }
 
 double tolerance(const Problem& problem, const SolverOptions& options, const Iterate& iterate,
@@ -60,14 +54,14 @@ double tolerance(const Problem& problem, const SolverOptions& options, const Ite
 
 bool reaches(const Problem& problem, const SolverOptions& options, const Iterate& iterate, int row,
              double bound) noexcept {
-  return std::isfinite(bound) && std::abs(iterate.value[index(row)] - bound) <=
-                                     tolerance(problem, options, iterate, row, bound);
+  return std::isfinite(bound) &&
+         std::abs(iterate.value[row] - bound) <= tolerance(problem, options, iterate, row, bound);
 }
 
 void update_values(const Problem& problem, int levels, Iterate& iterate) noexcept {
   const int rows = rows_of(problem, levels);
   for (int row = 0; row < rows; ++row) {
-    iterate.value[index(row)] = dot(problem, row, iterate.x.data());
+    iterate.value[row] = dot(problem, row, iterate.x.data());
   }
 }
 
@@ -107,7 +101,7 @@ void collect_rows_at_bounds(const Problem& problem, const SolverOptions& options
 double add_residual(const Problem& problem, int row, double bound, const Iterate& iterate,
                     Eigen::VectorXd& gradient, LevelGradient& size) noexcept {
   const double norm = problem.norm(row);
-  const double distance = iterate.value[index(row)] - bound;
+  const double distance = iterate.value[row] - bound;
   const double factor = problem.weight(row) * problem.weight(row);
   add_multiple(problem, row, factor * distance, gradient.data());
   size.scale += factor * norm * std::abs(distance);
@@ -128,10 +122,10 @@ LevelGradient level_gradient(const Problem& problem, const SolverOptions& option
   gradient.head(n).setZero();
   for (int row = problem.first_row(level); row < problem.end_row(level); ++row) {
     const double norm = problem.norm(row);
-    const double distance = excess(problem.bounds(row), iterate.value[index(row)]);
+    const double distance = excess(problem.bounds(row), iterate.value[row]);
     if (distance == 0.0 || norm == 0.0) continue;
     if (violation(problem, options, iterate, row) != 0.0) result.is_zero = false;
-    add_residual(problem, row, iterate.value[index(row)] - distance, iterate, gradient, result);
+    add_residual(problem, row, iterate.value[row] - distance, iterate, gradient, result);
   }
   return result;
 }

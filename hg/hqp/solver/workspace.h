@@ -167,7 +167,7 @@ double tolerance(const Problem& problem, const SolverOptions& options, const Ite
 inline double violation(const Problem& problem, const SolverOptions& options,
                         const Iterate& iterate, int row) noexcept {
   const Interval bounds = problem.bounds(row);
-  const double distance = excess(bounds, iterate.value[index(row)]);
+  const double distance = excess(bounds, iterate.value[row]);
   if (distance == 0.0) return 0.0;
   const double bound = distance > 0.0 ? bounds.ub : bounds.lb;
   return std::abs(distance) > tolerance(problem, options, iterate, row, bound) ? distance : 0.0;

@@ -31,9 +31,8 @@ TEST(Allocation, DoesNotHappenAfterConstruction) {
     Problem problem = random_problem(seed, kind);
     ActiveSet active;
     for (int row = 0; row < problem.rows(); ++row) {
-      const auto r = index(row);
-      active.state[r] = static_cast<RowState>(random() % 6);
-      active.before[r] = static_cast<RowState>(random() % 6);
+      active.state[row] = static_cast<RowState>(random() % 6);
+      active.before[row] = static_cast<RowState>(random() % 6);
     }
     const AllocationCounter allocations;
     solver.solve(problem, SolverOptions{}, active, solution);
@@ -41,7 +40,7 @@ TEST(Allocation, DoesNotHappenAfterConstruction) {
     solver.solve(problem, SolverOptions{}, active, solution);
     for (int level = 0; level < problem.levels(); ++level) {
       solver.multipliers(problem, SolverOptions{}, solution, level,
-                         {mu.data(), index(problem.rows())});
+                         std::span(mu).first(problem.rows()));
     }
     for (int row = 0; row < problem.rows(); ++row) {
       problem.set_bounds(row, {-1.0, 1.0});

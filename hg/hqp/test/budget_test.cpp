@@ -17,7 +17,7 @@ constexpr double kSameSlack = 1e-8;
 constexpr double kFeasible = 1e-8;
 
 double slack_norm(const Solution& solution, int level) {
-  return std::sqrt(solution.levels[index(level)].slack_squared);
+  return std::sqrt(solution.levels[level].slack_squared);
 }
 
 // Limits of a device that can be met, all at level 0, then anything: `seed`'s random problem around

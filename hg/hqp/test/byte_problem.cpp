@@ -27,7 +27,7 @@ double fraction(std::uint8_t byte) { return kFraction * static_cast<std::int8_t>
 template <std::size_t kSize>
 double pick(const std::array<double, kSize>& table, std::uint8_t byte, double otherwise) {
   const int from_top = 255 - byte;
-  return from_top < static_cast<int>(kSize) ? table[index(from_top)] : otherwise;
+  return from_top < static_cast<int>(kSize) ? table[from_top] : otherwise;
 }
 
 Interval interval(int kind, double a, double b) {
@@ -48,9 +48,9 @@ Interval interval(int kind, double a, double b) {
 
 // Coefficients of a row, as a dense one.
 std::vector<double> coefficients_of(const Problem& problem, int row) {
-  std::vector<double> c(index(problem.variables()));
+  std::vector<double> c(problem.variables());
   if (problem.variable(row) >= 0) {
-    c[index(problem.variable(row))] = 1.0;
+    c[problem.variable(row)] = 1.0;
   } else {
     const auto coefficients = problem.coefficients(row);
     std::copy(coefficients.begin(), coefficients.end(), c.begin());
@@ -83,7 +83,7 @@ void ByteProblem::add_row(std::span<const std::uint8_t> bytes, Numbers numbers) 
   }
 
   const auto number = bytes[0] / 64 % 2 == 0 ? integer : fraction;
-  const auto n = index(problem.variables());
+  const std::size_t n = problem.variables();
   const int kind = bytes[0] % 8;
   std::vector<double> c(n);
   if ((kind == 4 || kind == 5) && problem.rows() > 0) {
@@ -124,7 +124,7 @@ void ByteProblem::add_row(std::span<const std::uint8_t> bytes, Numbers numbers) 
 
 void ByteProblem::change(int step) noexcept {
   for (int row = 0; row < problem.rows(); ++row) {
-    const std::uint8_t byte = changes_[index(row)][index(step)];
+    const std::uint8_t byte = changes_[row][step];
     const auto [lb, ub] = problem.bounds(row);
     const double shift = 1e-2 * fraction(byte);
     switch (byte % 8) {

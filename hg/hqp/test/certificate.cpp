@@ -27,7 +27,7 @@ VectorXd row_of(const Problem& problem, int row) {
 
 MatrixXd columns(const std::vector<VectorXd>& list, Eigen::Index rows) {
   MatrixXd A(rows, static_cast<Eigen::Index>(list.size()));
-  for (Eigen::Index i = 0; i < A.cols(); ++i) A.col(i) = list[index(i)];
+  for (Eigen::Index i = 0; i < A.cols(); ++i) A.col(i) = list[i];
   return A;
 }
 
@@ -44,40 +44,40 @@ MatrixXd null_space(const MatrixXd& A, Eigen::Index n) {
 double non_negative_distance(const MatrixXd& A, const VectorXd& b) {
   const Eigen::Index m = A.cols();
   VectorXd y = VectorXd::Zero(m);
-  std::vector<bool> is_passive(index(m), false);
+  std::vector<bool> is_passive(m, false);
   for (int step = 0; step < 10 * m + 10; ++step) {
     const VectorXd w = A.transpose() * (b - A * y);
     Eigen::Index enter = -1;
     double largest = 1e-14 * b.norm();
     for (Eigen::Index i = 0; i < m; ++i) {
-      if (!is_passive[index(i)] && w[i] > largest) {
+      if (!is_passive[i] && w[i] > largest) {
         largest = w[i];
         enter = i;
       }
     }
     if (enter < 0) break;
-    is_passive[index(enter)] = true;
+    is_passive[enter] = true;
     while (true) {
       std::vector<Eigen::Index> passive;
       for (Eigen::Index i = 0; i < m; ++i) {
-        if (is_passive[index(i)]) passive.push_back(i);
+        if (is_passive[i]) passive.push_back(i);
       }
       if (passive.empty()) break;
       const MatrixXd A_passive = A(Eigen::all, passive);
       const VectorXd z = A_passive.completeOrthogonalDecomposition().solve(b);
       double fraction = 1.0;
       for (std::size_t i = 0; i < passive.size(); ++i) {
-        const double z_i = z[static_cast<Eigen::Index>(i)];
+        const double z_i = z[i];
         const double y_i = y[passive[i]];
         if (z_i <= 0.0) fraction = std::min(fraction, y_i / (y_i - z_i + 1e-300));
       }
       for (std::size_t i = 0; i < passive.size(); ++i) {
         double& y_i = y[passive[i]];
-        const double z_i = z[static_cast<Eigen::Index>(i)];
+        const double z_i = z[i];
         y_i += fraction * (z_i - y_i);
         if (fraction < 1.0 && (y_i <= 1e-15 * z.norm() || (z_i <= 0.0 && y_i <= 0.0))) {
           y_i = 0.0;
-          is_passive[index(passive[i])] = false;
+          is_passive[passive[i]] = false;
         }
       }
       if (fraction == 1.0) break;
@@ -154,14 +154,14 @@ std::string fault_of_row(const Problem& problem, const Solution& solution, int r
   const VectorXd c = row_of(problem, row);
   const auto [lb, ub] = problem.bounds(row);
   const double value = c.dot(x);
-  const double slack = solution.slack[index(row)];
+  const double slack = solution.slack[row];
   if (!is_judged) return std::isfinite(slack) ? "" : "slack is not finite";
 
   const double nearest = std::clamp(value, lb, ub);
   const double tolerance = kState * (c.norm() * x.norm() + std::abs(nearest));
   if (!(std::abs(slack - (nearest - value)) <= tolerance)) return "slack is not bound - c x";
   const auto is_at = [&](double bound) { return std::abs(value - bound) <= tolerance; };
-  switch (solution.state[index(row)]) {
+  switch (solution.state[row]) {
     case RowState::kInactive:
       return std::abs(value - nearest) <= tolerance ? "" : "an inactive row is violated";
     case RowState::kLower:

@@ -32,7 +32,7 @@ Problem contradictory_problem(const Contradiction& kind, std::uint32_t seed) {
   std::normal_distribution<double> number;
   const int n = kind.variables;
   const auto random_row = [&] {
-    Row row(index(n));
+    Row row(n);
     for (double& c : row) c = number(random);
     return row;
   };
@@ -44,7 +44,7 @@ Problem contradictory_problem(const Contradiction& kind, std::uint32_t seed) {
     for (int copy = 0; copy <= (kind.is_duplicate ? 1 : 0); ++copy) problem.add_row(row, bounds);
   };
   // rows of the last of these levels are sums of rows above, and want what these forbid
-  std::vector<Row> sums(index(kind.count), Row(index(n)));
+  std::vector<Row> sums(kind.count, Row(n));
   for (int level = 0; level + 1 < kind.depth; ++level) {
     problem.add_level();
     for (Row& sum : sums) {
@@ -81,7 +81,7 @@ Effort solve_all(const Contradiction& kind, int seeds) {
     ActiveSet active;
     EXPECT_EQ(solver.solve(problem, {}, active, solution), Status::kSolved);
     EXPECT_EQ(fault_of(problem, {}, solution), "");
-    EXPECT_GT(solution.levels[index(kind.depth)].slack_squared, 0.1);
+    EXPECT_GT(solution.levels[kind.depth].slack_squared, 0.1);
     effort.most = std::max(effort.most, solution.iterations);
     effort.sum += solution.iterations;
 

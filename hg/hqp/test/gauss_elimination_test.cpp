@@ -21,7 +21,7 @@ Problem problem_of(const Eigen::MatrixXd& C) {
   problem.add_level();
   for (int i = 0; i < m; ++i) {
     const Eigen::VectorXd c = C.row(i);
-    problem.add_row({c.data(), index(c.size())}, {}, 1.0 + i);
+    problem.add_row({c.data(), c.data() + c.size()}, {}, 1.0 + i);
   }
   for (int v = 0; v < n; ++v) problem.add_bound(v, {0.0, 1.0});
   return problem;

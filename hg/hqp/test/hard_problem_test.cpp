@@ -34,22 +34,21 @@ Problem problem_with_growth(int n, bool is_equality, std::vector<double>& expect
   std::uniform_real_distribution<double> number(0.9, 1.0);
   Problem problem({.variables = n, .levels = 2, .rows = 2 * n});
   problem.add_level();
-  expected.resize(index(n));
+  expected.resize(n);
   for (double& x : expected) x = number(random);
   for (int row = 0; row < n; ++row) {
     const bool is_last = row == n - 1;
     std::vector<double> c(expected.size(), 0.0);
     double value = 0.0;
     for (int i = is_last ? 0 : row; i < n; ++i) {
-      const auto k = index(i);
-      c[k] = is_last ? number(random) : (i == row ? 1.0 : -number(random));
-      value += c[k] * expected[k];
+      c[i] = is_last ? number(random) : (i == row ? 1.0 : -number(random));
+      value += c[i] * expected[i];
     }
     problem.add_row(c, {is_last && !is_equality ? -kInfinity : value, value});
   }
   problem.add_level();
   for (int i = 0; i < n; ++i) {
-    const double wish = expected[index(i)] + 1.0;
+    const double wish = expected[i] + 1.0;
     problem.add_bound(i, {wish, wish});
   }
   return problem;
@@ -63,11 +62,11 @@ TEST(HardProblem, ARankThatNoRowShowsIsNoticed) {
       SCOPED_TRACE("n " + std::to_string(n) + (is_one_level ? ", one level" : ""));
       Problem problem({.variables = n, .levels = 2, .rows = n});
       problem.add_level();
-      std::vector<double> row(index(n), -1.0);
+      std::vector<double> row(n, -1.0);
       for (int t = 0; t + 1 < n; ++t) {
-        row[index(t)] = 1.0;
+        row[t] = 1.0;
         problem.add_row(row, {0.0, 0.0});
-        row[index(t)] = 0.0;
+        row[t] = 0.0;
       }
       if (!is_one_level) problem.add_level();
       problem.add_row(row, {-1.0, -1.0});  // -x[n-1]

@@ -18,7 +18,7 @@ Problem problem_of(const Eigen::MatrixXd& rows) {
   problem.add_level();
   for (int i = 0; i < m; ++i) {
     const Eigen::VectorXd c = rows.row(i);
-    problem.add_row({c.data(), index(c.size())}, {});
+    problem.add_row({c.data(), c.data() + c.size()}, {});
   }
   return problem;
 }

@@ -31,13 +31,13 @@ class LevelByLevel : public testing::TestWithParam<NamedKind> {
         outcome == LevelOutcome::kOptimal ? Status::kSolved : Status::kIterationLimit;
     solution_.iterations = iterations_;
     solution_.completed_levels = completed_;
-    solution_.levels.resize(index(problem.levels()));
+    solution_.levels.resize(problem.levels());
     solution_.x.assign(work_.iterate.x.data(), work_.iterate.x.data() + problem.variables());
     solution_.state.assign(work_.iterate.state.begin(),
                            work_.iterate.state.begin() + problem.rows());
     solution_.slack.clear();
     for (int row = 0; row < problem.rows(); ++row) {
-      solution_.slack.push_back(-excess(problem.bounds(row), work_.iterate.value[index(row)]));
+      solution_.slack.push_back(-excess(problem.bounds(row), work_.iterate.value[row]));
     }
     return outcome;
   }

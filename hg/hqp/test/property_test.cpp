@@ -103,7 +103,7 @@ Solved solve(const Problem& problem, const SolverOptions& options = {},
 }
 
 double slack_norm(const Solution& solution, int level) {
-  return std::sqrt(solution.levels[index(level)].slack_squared);
+  return std::sqrt(solution.levels[level].slack_squared);
 }
 
 // How two results for the same problem differ, empty if not: in slacks, which are unique, and x. An
@@ -133,10 +133,10 @@ struct Row {
 };
 
 std::vector<std::vector<Row>> rows_of(const Problem& problem) {
-  std::vector<std::vector<Row>> levels(index(problem.levels()));
+  std::vector<std::vector<Row>> levels(problem.levels());
   for (int row = 0; row < problem.rows(); ++row) {
     const auto c = problem.coefficients(row);
-    levels[index(problem.level_of(row))].push_back(
+    levels[problem.level_of(row)].push_back(
         {{c.begin(), c.end()}, problem.variable(row), problem.bounds(row), problem.weight(row)});
   }
   return levels;
@@ -189,8 +189,8 @@ TEST(Property, AnyGuessLeadsToTheSameResult) {
     for (int trial = 0; trial < 9; ++trial) {
       ActiveSet guess = cold.active;
       for (int row = 0; row < problem.rows(); ++row) {
-        RowState& state = guess.state[index(row)];
-        const int step = trial == 7 ? row : bytes[index(row) % bytes.size()];
+        RowState& state = guess.state[row];
+        const int step = trial == 7 ? row : bytes[row % bytes.size()];
         if (trial < 6) state = static_cast<RowState>(trial);  // all the same
         if (trial == 6 && state == RowState::kLower) state = RowState::kUpper;
         if (trial >= 7) state = static_cast<RowState>((static_cast<int>(state) + step) % 6);
@@ -244,7 +244,7 @@ TEST(Property, ARepeatedLevelChangesNothing) {
     Solved other = solve(problem_of(problem.variables(), levels));
     if (!other.fault.empty()) return other.fault;
     for (int level = 0; level < problem.levels(); ++level) {
-      std::swap(other.solution.levels[index(level)], other.solution.levels[2 * index(level) + 1]);
+      std::swap(other.solution.levels[level], other.solution.levels[2 * level + 1]);
     }
     return difference(problem, one.solution, other.solution);
   });
@@ -275,10 +275,10 @@ TEST(Property, ALevelGetsNoLessWhenARowMovesDown) {
     const int from = problem.level_of(moved);
     const Solved before = solve(problem);
     auto levels = rows_of(problem);
-    auto& level = levels[index(from)];
+    auto& level = levels[from];
     const auto place = level.begin() + (moved - problem.first_row(from));
     levels.insert(levels.begin() + from + 1, std::vector<Row>{*place});
-    auto& shorter = levels[index(from)];
+    auto& shorter = levels[from];
     shorter.erase(shorter.begin() + (moved - problem.first_row(from)));
     const Solved after = solve(problem_of(problem.variables(), levels));
     if (!after.fault.empty()) return after.fault;
@@ -289,10 +289,9 @@ TEST(Property, ALevelGetsNoLessWhenARowMovesDown) {
         return "row " + std::to_string(moved) + " changes level " + std::to_string(above);
       }
     }
-    const double slack = before.solution.slack[index(moved)];
+    const double slack = before.solution.slack[moved];
     const double weighted = problem.weight(moved) * slack;
-    const double rest_squared =
-        before.solution.levels[index(from)].slack_squared - weighted * weighted;
+    const double rest_squared = before.solution.levels[from].slack_squared - weighted * weighted;
     const double rest = std::sqrt(std::max(0.0, rest_squared));
     if (slack_norm(after.solution, from) > rest + 1e-7 * (1.0 + std::abs(weighted) + rest)) {
       return "level " + std::to_string(from) + " gets less without row " + std::to_string(moved);
@@ -369,7 +368,7 @@ TEST(Property, ABadRowIsNamedAndTheLevelsAboveHold) {
       if (kind == 2) problem.set_bounds(row, {1.0, 0.5});
       if (kind == 3 && good.variable(row) >= 0) continue;
       if (kind == 3) {
-        std::vector<double> c(index(good.variables()), kInfinity);
+        std::vector<double> c(good.variables(), kInfinity);
         problem.set_row(row, c);
       }
       const Solved bad = solve(problem);
@@ -415,7 +414,7 @@ class Conflict {
       add_kind(bytes[k] % 7, bytes[k + 1], bytes[k + 2], 0.01 * bytes[k + 3]);
     }
     for (int i = 0; i < n_; ++i) {
-      const double wish = random_row(bytes[2])[index(i)];
+      const double wish = random_row(bytes[2])[i];
       levels_[4].push_back({{}, i, {wish, wish}, 1.0});
     }
   }
@@ -427,12 +426,12 @@ class Conflict {
   Coefficients random_row(int seed) const {
     std::mt19937 random(static_cast<std::uint32_t>(seed));
     std::normal_distribution<double> number;
-    Coefficients row(index(n_));
+    Coefficients row(n_);
     for (double& c : row) c = number(random);
     return row;
   }
   void add(int level, const Coefficients& row, Interval bounds) {
-    levels_[index(level)].push_back({row, -1, bounds, 1.0});
+    levels_[level].push_back({row, -1, bounds, 1.0});
     last_ = row;
   }
   void add_kind(int kind, int seed, int level, double number) {
@@ -452,7 +451,7 @@ class Conflict {
     } else if (kind == 3) {  // lb = ub
       add(limits, row, {number, number});
     } else if (kind == 4) {  // limits that meet at x = 0
-      levels_[index(limits)].push_back({{}, level % n_, {-kInfinity, 0.0}, 1.0});
+      levels_[limits].push_back({{}, level % n_, {-kInfinity, 0.0}, 1.0});
     } else if (!last_.empty()) {  // the last row again, exactly or nearly
       Coefficients again = last_;
       for (std::size_t i = 0; i < row.size() && kind == 6; ++i) again[i] += 1e-5 * row[i];

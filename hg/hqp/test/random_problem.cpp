@@ -39,11 +39,11 @@ class Generator {
   }
 
   std::vector<double> coefficients(int n) {
-    std::vector<double> c(index(n), 0.0);
+    std::vector<double> c(n, 0.0);
     const double kind = uniform(0.0, 1.0);
     if (kind < 0.05) return c;
     if (kind < 0.2 && !earlier_.empty()) {
-      c = earlier_[static_cast<std::size_t>(integer(0, static_cast<int>(earlier_.size()) - 1))];
+      c = earlier_[integer(0, static_cast<int>(earlier_.size()) - 1)];
       if (kind_.noise > 0.0) {
         for (double& c_j : c) c_j *= 1.0 + kind_.noise * value();
       }
@@ -75,10 +75,10 @@ class Generator {
   void add_row(Problem& problem, bool is_equality) {
     const double weight = chance(0.8) ? 1.0 : std::pow(10.0, uniform(-1.0, 1.0));
     const int n = problem.variables();
-    std::vector<double> c(index(n), 0.0);
+    std::vector<double> c(n, 0.0);
     if (chance(0.4)) {
       const int variable = integer(0, n - 1);
-      c[index(variable)] = 1.0;
+      c[variable] = 1.0;
       problem.add_bound(variable, bounds(is_equality, 1.0), weight);
     } else {
       c = coefficients(n);

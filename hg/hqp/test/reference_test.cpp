@@ -77,7 +77,7 @@ ReferenceSet read_set(const std::string& name) {
 
 void expect_reference(const Problem& problem, const Solution& solution,
                       const std::vector<double>& expected, bool is_x_unique) {
-  const auto n = index(problem.variables());
+  const std::size_t n = problem.variables();
   ASSERT_EQ(expected.size(), n + solution.levels.size());
   for (std::size_t level = 0; level < solution.levels.size(); ++level) {
     const double norm = std::sqrt(expected[n + level]);

@@ -30,16 +30,16 @@ bool solve_non_negative(const Matrix& E, const Vector& f, Vector& u) {
   const Eigen::Index m = E.cols();
   u = Vector::Zero(m);
   std::vector<Eigen::Index> passive;
-  std::vector<bool> is_excluded(index(m), false);  // passive, or refused at this point
+  std::vector<bool> is_excluded(m, false);  // passive, or refused at this point
   for (int step = 0; step < 20 * (m + 1); ++step) {
     const Vector w = E.transpose() * (f - E * u);
     Eigen::Index entering = -1;
     for (Eigen::Index j = 0; j < m; ++j) {
-      if (is_excluded[index(j)] || w[j] <= kNonNegative) continue;
+      if (is_excluded[j] || w[j] <= kNonNegative) continue;
       if (entering < 0 || w[j] > w[entering]) entering = j;
     }
     if (entering < 0) return true;
-    is_excluded[index(entering)] = true;
+    is_excluded[entering] = true;
     passive.push_back(entering);
 
     bool has_moved = false;
@@ -54,24 +54,24 @@ bool solve_non_negative(const Matrix& E, const Vector& f, Vector& u) {
       if (!has_moved) {
         has_moved = true;
         std::fill(is_excluded.begin(), is_excluded.end(), false);
-        for (const Eigen::Index j : passive) is_excluded[index(j)] = true;
+        for (const Eigen::Index j : passive) is_excluded[j] = true;
       }
       // towards z until the first u vanishes
       Real fraction = 1.0L;
       Eigen::Index leaving = -1;
       for (Eigen::Index k = 0; k < z.size(); ++k) {
-        const Real u_k = u[passive[index(k)]];
+        const Real u_k = u[passive[k]];
         if (z[k] > 0.0L || u_k / (u_k - z[k]) >= fraction) continue;
         fraction = u_k / (u_k - z[k]);
         leaving = k;
       }
       for (Eigen::Index k = 0; k < z.size(); ++k) {
-        Real& u_k = u[passive[index(k)]];
+        Real& u_k = u[passive[k]];
         u_k += fraction * (z[k] - u_k);
       }
       if (leaving < 0) break;
-      u[passive[index(leaving)]] = 0.0L;
-      is_excluded[index(passive[index(leaving)])] = false;
+      u[passive[leaving]] = 0.0L;
+      is_excluded[passive[leaving]] = false;
       passive.erase(passive.begin() + leaving);
     }
   }
@@ -196,13 +196,13 @@ class Cascade {
   // One proximal step: min 1/2 sum (weight * slack)^2 + 1/2 kProximity * (size * |step|)^2. False
   // when x does not move any more.
   bool approach(const std::vector<Side>& sides) {
-    Vector slacks = Vector::Zero(static_cast<Eigen::Index>(sides.size()));
+    Vector slacks = Vector::Zero(sides.size());
     Real size = 0.0L;
     bool is_met = true;
     for (std::size_t i = 0; i < sides.size(); ++i) {
       const Side& side = sides[i];
       size = std::max(size, side.weight * side.norm);
-      slacks[static_cast<Eigen::Index>(i)] = side.weight * excess(side);
+      slacks[i] = side.weight * excess(side);
       is_met = is_met && excess(side) <= 1e-17L * scale(side);
     }
     if (is_met) {
@@ -219,11 +219,11 @@ class Cascade {
     Vector h(G.rows());
     G.topRightCorner(m, m).setIdentity();
     for (Eigen::Index i = 0; i < m; ++i) {
-      G.row(i).head(k) = -factor * sides[index(i)].weight * (sides[index(i)].c.transpose() * free_);
+      G.row(i).head(k) = -factor * sides[i].weight * (sides[i].c.transpose() * free_);
       h[i] = slacks[i] / unit;
     }
     for (Eigen::Index i = m; i < G.rows(); ++i) {
-      const Side& side = constraints_[index(i - m)];
+      const Side& side = constraints_[i - m];
       const bool is_touched = std::abs(excess(side)) <= kViolation.none * scale(side);
       G.row(i).head(k) = -factor * size / side.norm * (side.c.transpose() * free_);
       h[i] = is_touched ? 0.0L : size / side.norm * excess(side) / unit;
@@ -240,9 +240,9 @@ class Cascade {
     pushing_.assign(constraints_.size(), 0.0L);
     Real gradient = 0.0L;
     for (Eigen::Index i = 0; i < m; ++i) {
-      gradient += mu[i] * sides[index(i)].weight * sides[index(i)].norm / size;
+      gradient += mu[i] * sides[i].weight * sides[i].norm / size;
     }
-    for (Eigen::Index i = m; i < G.rows(); ++i) pushing_[index(i - m)] = mu[i] / gradient;
+    for (Eigen::Index i = m; i < G.rows(); ++i) pushing_[i - m] = mu[i] / gradient;
     return step.norm() * size > kStandstill * unit;
   }
 

@@ -31,13 +31,13 @@ struct Bench {
     return solution.status;
   }
   std::vector<double> multipliers(const Problem& problem, int level, double* rest = nullptr) {
-    std::vector<double> mu(index(problem.rows()));
+    std::vector<double> mu(problem.rows());
     const double residual = solver.multipliers(problem, options, solution, level, mu);
     if (rest != nullptr) *rest = residual;
     return mu;
   }
-  RowState state(int row) const { return solution.state[index(row)]; }
-  double slack(int row) const { return solution.slack[index(row)]; }
+  RowState state(int row) const { return solution.state[row]; }
+  double slack(int row) const { return solution.slack[row]; }
 };
 
 Problem empty_problem(int variables) {
@@ -227,9 +227,9 @@ TEST(Solve, StopsAtTheIterationCapWithWhatIsSettled) {
       ASSERT_EQ(status, Status::kIterationLimit);
       ASSERT_LT(bench.solution.completed_levels, problem.levels() + 1);
       for (int level = 0; level < bench.solution.completed_levels; ++level) {
-        const auto p = index(level);
-        ASSERT_NEAR(bench.solution.levels[p].slack_squared, full.solution.levels[p].slack_squared,
-                    1e-9 * (1.0 + full.solution.levels[p].slack_squared));
+        ASSERT_NEAR(bench.solution.levels[level].slack_squared,
+                    full.solution.levels[level].slack_squared,
+                    1e-9 * (1.0 + full.solution.levels[level].slack_squared));
       }
       ++stopped;
       stopped_later += bench.solution.completed_levels > 0;
@@ -345,14 +345,14 @@ TEST(Multipliers, HaveTheRightSignsAndBalanceTheGradient) {
     const Problem problem = random_problem(seed, {});
     Bench bench;
     bench.solve(problem);
-    const auto n = index(problem.variables());
+    const std::size_t n = problem.variables();
     for (int level = 0; level < problem.levels(); ++level) {
       double rest = 0.0;
       const std::vector<double> mu = bench.multipliers(problem, level, &rest);
       std::vector<double> sum(n, 0.0);
       double size = 0.0;
       for (int row = 0; row < problem.rows(); ++row) {
-        const double mu_i = mu[index(row)];
+        const double mu_i = mu[row];
         if (problem.level_of(row) > level) {
           ASSERT_EQ(mu_i, 0.0);
         }

@@ -178,9 +178,9 @@ TEST(WriteProblem, EverythingIsReadBackBitForBit) {
     original.options.max_iterations = 1 + static_cast<int>(seed % 7);
     original.options.rank_tolerance = 1e-9 * (1.0 + seed / 3.0);
     for (int row = 0; row < problem.rows(); ++row) {
-      original.guess->state[index(row)] =
+      original.guess->state[row] =
           static_cast<RowState>((static_cast<std::uint32_t>(row) + seed) % 6);
-      original.guess->before[index(row)] =
+      original.guess->before[row] =
           static_cast<RowState>((static_cast<std::uint32_t>(row) + seed / 2) % 6);
     }
     if (problem.rows() > 3) problem.set_bounds(2, {-0.0, 0.0});

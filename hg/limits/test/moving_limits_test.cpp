@@ -113,7 +113,7 @@ TEST(MovingLimits, ALimitThatClosesInOverrunsTheJointNoFurtherThanStated) {
     const double dt = random_period(random);
     const RecoverableOptions options = recoverable_options(limits, dt, dt);
     const double stated = largest_overrun(limits, options, dt);
-    const Policy policy = kPolicies[static_cast<std::size_t>(seed) % kPolicies.size()];
+    const Policy policy = kPolicies[seed % kPolicies.size()];
     // the limit begins to move when the joint is anywhere on its way, and rests kTravel later
     const int first_sample = static_cast<int>(uniform(random, 0.0, 1.0) / dt);
     const double target = limits.q_max - kTravel;

@@ -19,16 +19,7 @@ constexpr double kSpeedMax = 1.5;          // m/s, the gantry of the reference d
 constexpr Interval kTravel = {-1.4, 1.6};  // m
 constexpr double kRounding = 1e-12;        // m
 
-TEST(ConstantVelocityBounds, OnePeriodAtTheBoundEndsAtTheLimit) {
-  for (const double q : {-1.5, -1.4, 0.0, 0.3, 1.6, 1.7}) {
-    const Interval dq = constant_velocity_bounds(kTravel, q, kDt);
-    EXPECT_NEAR(q + kDt * dq.lb, kTravel.lb, kRounding);
-    EXPECT_NEAR(q + kDt * dq.ub, kTravel.ub, kRounding);
-  }
-}
-
-TEST(ConstantVelocityBounds, InfiniteLimitsGiveInfiniteBounds) {
-  EXPECT_FALSE(constant_velocity_bounds({}, 0.3, kDt).bounded());
+TEST(BrakingVelocityBounds, InfiniteLimitsGiveInfiniteBounds) {
   EXPECT_FALSE(braking_velocity_bounds({}, {}, 0.3).bounded());
 }
 
@@ -77,10 +68,7 @@ TEST(BrakingVelocityBounds, AReturnFromFarOutsideRespectsTheOppositeLimit) {
 class Axis {
  public:
   Axis(double q, double dead_time, double lag, double ddq_max)
-      : q_(q),
-        lag_(lag),
-        ddq_max_(ddq_max),
-        commands_(static_cast<std::size_t>(std::lround(dead_time / kDt)) + 1, 0.0) {}
+      : q_(q), lag_(lag), ddq_max_(ddq_max), commands_(std::lround(dead_time / kDt) + 1, 0.0) {}
 
   double q() const { return q_; }
 

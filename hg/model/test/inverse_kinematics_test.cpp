@@ -43,8 +43,8 @@ InverseProblem problem_of(const ChainModel& chain, const std::string& frame) {
                             .q_max = Eigen::VectorXd(n),
                             .goal = Eigen::VectorXd::Constant(n, kNoWish)};
   for (int i = 0; i < n; ++i) {
-    problem.q_min[i] = chain.joints()[static_cast<std::size_t>(i)].position.lb;
-    problem.q_max[i] = chain.joints()[static_cast<std::size_t>(i)].position.ub;
+    problem.q_min[i] = chain.joints()[i].position.lb;
+    problem.q_max[i] = chain.joints()[i].position.ub;
   }
   return problem;
 }

@@ -72,11 +72,8 @@ TEST(HapticGiantUrdf, MassMatrixAtHomeEqualsTheReference) {
 
 TEST(HapticGiantUrdf, JointOneTurnsWithoutEndAndTheOthersHaveLimits) {
   const ChainModel chain = haptic_giant_chain();
-  EXPECT_EQ(chain.joints()[static_cast<std::size_t>(chain.joint("m1"))].type,
-            JointType::kContinuous);
-  const auto limit = [&](const char* name) {
-    return chain.joints()[static_cast<std::size_t>(chain.joint(name))].position;
-  };
+  EXPECT_EQ(chain.joints()[chain.joint("m1")].type, JointType::kContinuous);
+  const auto limit = [&](const char* name) { return chain.joints()[chain.joint(name)].position; };
   EXPECT_EQ(limit("m2").lb, limit("m4").lb);
   EXPECT_EQ(limit("m5").ub, limit("m6").ub);
   EXPECT_GT(limit("m2").lb, 0.0);
@@ -112,7 +109,7 @@ TEST(ChainUrdfs, AreLongAndHeavyAsTheirReadmeSays) {
     EXPECT_NEAR(chain.gravity()[1] / -9.81 / (0.5 * (1.2 - 1.2 / joints)),
                 10.0 * (joints - 1) / joints, 2e-3);
     for (int i = 0; i < joints; ++i) {
-      const Interval range = chain.model().joints()[static_cast<std::size_t>(i)].position;
+      const Interval range = chain.model().joints()[i].position;
       EXPECT_NEAR(range.ub - range.lb, 2.0 / joints, 1e-3) << i;
     }
   }
@@ -206,7 +203,7 @@ void add_margins(ChainData& twin, const Eigen::VectorXd& q, Margins& margins) {
         std::min({margins.cartesian, room(p.x(), -1.65, 1.65), room(p.y(), -1.95, 1.95)});
   }
   for (int i = 0; i < 8; ++i) {
-    const Joint& joint = device.joints()[static_cast<std::size_t>(i)];
+    const Joint& joint = device.joints()[i];
     const double q_i = i < 2 ? q_p[i] : q_m[i - 2];
     double& margin = i < 2 ? margins.gantry : margins.joints;
     margin = std::min(margin, room(q_i, joint.position.lb, joint.position.ub));

@@ -163,7 +163,7 @@ TEST(InsertBehind, CarriesWhatTheJointCarried) {
   ASSERT_EQ(urdf.joints.size(), 3u);
   const UrdfJoint &turn = urdf.joints[0], &bend = urdf.joints[2];
   EXPECT_EQ(turn.child, bend.parent);
-  EXPECT_EQ(urdf.links[static_cast<std::size_t>(bend.child)].name, "arm");
+  EXPECT_EQ(urdf.links[bend.child].name, "arm");
   EXPECT_EQ(bend.type, UrdfJointType::kContinuous);
   EXPECT_EQ(bend.axis, Eigen::Vector3d::UnitY());
   EXPECT_EQ(bend.T_parent_joint.p, Eigen::Vector3d::Zero());

@@ -18,7 +18,7 @@ std::unique_ptr<Sample> sample_at(double time_s, int limits) {
   sample->record.reference.q_m = VectorM::Constant(2, time_s);
   sample->record.limit_count = limits;
   for (int i = 0; i < limits; ++i) {
-    sample->record.limits[static_cast<std::size_t>(i)].cause = LimitCause::kLock;
+    sample->record.limits[i].cause = LimitCause::kLock;
   }
   return sample;
 }

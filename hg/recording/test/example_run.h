@@ -108,7 +108,7 @@ inline Sample example_sample(std::uint64_t cycle, double rate_Hz) {
   }
   record.limit_count = static_cast<int>(example_limits().size());
   for (int i = 0; i < record.limit_count; ++i) {
-    LimitReport& report = record.limits[static_cast<std::size_t>(i)];
+    LimitReport& report = record.limits[i];
     report.position = std::sin(t + i) + 1e-5 * noise();
   }
   record.limits[3].state = LimitState::kUpper;

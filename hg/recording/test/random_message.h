@@ -39,7 +39,7 @@ class RandomFiller {
   template <typename T, std::size_t kCapacity>
   void sequence(const char* name, std::array<T, kCapacity>& items, int& count, const char*) {
     count = length_up_to(kCapacity);
-    for (int i = 0; i < count; ++i) (*this)(name, items[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < count; ++i) (*this)(name, items[i]);
   }
 
  private:

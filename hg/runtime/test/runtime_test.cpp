@@ -483,7 +483,7 @@ TEST(Runtime, MeasuresWakeUpsAndStagesInRealTimeOnly) {
     std::uint64_t seen = 0;
     const RuntimeReport report = run(parts, {.is_fast = is_fast, .duration_s = 0.05}, seen);
     EXPECT_EQ(report.wake_up_us.count() > 40, !is_fast);
-    const Histogram& solver = report.stage_us[static_cast<std::size_t>(Stage::kSolver)];
+    const Histogram& solver = report.stage_us[Stage::kSolver];
     EXPECT_EQ(solver.count() > 0, !is_fast);
     EXPECT_EQ(report.allocations, 0u);
   }

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "hg/core/index.h"
-
 namespace hg::scenario {
 
 WatchedDevice::WatchedDevice(std::unique_ptr<device::Device> device, const DeviceModel& model)
@@ -16,7 +14,7 @@ void WatchedDevice::write(const CommandFrame& command) noexcept {
   device_->write(command);
   const Truth& truth = *device_->truth();
   for (int i = 0; i < truth.q_m.size(); ++i) {
-    const limits::JointLimits& limits = model_.joint_limits[index(i)];
+    const limits::JointLimits& limits = model_.joint_limits[i];
     const double q = truth.q_m[i];
     const double excess = std::max(limits.q_min - q, q - limits.q_max);
     if (excess <= worst_excess_) continue;
@@ -31,7 +29,7 @@ std::string WatchedDevice::truth_text() const {
   if (worst_joint_ >= 0) {
     limits =
         fmt::format("joint limits exceeded by at most {:.2f}e-3 rad or m ({})", 1e3 * worst_excess_,
-                    model_.chain.joints()[index(model_.n_p + worst_joint_)].name);
+                    model_.chain.joints()[model_.n_p + worst_joint_].name);
   }
   return fmt::format("{}; force of the user at most {:.1f} N", limits, max_force_);
 }

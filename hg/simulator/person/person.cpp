@@ -139,7 +139,7 @@ void Person::keep_score(double dt, const HandleMotion& handle) noexcept {
   since_point_s_ += dt;
   if (walker_.reached() == score_.reached) return;
 
-  const auto i = static_cast<std::size_t>(score_.reached++);
+  const std::size_t i = score_.reached++;
   score_.time_s[i] = since_point_s_;
   score_.straight_length += (checkpoints[i].p - last_point_).norm();
   score_.path_length = way_;

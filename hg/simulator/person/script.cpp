@@ -16,7 +16,7 @@ std::array<double, kChannels> evaluate(const Script& script, double t) noexcept 
   for (const Segment& segment : script.segments) {
     const double share = minimum_jerk(t, segment.start_s, segment.duration_s);
     if (share == 0.0) continue;
-    double& channel = value[static_cast<std::size_t>(segment.channel)];
+    double& channel = value[segment.channel];
     switch (segment.blend) {
       case Blend::kTo:
         channel += share * (segment.value - channel);

@@ -40,7 +40,7 @@ Eigen::Vector3d Tremor::force(double t) const noexcept {
   for (std::size_t axis = 0; axis < sines_.size(); ++axis) {
     double sum = 0.0;
     for (const Sine& sine : sines_[axis]) sum += std::sin(sine.omega * t + sine.phase);
-    force[static_cast<Eigen::Index>(axis)] = amplitude_ * sum;
+    force[axis] = amplitude_ * sum;
   }
   return force;
 }

@@ -110,15 +110,14 @@ void Walker::walk_circle(double dt) noexcept {
 
 void Walker::walk_to_checkpoint(double dt, const Pose& T_B_H) noexcept {
   const int count = static_cast<int>(walk_.checkpoints.size());
-  const Checkpoint* goal =
-      &walk_.checkpoints[static_cast<std::size_t>(std::min(reached_, count - 1))];
+  const Checkpoint* goal = &walk_.checkpoints[std::min(reached_, count - 1)];
 
   // heading of the person implied by the orientation of the handle
   const double facing = std::atan2(T_B_H.R(1, 2), T_B_H.R(0, 2)) - walk_.azimuth_from_heading;
   if (reached_ < count && (T_B_H.p.head<2>() - goal->p).norm() < kNear &&
       std::abs(turned(facing, goal->heading)) < kNearAngle) {
     ++reached_;
-    goal = &walk_.checkpoints[static_cast<std::size_t>(std::min(reached_, count - 1))];
+    goal = &walk_.checkpoints[std::min(reached_, count - 1)];
   }
 
   const Vector2d way = goal->p - hand_offset(goal->heading) - p_;

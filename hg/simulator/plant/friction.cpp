@@ -14,11 +14,11 @@ struct Rows {
   std::array<int, kMaxBoxRows> row{};
   int count = 0;
 
-  void add(int i) noexcept { row[static_cast<std::size_t>(count++)] = i; }
-  int operator[](int k) const noexcept { return row[static_cast<std::size_t>(k)]; }
+  void add(int i) noexcept { row[count++] = i; }
+  int operator[](int k) const noexcept { return row[k]; }
 };
 
-BoxState& state_of(BoxSolution& s, int i) noexcept { return s.state[static_cast<std::size_t>(i)]; }
+BoxState& state_of(BoxSolution& s, int i) noexcept { return s.state[i]; }
 
 // Forces and rates of the active set given by `s.state`.
 void solve_for_states(const BoxProblem& problem, BoxSolution& s) noexcept {
@@ -54,7 +54,7 @@ void solve_for_states(const BoxProblem& problem, BoxSolution& s) noexcept {
 
 // State that row i should have; its present one if consistent.
 BoxState wanted_state(const BoxProblem& problem, const BoxSolution& s, int i) noexcept {
-  const BoxState state = s.state[static_cast<std::size_t>(i)];
+  const BoxState state = s.state[i];
   if (problem.lb[i] == problem.ub[i]) return BoxState::kLower;
   if (state == BoxState::kHeld) {
     if (s.f[i] > problem.ub[i]) return BoxState::kUpper;
@@ -98,8 +98,8 @@ void solve(const BoxProblem& problem, BoxSolution& s) noexcept {
     std::array<BoxState, kMaxBoxRows> wanted{};
     Rows wrong;
     for (int i = 0; i < n; ++i) {
-      wanted[static_cast<std::size_t>(i)] = wanted_state(problem, s, i);
-      if (wanted[static_cast<std::size_t>(i)] != state_of(s, i)) wrong.add(i);
+      wanted[i] = wanted_state(problem, s, i);
+      if (wanted[i] != state_of(s, i)) wrong.add(i);
     }
     s.is_exact = wrong.count == 0;
     if (s.is_exact) break;
@@ -113,7 +113,7 @@ void solve(const BoxProblem& problem, BoxSolution& s) noexcept {
     }
     const int changes = patience > 0 ? wrong.count : 1;
     for (int k = 0; k < changes; ++k) {
-      state_of(s, wrong[k]) = wanted[static_cast<std::size_t>(wrong[k])];
+      state_of(s, wrong[k]) = wanted[wrong[k]];
     }
   }
   tidy(problem, s);

@@ -30,7 +30,7 @@ void IdealPlant::step(const CommandFrame& command, bool is_on) noexcept {
   }
   for (int i = 0; i < truth_.q_p.size(); ++i) {
     const double dq_cmd = is_on ? command.dq_p[i] : 0.0;
-    CommandDelay& delay = delays_[static_cast<std::size_t>(i)];
+    CommandDelay& delay = delays_[i];
     truth_.ddq_p[i] =
         drive_acceleration(config_.drive, truth_.dq_p[i], delay.shift(dq_cmd, dead_periods_));
     truth_.q_p[i] += dt * truth_.dq_p[i] + 0.5 * dt * dt * truth_.ddq_p[i];

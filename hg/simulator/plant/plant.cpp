@@ -10,8 +10,6 @@
 namespace hg::simulator {
 namespace {
 
-std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
-
 // Acceleration of an axis of the gantry, `ddq` by its drive, against buffers that never pull and
 // are critically damped with the mass of the axis: 1.5 m/s end 9 mm beyond.
 double stopped(const Interval& travel, double q, double dq, double ddq) noexcept {
@@ -36,18 +34,18 @@ Plant::Plant(const PlantConfig& config, const model::ChainModel& chain, int hand
   current_share_ =
       config_.current_lag > 0.0 ? -std::expm1(-config_.step / config_.current_lag) : 1.0;
   for (int i = 0; i < n_l_; ++i) {
-    links_[at(i)] = i < n_m_ ? config_.manipulator[at(i)] : config_.flexible[at(i - n_m_)].joint;
+    links_[i] = i < n_m_ ? config_.manipulator[i] : config_.flexible[i - n_m_].joint;
   }
-  if (config_.end_stops.empty()) config_.end_stops.resize(at(n_m_));
-  if (config_.effects.empty()) config_.effects.resize(at(n_m_));
-  if (config_.waviness.empty()) config_.waviness.resize(at(n_p_));
+  if (config_.end_stops.empty()) config_.end_stops.resize(n_m_);
+  if (config_.effects.empty()) config_.effects.resize(n_m_);
+  if (config_.waviness.empty()) config_.waviness.resize(n_p_);
   draw_phases();
 
   q_ = dq_ = ddq_ = tau_user_ = tau_bystander_ = VectorQ::Zero(chain.nv());
   travel_ = config_.q_p_start;
   speed_ = VectorP::Zero(n_p_);
-  for (int i = 0; i < n_p_; ++i) q_[config_.gantry[at(i)]] = strayed(i).q;
-  for (int i = 0; i < n_m_; ++i) q_[links_[at(i)]] = config_.q_m_start[i];
+  for (int i = 0; i < n_p_; ++i) q_[config_.gantry[i]] = strayed(i).q;
+  for (int i = 0; i < n_m_; ++i) q_[links_[i]] = config_.q_m_start[i];
   current_ = VectorM::Zero(n_m_);
   if (config_.bystander) bystander_ = Bystander(*config_.bystander);
   start_in_balance();
@@ -58,7 +56,7 @@ void Plant::draw_phases() noexcept {
     return 2.0 * std::numbers::pi * RandomStream(config_.seed, effect, channel).uniform();
   };
   for (int i = 0; i < n_m_; ++i) {
-    wave_phases_[at(i)] = {phase(RandomEffect::kCogging, i), phase(RandomEffect::kRipple, i)};
+    wave_phases_[i] = {phase(RandomEffect::kCogging, i), phase(RandomEffect::kRipple, i)};
   }
   waviness_phase_.resize(n_p_);
   for (int i = 0; i < n_p_; ++i) waviness_phase_[i] = phase(RandomEffect::kWaviness, i);
@@ -66,7 +64,7 @@ void Plant::draw_phases() noexcept {
 
 // True position and speed of a gantry axis, its drive being at travel_ and speed_.
 Plant::Motion Plant::strayed(int axis) const noexcept {
-  const Waviness& wave = config_.waviness[at(axis)];
+  const Waviness& wave = config_.waviness[axis];
   if (wave.amplitude == 0.0) return {travel_[axis], speed_[axis]};
   const double k = 2.0 * std::numbers::pi / wave.period;
   const double phase = k * travel_[axis] + waviness_phase_[axis];
@@ -97,15 +95,15 @@ void Plant::start_in_balance() noexcept {
   forces_.ddtheta = forces_.tau_friction = forces_.tau_stop = VectorM::Zero(n_m_);
   forces_.f_p = VectorP::Zero(n_p_);
   flanks_ = friction_lost_ = hysteresis_lost_ = VectorM::Zero(n_m_);
-  for (int i = 0; i < n_l_; ++i) forces_.tau_links[i] = chain_.c()[links_[at(i)]];
+  for (int i = 0; i < n_l_; ++i) forces_.tau_links[i] = chain_.c()[links_[i]];
   truth_.is_known = true;
   truth_.tau_motor = truth_.dtheta_m = VectorM::Zero(n_m_);
   truth_.theta_m.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     const double tau = forces_.tau_links[i];
-    const double twist = tau / config_.actuators[at(i)].stiffness;
-    const double play = 0.5 * config_.effects[at(i)].backlash;
-    truth_.theta_m[i] = q_[links_[at(i)]] + twist + (tau < 0.0 ? -play : play);
+    const double twist = tau / config_.actuators[i].stiffness;
+    const double play = 0.5 * config_.effects[i].backlash;
+    truth_.theta_m[i] = q_[links_[i]] + twist + (tau < 0.0 ? -play : play);
   }
   truth_.ddq_p = VectorP::Zero(n_p_);
   observe();
@@ -138,7 +136,7 @@ void Plant::meet_bystander() noexcept {
 // and cogging are added on top.
 void Plant::move_motors(const VectorM& tau_command) noexcept {
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& a = config_.actuators[at(i)];
+    const ActuatorModel& a = config_.actuators[i];
     const double command = std::clamp(tau_command[i], -a.torque_max, a.torque_max);
     current_[i] += current_share_ * (command - current_[i]);
     const double dtheta = truth_.dtheta_m[i];
@@ -146,15 +144,14 @@ void Plant::move_motors(const VectorM& tau_command) noexcept {
     truth_.tau_motor[i] = std::clamp(current_[i], dtheta < 0.0 ? -driving : -a.torque_max,
                                      dtheta > 0.0 ? driving : a.torque_max);
 
-    const JointEffects& e = config_.effects[at(i)];
+    const JointEffects& e = config_.effects[i];
     const double theta = truth_.theta_m[i];
     if (e.ripple > 0.0) {
       truth_.tau_motor[i] *=
-          1.0 + e.ripple * std::sin(e.ripple_wave * theta + wave_phases_[at(i)].ripple);
+          1.0 + e.ripple * std::sin(e.ripple_wave * theta + wave_phases_[i].ripple);
     }
     if (e.cogging > 0.0) {
-      truth_.tau_motor[i] +=
-          e.cogging * std::sin(e.cogging_wave * theta + wave_phases_[at(i)].cogging);
+      truth_.tau_motor[i] += e.cogging * std::sin(e.cogging_wave * theta + wave_phases_[i].cogging);
     }
   }
 }
@@ -164,16 +161,16 @@ VectorP Plant::move_gantry(const VectorP& dq_p_command) noexcept {
   const double h = config_.step;
   VectorP ddq_p(n_p_);
   for (int i = 0; i < n_p_; ++i) {
-    const double command = delays_[at(i)].shift(dq_p_command[i], dead_steps_);
+    const double command = delays_[i].shift(dq_p_command[i], dead_steps_);
     double ddq = drive_acceleration(config_.drive, speed_[i], command);
     if (!config_.gantry_stops.empty()) {
-      ddq = stopped(config_.gantry_stops[at(i)], travel_[i], speed_[i], ddq);
+      ddq = stopped(config_.gantry_stops[i], travel_[i], speed_[i], ddq);
     }
     const double before = strayed(i).dq;
     truth_.ddq_p[i] = ddq;
     travel_[i] += h * (speed_[i] + 0.5 * h * ddq);
     speed_[i] += h * ddq;
-    const bool is_true = config_.waviness[at(i)].amplitude == 0.0;
+    const bool is_true = config_.waviness[i].amplitude == 0.0;
     ddq_p[i] = is_true ? ddq : (strayed(i).dq - before) / h;
   }
   return ddq_p;
@@ -192,16 +189,16 @@ Plant::Equations Plant::equations(const VectorP& ddq_p) const noexcept {
   eq.inertia.resize(n_m_);
   eq.coupling.resize(n_m_);
   for (int j = 0; j < n_l_; ++j) {
-    const int joint = links_[at(j)];
+    const int joint = links_[j];
     eq.tau[j] = tau_user_[joint] + tau_bystander_[joint] - chain_.c()[joint];
-    for (int i = 0; i < n_p_; ++i) eq.tau[j] -= M(joint, config_.gantry[at(i)]) * ddq_p[i];
-    for (int i = j; i < n_l_; ++i) eq.L(i, j) = M(links_[at(i)], joint);
+    for (int i = 0; i < n_p_; ++i) eq.tau[j] -= M(joint, config_.gantry[i]) * ddq_p[i];
+    for (int i = j; i < n_l_; ++i) eq.L(i, j) = M(links_[i], joint);
   }
   for (int i = 0; i < n_m_; ++i) {
-    const ActuatorModel& a = config_.actuators[at(i)];
-    const int joint = links_[at(i)];
+    const ActuatorModel& a = config_.actuators[i];
+    const int joint = links_[i];
     const double dtheta = truth_.dtheta_m[i], slip = dtheta - dq_[joint];
-    const bool has_flanks = config_.effects[at(i)].backlash > 0.0;  // rows instead of a spring
+    const bool has_flanks = config_.effects[i].backlash > 0.0;  // rows instead of a spring
     const double b = has_flanks ? 0.0 : h * (h * a.stiffness + a.damping);
     const double own = a.rotor_inertia + h * a.viscous_friction;
     eq.spring[i] =
@@ -214,7 +211,7 @@ Plant::Equations Plant::equations(const VectorP& ddq_p) const noexcept {
     eq.L(i, i) += b * own / eq.inertia[i];
   }
   for (int i = n_m_; i < n_l_; ++i) {
-    const FlexibleJoint& f = config_.flexible[at(i - n_m_)];
+    const FlexibleJoint& f = config_.flexible[i - n_m_];
     eq.spring[i] = -f.stiffness * (q_[f.joint] + h * dq_[f.joint]) - f.damping * dq_[f.joint];
     eq.tau[i] += eq.spring[i];
     eq.L(i, i) += h * (h * f.stiffness + f.damping);
@@ -235,8 +232,7 @@ bool is_held(const PlantInput& input, int joint) noexcept {
 }  // namespace
 
 double Plant::friction_bound(int joint) const noexcept {
-  return coulomb_torque(config_.actuators[at(joint)], truth_.dtheta_m[joint],
-                        forces_.tau_links[joint]);
+  return coulomb_torque(config_.actuators[joint], truth_.dtheta_m[joint], forces_.tau_links[joint]);
 }
 
 // Friction of the motors comes first, so that row i is the only or first one of motor i.
@@ -244,7 +240,7 @@ Plant::Rows Plant::rows(const PlantInput& input) const noexcept {
   Rows rows;
   for (int i = 0; i < n_m_; ++i) add_friction(i, 0, input, rows);
   for (int i = 0; i < n_m_; ++i) {
-    const JointEffects& e = config_.effects[at(i)];
+    const JointEffects& e = config_.effects[i];
     const bool yields = e.bristle_stiffness > 0.0 && !is_held(input, i);
     for (int k = 1; yields && k < e.bristles; ++k) add_friction(i, k, input, rows);
   }
@@ -257,14 +253,14 @@ Plant::Rows Plant::rows(const PlantInput& input) const noexcept {
 // brake holds the motor itself.
 void Plant::add_friction(int joint, int element, const PlantInput& input,
                          Rows& rows) const noexcept {
-  const JointEffects& e = config_.effects[at(joint)];
+  const JointEffects& e = config_.effects[joint];
   Row row = {.joint = joint, .slot = joint * kRowsPerJoint + element, .motor = 1.0};
   row.ub = is_held(input, joint) ? kInfinity : friction_bound(joint);
   if (e.bristle_stiffness > 0.0 && !is_held(input, joint)) {
     row.ub /= e.bristles;
     row.stiffness = e.bristle_stiffness / (element + 1);
     row.give = 1.0 / (config_.step * row.stiffness + e.bristle_damping / e.bristles);
-    row.offset = row.give * row.stiffness * bristles_[at(row.slot)];
+    row.offset = row.give * row.stiffness * bristles_[row.slot];
   }
   row.lb = -row.ub;
   rows.add(row);
@@ -274,11 +270,11 @@ void Plant::add_friction(int joint, int element, const PlantInput& input,
 // the step ends. A flank's damper acts only over its penetration, so that it never pulls.
 void Plant::add_gear(int joint, Rows& rows) const noexcept {
   constexpr int kHysteresisSlot = kMaxBristles, kFlankSlot = kMaxBristles + 1;
-  const JointEffects& e = config_.effects[at(joint)];
+  const JointEffects& e = config_.effects[joint];
   const int slot = joint * kRowsPerJoint;
   if (e.hysteresis > 0.0) {
     const double h = config_.step;
-    const double way = bristles_[at(slot + kHysteresisSlot)];
+    const double way = bristles_[slot + kHysteresisSlot];
     rows.add({.joint = joint,
               .slot = slot + kHysteresisSlot,
               .motor = 1.0,
@@ -290,9 +286,9 @@ void Plant::add_gear(int joint, Rows& rows) const noexcept {
               .ub = e.hysteresis});
   }
   if (e.backlash == 0.0) return;
-  const ActuatorModel& a = config_.actuators[at(joint)];
-  const double twist = truth_.theta_m[joint] - q_[links_[at(joint)]];
-  const double slip = truth_.dtheta_m[joint] - dq_[links_[at(joint)]];
+  const ActuatorModel& a = config_.actuators[joint];
+  const double twist = truth_.theta_m[joint] - q_[links_[joint]];
+  const double slip = truth_.dtheta_m[joint] - dq_[links_[joint]];
   for (const int flank : {0, 1}) {
     const double side = flank == 0 ? 1.0 : -1.0;
     add_touch({.joint = joint, .slot = slot + kFlankSlot + flank, .motor = -side, .link = side},
@@ -304,8 +300,8 @@ void Plant::add_gear(int joint, Rows& rows) const noexcept {
 // that all energy stored by a stop comes from the link.
 void Plant::add_stop(int joint, Rows& rows) const noexcept {
   const EndStopModel& stop = config_.end_stop;
-  const int link = links_[at(joint)];
-  const Interval& travel = config_.end_stops[at(joint)];
+  const int link = links_[joint];
+  const Interval& travel = config_.end_stops[joint];
   const double below = travel.lb - q_[link], above = q_[link] - travel.ub;
   const double damping =
       2.0 * stop.damping_ratio * std::sqrt(stop.stiffness * chain_.M()(link, link));
@@ -346,8 +342,8 @@ void Plant::resist(const Equations& eq, const Rows& rows) noexcept {
     const double dtheta = truth_.dtheta_m[i] + h * eq.motor[i] / eq.inertia[i];
     box_.lb[k] = row.lb;
     box_.ub[k] = row.ub;
-    box_solution_.state[at(k)] = row_states_[at(row.slot)];
-    box_.w_free[k] = row.motor * dtheta + row.link * dq_[links_[at(i)]] + row.offset;
+    box_solution_.state[k] = row_states_[row.slot];
+    box_.w_free[k] = row.motor * dtheta + row.link * dq_[links_[i]] + row.offset;
     G(i, k) = row.motor * eq.coupling[i] / eq.inertia[i] + row.link;
     solve_lower(eq.L, G.col(k), i);
   }
@@ -366,7 +362,7 @@ void Plant::resist(const Equations& eq, const Rows& rows) noexcept {
 // Advances the bristle in series with a row of this force and rate; adds the dissipation of the row
 // to the losses.
 void Plant::stretch(const Row& row, double force, double rate) noexcept {
-  double& way = bristles_[at(row.slot)];
+  double& way = bristles_[row.slot];
   const double speed = row.stiffness > 0.0 ? -row.give * (force + row.stiffness * way) : 0.0;
   way += config_.step * speed;
   const double lost = -force * rate - (force + row.stiffness * way) * speed;
@@ -388,14 +384,14 @@ void Plant::accelerate(Equations& eq, const Rows& rows) noexcept {
     const Row& row = rows[k];
     const int i = row.joint;
     const double f = box_solution_.f[k];
-    row_states_[at(row.slot)] = box_solution_.state[at(k)];
+    row_states_[row.slot] = box_solution_.state[k];
     motor[i] += row.motor * f;
     link[i] += row.link * f;
     if (row.motor == 0.0) forces_.tau_stop[i] = row.link * f;
     if (row.link == 0.0) forces_.tau_friction[i] += f;
     if (row.motor * row.link != 0.0 && row.lb == 0.0) flanks_[i] += row.link * f;
     if (row.lb < 0.0) stretch(row, f, box_solution_.w[k]);
-    if (k < n_m_) stands[at(i)] = row.give == 0.0 && box_solution_.w[k] == 0.0;
+    if (k < n_m_) stands[i] = row.give == 0.0 && box_solution_.w[k] == 0.0;
   }
   for (int i = 0; i < n_m_; ++i) {
     eq.tau[i] += eq.coupling[i] / eq.inertia[i] * motor[i] + link[i];
@@ -407,14 +403,14 @@ void Plant::accelerate(Equations& eq, const Rows& rows) noexcept {
   for (int i = 0; i < n_m_; ++i) {
     const double dtheta = truth_.dtheta_m[i];
     forces_.ddtheta[i] =
-        stands[at(i)] ? -dtheta / h
-                      : (eq.motor[i] + motor[i] + eq.coupling[i] * forces_.ddq[i]) / eq.inertia[i];
-    truth_.dtheta_m[i] = stands[at(i)] ? 0.0 : dtheta + h * forces_.ddtheta[i];
+        stands[i] ? -dtheta / h
+                  : (eq.motor[i] + motor[i] + eq.coupling[i] * forces_.ddq[i]) / eq.inertia[i];
+    truth_.dtheta_m[i] = stands[i] ? 0.0 : dtheta + h * forces_.ddtheta[i];
     forces_.tau_links[i] +=
         eq.coupling[i] * (forces_.ddtheta[i] - forces_.ddq[i]) + (link[i] - forces_.tau_stop[i]);
   }
   for (int i = n_m_; i < n_l_; ++i) {
-    const FlexibleJoint& f = config_.flexible[at(i - n_m_)];
+    const FlexibleJoint& f = config_.flexible[i - n_m_];
     forces_.tau_links[i] -= h * (h * f.stiffness + f.damping) * forces_.ddq[i];
   }
   forces_.tries = box_solution_.tries;
@@ -425,20 +421,20 @@ void Plant::integrate(const VectorP& ddq_p) noexcept {
   const double h = config_.step;
   q_before_ = q_;
   dq_before_ = dq_;
-  for (int i = 0; i < n_p_; ++i) ddq_[config_.gantry[at(i)]] = ddq_p[i];
-  for (int i = 0; i < n_l_; ++i) ddq_[links_[at(i)]] = forces_.ddq[i];
+  for (int i = 0; i < n_p_; ++i) ddq_[config_.gantry[i]] = ddq_p[i];
+  for (int i = 0; i < n_l_; ++i) ddq_[links_[i]] = forces_.ddq[i];
   for (int i = 0; i < n_p_; ++i) {
-    const int joint = config_.gantry[at(i)];
+    const int joint = config_.gantry[i];
     forces_.f_p[i] = chain_.M().row(joint).dot(ddq_) + chain_.c()[joint] - tau_user_[joint] -
                      tau_bystander_[joint];
   }
   dq_ += h * ddq_;
   for (int i = 0; i < n_p_; ++i) {
     const Motion motion = strayed(i);
-    q_[config_.gantry[at(i)]] = motion.q;
-    dq_[config_.gantry[at(i)]] = motion.dq;
+    q_[config_.gantry[i]] = motion.q;
+    dq_[config_.gantry[i]] = motion.dq;
   }
-  for (int i = 0; i < n_l_; ++i) q_[links_[at(i)]] += h * dq_[links_[at(i)]];
+  for (int i = 0; i < n_l_; ++i) q_[links_[i]] += h * dq_[links_[i]];
   truth_.theta_m += h * truth_.dtheta_m;
 }
 
@@ -448,8 +444,8 @@ void Plant::observe() noexcept {
   truth_.q_p = travel_;
   truth_.dq_p = speed_;
   for (int i = 0; i < n_m_; ++i) {
-    truth_.q_m[i] = q_[links_[at(i)]];
-    truth_.dq_m[i] = dq_[links_[at(i)]];
+    truth_.q_m[i] = q_[links_[i]];
+    truth_.dq_m[i] = dq_[links_[i]];
   }
   truth_.tau_J = forces_.tau_links.head(n_m_);
   truth_.bystander = bystander_.report();

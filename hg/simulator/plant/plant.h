@@ -83,8 +83,8 @@ class Plant {
     std::array<Row, kMaxBoxRows> all;
     int count = 0;
 
-    void add(const Row& row) noexcept { all[static_cast<std::size_t>(count++)] = row; }
-    const Row& operator[](int k) const noexcept { return all[static_cast<std::size_t>(k)]; }
+    void add(const Row& row) noexcept { all[count++] = row; }
+    const Row& operator[](int k) const noexcept { return all[k]; }
   };
   struct Motion {
     double q, dq;

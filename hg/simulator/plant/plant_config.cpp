@@ -21,9 +21,9 @@ void require_not_negative(const std::string& item, double value) {
   require(std::isfinite(value) && value >= 0.0, item, "must not be negative", value);
 }
 
-void require_size(const std::string& item, Eigen::Index size, std::size_t expected) {
-  require(static_cast<std::size_t>(size) == expected, item,
-          "must have " + std::to_string(expected) + " values", static_cast<double>(size));
+void require_size(const std::string& item, Eigen::Index size, Eigen::Index expected) {
+  require(size == expected, item, "must have " + std::to_string(expected) + " values",
+          static_cast<double>(size));
 }
 
 void check_actuator(const ActuatorModel& a, const std::string& joint) {
@@ -58,7 +58,7 @@ void check_effects(const JointEffects& e, const std::string& joint) {
 
 void check_waviness(const PlantConfig& config) {
   if (config.waviness.empty()) return;
-  require_size("waviness", static_cast<Eigen::Index>(config.waviness.size()), config.gantry.size());
+  require_size("waviness", config.waviness.size(), config.gantry.size());
   for (const Waviness& wave : config.waviness) {
     require_not_negative("waviness amplitude", wave.amplitude);
     require(std::isfinite(wave.period) && wave.period > 2.0 * std::numbers::pi * wave.amplitude,
@@ -70,9 +70,9 @@ void check_waviness(const PlantConfig& config) {
 void check_joints(const PlantConfig& config, const model::ChainModel& chain) {
   std::vector<int> uses(chain.joints().size(), 0);
   const auto use = [&](int joint) {
-    require(joint >= 0 && static_cast<std::size_t>(joint) < uses.size(), "joint of the plant",
+    require(joint >= 0 && joint < std::ssize(uses), "joint of the plant",
             "must be an index of the chain's " + std::to_string(uses.size()) + " joints", joint);
-    ++uses[static_cast<std::size_t>(joint)];
+    ++uses[joint];
   };
   for (const int joint : config.gantry) use(joint);
   for (const int joint : config.manipulator) use(joint);
@@ -96,16 +96,13 @@ void check_end_stops(const PlantConfig& config, const model::ChainModel& chain) 
   require_positive("end stop stiffness", config.end_stop.stiffness);
   require_not_negative("end stop damping_ratio", config.end_stop.damping_ratio);
   if (!config.gantry_stops.empty()) {
-    require_size("gantry_stops", static_cast<Eigen::Index>(config.gantry_stops.size()),
-                 config.gantry.size());
+    require_size("gantry_stops", config.gantry_stops.size(), config.gantry.size());
   }
   if (config.end_stops.empty()) return;
-  require_size("end_stops", static_cast<Eigen::Index>(config.end_stops.size()),
-               config.manipulator.size());
+  require_size("end_stops", config.end_stops.size(), config.manipulator.size());
   for (std::size_t i = 0; i < config.end_stops.size(); ++i) {
-    const double start = config.q_m_start[static_cast<Eigen::Index>(i)];
-    const std::string joint =
-        "joint " + chain.joints()[static_cast<std::size_t>(config.manipulator[i])].name;
+    const double start = config.q_m_start[i];
+    const std::string joint = "joint " + chain.joints()[config.manipulator[i]].name;
     require(config.end_stops[i].contains(start), joint, "must start between its end stops", start);
   }
 }
@@ -117,8 +114,7 @@ void check_plant_config(const PlantConfig& config, const model::ChainModel& chai
   require_positive("step", config.step);
   require_not_negative("current_lag", config.current_lag);
   require_positive("mass", config.mass);
-  require_size("actuators", static_cast<Eigen::Index>(config.actuators.size()),
-               config.manipulator.size());
+  require_size("actuators", config.actuators.size(), config.manipulator.size());
   require_size("q_p_start", config.q_p_start.size(), config.gantry.size());
   require_size("q_m_start", config.q_m_start.size(), config.manipulator.size());
   require_positive("drive lag", config.drive.lag);
@@ -127,21 +123,19 @@ void check_plant_config(const PlantConfig& config, const model::ChainModel& chai
           "must not exceed " + std::to_string(CommandDelay::kMaxPeriods) + " steps of the plant",
           config.drive.dead_time);
   for (std::size_t i = 0; i < config.actuators.size(); ++i) {
-    const auto joint = static_cast<std::size_t>(config.manipulator[i]);
+    const std::size_t joint = config.manipulator[i];
     check_actuator(config.actuators[i], "joint " + chain.joints()[joint].name);
   }
   if (!config.effects.empty()) {
-    require_size("effects", static_cast<Eigen::Index>(config.effects.size()),
-                 config.manipulator.size());
+    require_size("effects", config.effects.size(), config.manipulator.size());
   }
   for (std::size_t i = 0; i < config.effects.size(); ++i) {
-    const auto joint = static_cast<std::size_t>(config.manipulator[i]);
+    const std::size_t joint = config.manipulator[i];
     check_effects(config.effects[i], "joint " + chain.joints()[joint].name);
   }
   check_waviness(config);
   for (const FlexibleJoint& flexible : config.flexible) {
-    const std::string joint =
-        "joint " + chain.joints()[static_cast<std::size_t>(flexible.joint)].name;
+    const std::string joint = "joint " + chain.joints()[flexible.joint].name;
     require_not_negative(joint + " stiffness", flexible.stiffness);
     require_not_negative(joint + " damping", flexible.damping);
   }

@@ -45,10 +45,9 @@ InertialSensor::InertialSensor(const InertialSensorConfig& config, const SensorF
       filter_(filter, step) {
   Eigen::Vector3d scale, turn;
   for (int i = 0; i < 3; ++i) {
-    const auto axis = static_cast<std::size_t>(i);
     const int channel = effects.first_channel + i;
-    noise_[axis] = RandomStream(seed, effects.noise, channel);
-    drift_[axis] = RandomStream(seed, effects.drift, channel);
+    noise_[i] = RandomStream(seed, effects.noise, channel);
+    drift_[i] = RandomStream(seed, effects.drift, channel);
     RandomStream errors(seed, effects.errors, channel);
     bias_[i] = config.bias * errors.gaussian();
     per_kelvin_[i] = config.temperature_drift * errors.gaussian();
@@ -66,8 +65,7 @@ InertialSensor::InertialSensor(const InertialSensorConfig& config, const SensorF
     const double exponent = -step_of_each / (kShortest * std::pow(kSpread, k));
     drifts_[k].decay = std::exp(exponent);
     drifts_[k].sigma = sigma * std::sqrt(-std::expm1(2.0 * exponent));
-    for (int i = 0; i < 3; ++i)
-      drifts_[k].value[i] = sigma * drift_[static_cast<std::size_t>(i)].gaussian();
+    for (int i = 0; i < 3; ++i) drifts_[k].value[i] = sigma * drift_[i].gaussian();
   }
   drifts_[kFlickers].decay = 1.0;
   drifts_[kFlickers].sigma = config.random_walk * std::sqrt(step_of_each);
@@ -76,8 +74,7 @@ InertialSensor::InertialSensor(const InertialSensorConfig& config, const SensorF
 void InertialSensor::observe(const Eigen::Vector3d& x) noexcept {
   Eigen::Vector3d raw = gain_ * x;
   if (noise_sigma_ > 0.0)
-    for (int i = 0; i < 3; ++i)
-      raw[i] += noise_sigma_ * noise_[static_cast<std::size_t>(i)].gaussian();
+    for (int i = 0; i < 3; ++i) raw[i] += noise_sigma_ * noise_[i].gaussian();
   filter_.push(raw);
 }
 
@@ -87,8 +84,7 @@ void InertialSensor::drift() noexcept {
   turn_ = (turn_ + 1) % kDrifts;
   if (process.sigma == 0.0) return;
   for (int i = 0; i < 3; ++i)
-    process.value[i] = process.decay * process.value[i] +
-                       process.sigma * drift_[static_cast<std::size_t>(i)].gaussian();
+    process.value[i] = process.decay * process.value[i] + process.sigma * drift_[i].gaussian();
 }
 
 Eigen::Vector3d InertialSensor::sample(double warmer) noexcept {

@@ -45,13 +45,13 @@ class SensorFilter {
       values_.fill(value);
       has_values_ = true;
     }
-    values_[static_cast<std::size_t>(newest_ = (newest_ + 1) % length_)] = value;
+    values_[newest_ = (newest_ + 1) % length_] = value;
   }
 
   Value output() const noexcept {
     Value sum = Value::Zero();
     for (int k = 1; k <= window_; ++k)  // the oldest ones
-      sum += values_[static_cast<std::size_t>((newest_ + k) % length_)];
+      sum += values_[(newest_ + k) % length_];
     return sum / window_;
   }
 

@@ -12,8 +12,6 @@ double wrapped(double q) noexcept { return q - kTurn * std::floor((q + std::numb
 
 SensorFilterConfig no_filter() { return {.average = 0.0, .delay = 0.0}; }
 
-std::size_t at(Eigen::Index i) noexcept { return static_cast<std::size_t>(i); }
-
 }  // namespace
 
 SensorsConfig ideal_sensors() {
@@ -63,19 +61,19 @@ Sensors::Sensors(const SensorsConfig& config, const SensedDevice& device)
   for (Eigen::Index i = 0; i < device.gear_ratio.size(); ++i) {
     const int joint = static_cast<int>(i);
     const double ratio = device.gear_ratio[i];
-    link_encoders_[at(i)] =
+    link_encoders_[i] =
         Encoder(config.link_encoder, 1.0, RandomStream(seed, RandomEffect::kLinkEncoder, joint));
-    motor_encoders_[at(i)] = Encoder(config.motor_encoder, ratio,
-                                     RandomStream(seed, RandomEffect::kMotorEncoder, joint));
-    torque_sensors_[at(i)] = TorqueSensor(config.torque, device.torque_full_scale[i], ratio,
-                                          RandomStream(seed, RandomEffect::kTorqueErrors, joint),
-                                          RandomStream(seed, RandomEffect::kTorqueNoise, joint));
+    motor_encoders_[i] = Encoder(config.motor_encoder, ratio,
+                                 RandomStream(seed, RandomEffect::kMotorEncoder, joint));
+    torque_sensors_[i] = TorqueSensor(config.torque, device.torque_full_scale[i], ratio,
+                                      RandomStream(seed, RandomEffect::kTorqueErrors, joint),
+                                      RandomStream(seed, RandomEffect::kTorqueNoise, joint));
   }
   for (Eigen::Index i = 0; i < device.torque_rated.size(); ++i) {
-    motor_heat_[at(i)] = MotorHeat(config.motor_heat, device.torque_rated[i], device.period);
+    motor_heat_[i] = MotorHeat(config.motor_heat, device.torque_rated[i], device.period);
   }
   for (int axis = 0; axis < kMaxGantry; ++axis)
-    gantry_encoders_[at(axis)] =
+    gantry_encoders_[axis] =
         Encoder(config.gantry_encoder, 1.0, RandomStream(seed, RandomEffect::kGantryEncoder, axis));
 }
 
@@ -101,7 +99,7 @@ void Sensors::sample(const Truth& truth, SensorFrame& frame) noexcept {
 
   frame.q_p.resize(truth.q_p.size());
   for (Eigen::Index i = 0; i < truth.q_p.size(); ++i)
-    frame.q_p[i] = gantry_encoders_[at(i)].reading(truth.q_p[i]);
+    frame.q_p[i] = gantry_encoders_[i].reading(truth.q_p[i]);
 
   const double warmer = temperature_.next();
   frame.w_S = wrench_sensor_.sample(warmer);
@@ -122,23 +120,23 @@ void Sensors::sample_joints(const Truth& truth, SensorFrame& frame) noexcept {
   frame.tau_m.resize(truth.tau_J.size());
   q_m_before_.conservativeResize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto reported = [&](double q) { return device_.is_endless[at(i)] ? wrapped(q) : q; };
-    const double q = link_encoders_[at(i)].reading(truth.q_m[i]);
+    const auto reported = [&](double q) { return device_.is_endless[i] ? wrapped(q) : q; };
+    const double q = link_encoders_[i].reading(truth.q_m[i]);
     const double before = samples_ == 0 ? q : q_m_before_[i];
     q_m_before_[i] = q;
     frame.q_m[i] = reported(q);
     frame.dq_m[i] =
         config_.has_differenced_velocity ? (q - before) / device_.period : truth.dq_m[i];
     if (i < truth.theta_m.size())
-      frame.theta_m[i] = reported(motor_encoders_[at(i)].reading(truth.theta_m[i]));
+      frame.theta_m[i] = reported(motor_encoders_[i].reading(truth.theta_m[i]));
     if (i < truth.tau_J.size())
-      frame.tau_m[i] = torque_sensors_[at(i)].sample(
+      frame.tau_m[i] = torque_sensors_[i].sample(
           truth.tau_J[i], i < truth.theta_m.size() ? truth.theta_m[i] : truth.q_m[i]);
   }
   const bool has_heat = device_.torque_rated.size() == truth.tau_motor.size();
   frame.temperature_m.resize(has_heat ? truth.tau_motor.size() : 0);
   for (Eigen::Index i = 0; i < frame.temperature_m.size(); ++i) {
-    frame.temperature_m[i] = motor_heat_[at(i)].next(truth.tau_motor[i]);
+    frame.temperature_m[i] = motor_heat_[i].next(truth.tau_motor[i]);
   }
 }
 

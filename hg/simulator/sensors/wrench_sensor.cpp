@@ -15,9 +15,8 @@ WrenchSensor::WrenchSensor(const WrenchSensorConfig& config, double step, double
   sigma_.tail<3>().setConstant(config.torque_noise / std::sqrt(step));
   Eigen::Matrix<double, 6, 6> cross_talk = Eigen::Matrix<double, 6, 6>::Identity();
   for (int i = 0; i < 6; ++i) {
-    const auto axis = static_cast<std::size_t>(i);
-    noise_[axis] = RandomStream(seed, RandomEffect::kWrenchNoise, i);
-    walks_[axis] = RandomStream(seed, RandomEffect::kWrenchWalk, i);
+    noise_[i] = RandomStream(seed, RandomEffect::kWrenchNoise, i);
+    walks_[i] = RandomStream(seed, RandomEffect::kWrenchWalk, i);
     RandomStream errors(seed, RandomEffect::kWrenchErrors, i);
     const double full_scale = config.full_scale[i];
     bias_[i] = config.bias * full_scale * errors.gaussian();
@@ -34,15 +33,14 @@ WrenchSensor::WrenchSensor(const WrenchSensorConfig& config, double step, double
 void WrenchSensor::observe(const Vector6& w_S) noexcept {
   Vector6 raw = gain_ * w_S;
   for (int i = 0; i < 6; ++i)
-    if (sigma_[i] > 0.0) raw[i] += sigma_[i] * noise_[static_cast<std::size_t>(i)].gaussian();
+    if (sigma_[i] > 0.0) raw[i] += sigma_[i] * noise_[i].gaussian();
   filter_.push(raw);
 }
 
 Vector6 WrenchSensor::sample(double warmer) noexcept {
   Vector6 y = filter_.output() + bias_ + warmer * per_kelvin_;
   for (int i = 0; i < 6; ++i) {
-    if (walk_sigma_[i] > 0.0)
-      walk_[i] += walk_sigma_[i] * walks_[static_cast<std::size_t>(i)].gaussian();
+    if (walk_sigma_[i] > 0.0) walk_[i] += walk_sigma_[i] * walks_[i].gaussian();
     y[i] = std::clamp(y[i] + walk_[i], -range_[i], range_[i]);
     if (lsb_[i] > 0.0) y[i] = lsb_[i] * std::round(y[i] / lsb_[i]);
   }

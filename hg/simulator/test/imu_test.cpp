@@ -35,7 +35,7 @@ std::vector<double> allan_deviations(const InertialSensorConfig& config, double 
   for (double tau : taus) {
     double sum = 0.0;
     for (const std::vector<double>& axis : y)
-      sum += std::pow(allan_deviation(axis, static_cast<std::size_t>(tau / period + 0.5)), 2);
+      sum += std::pow(allan_deviation(axis, std::lround(tau / period)), 2);
     result.push_back(std::sqrt(sum / 3.0));
   }
   return result;

@@ -37,7 +37,7 @@ TEST(Encoder, QuantisationErrorIsEvenlySpreadOverOneLsb) {
     error = (y - q) / lsb;
     const double bin = std::floor(10.0 * (error + 0.5));
     ASSERT_TRUE(bin >= 0.0 && bin < 10.0) << error;
-    share[static_cast<std::size_t>(bin)] += 1.0 / 200'000;
+    share[static_cast<int>(bin)] += 1.0 / 200'000;
   }
   for (double each : share) EXPECT_NEAR(each, 0.1, 0.004);
   EXPECT_NEAR(mean(errors), 0.0, 0.004);

@@ -307,7 +307,7 @@ TEST(PlantEffects, BalanceOfEnergyClosesWithTheStep) {
     for (int k = 0; k < std::lround(0.5 / step); ++k) {
       const double t = k * step;
       for (int i = 0; i < 6; ++i) {
-        const double rated = config.actuators[static_cast<std::size_t>(i)].torque_rated;
+        const double rated = config.actuators[i].torque_rated;
         input.tau_command[i] = weight[i] + 0.4 * rated * std::sin(2.0 * kPi * (0.7 + 0.3 * i) * t);
       }
       input.dq_p_command << 0.3 * std::sin(4.0 * t), 0.2 * std::sin(3.0 * t);

@@ -28,7 +28,7 @@ Balance balance_of(double step) {
   for (int k = 0; k < steps; ++k) {
     const double t = k * step;
     for (int i = 0; i < 6; ++i) {
-      const double rated = config.actuators[static_cast<std::size_t>(i)].torque_rated;
+      const double rated = config.actuators[i].torque_rated;
       input.tau_command[i] = weight[i] + 0.4 * rated * std::sin(2.0 * kPi * (0.7 + 0.3 * i) * t);
     }
     input.dq_p_command << 0.5 * std::sin(4.0 * t), 0.3 * std::sin(3.0 * t);
@@ -55,7 +55,7 @@ TEST(PlantEnergy, ChangesByWhatIsPutInLessWhatIsLost) {
 double energy_of(const Plant& plant) {
   double energy = plant.energy().sum();
   for (int i = 0; i < 6; ++i) {
-    const Interval& travel = plant.config().end_stops[static_cast<std::size_t>(i)];
+    const Interval& travel = plant.config().end_stops[i];
     const double q = plant.truth().q_m[i];
     const double depth = q - std::clamp(q, travel.lb, travel.ub);
     energy += 0.5 * plant.config().end_stop.stiffness * depth * depth;

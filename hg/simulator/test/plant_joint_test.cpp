@@ -107,7 +107,7 @@ TEST(PlantJoint, FrictionStaysInItsBoxAndNeverDrives) {
       if (k % 50 == 0) {
         for (double& w : input.w_H) w = 4.0 * normal(random);
         for (int i = 0; i < 6; ++i) {
-          const ActuatorModel& a = config.actuators[static_cast<std::size_t>(i)];
+          const ActuatorModel& a = config.actuators[i];
           input.tau_command[i] = weight[i] + 2.0 * a.coulomb_friction * normal(random);
         }
       }
@@ -116,7 +116,7 @@ TEST(PlantJoint, FrictionStaysInItsBoxAndNeverDrives) {
       ASSERT_TRUE(plant.forces().is_exact);
       most_tries = std::max(most_tries, plant.forces().tries);
       for (int i = 0; i < 6; ++i) {
-        const ActuatorModel& a = config.actuators[static_cast<std::size_t>(i)];
+        const ActuatorModel& a = config.actuators[i];
         const double share = before.dtheta_m[i] / a.stribeck_speed;
         const double bound = (a.coulomb_friction + a.load_friction * std::abs(before.tau_J[i])) *
                              (1.0 + (a.stiction - 1.0) * std::exp(-share * share));

@@ -38,7 +38,7 @@ Signals ring(const PlantConfig& config, const model::ChainModel& chain, const st
 // Of the first `duration` of a signal at `frequency_Hz`, with a Hann window.
 double amplitude(const std::vector<double>& signal, double step, double duration,
                  double frequency_Hz) {
-  const auto n = std::min(signal.size(), static_cast<std::size_t>(std::lround(duration / step)));
+  const std::size_t n = std::min<std::size_t>(signal.size(), std::lround(duration / step));
   const std::complex<double> turn = std::polar(1.0, -2.0 * kPi * frequency_Hz * step);
   const std::complex<double> window_turn = std::polar(1.0, 2.0 * kPi / static_cast<double>(n));
   std::complex<double> phase = 1.0, window = 1.0, sum = 0.0;
@@ -242,7 +242,7 @@ TEST(PlantModes, SevenJointsWithoutAGantryFallAndAreCaught) {
   config.q_m_start = VectorM::Constant(7, 0.3);
   for (int i = 0; i < 7; ++i) {
     config.manipulator.push_back(i);
-    config.actuators.push_back(reference_actuators()[static_cast<std::size_t>(i / 2)]);
+    config.actuators.push_back(reference_actuators()[i / 2]);
     config.end_stops.push_back({0.0, 0.6});
   }
   Plant plant(config, chain, chain.frame("g"));

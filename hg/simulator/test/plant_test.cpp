@@ -18,8 +18,7 @@ PlantInput random_input(const PlantConfig& config, std::mt19937& random) {
   std::normal_distribution<double> normal;
   PlantInput input = idle(config, std::uniform_int_distribution(0, 9)(random) == 0);
   for (int i = 0; i < input.tau_command.size(); ++i) {
-    input.tau_command[i] =
-        config.actuators[static_cast<std::size_t>(i)].torque_rated * normal(random);
+    input.tau_command[i] = config.actuators[i].torque_rated * normal(random);
   }
   for (double& dq : input.dq_p_command) dq = normal(random);
   for (double& w : input.w_H) w = 10.0 * normal(random);
@@ -101,7 +100,7 @@ TEST(Plant, EquationsOfMotionHoldToRounding) {
 
       // motors and springs, [HANDBOOK] 4.2
       for (int i = 0; i < 6; ++i) {
-        const ActuatorModel& a = config.actuators[static_cast<std::size_t>(i)];
+        const ActuatorModel& a = config.actuators[i];
         ASSERT_NEAR(a.rotor_inertia * forces.ddtheta[i],
                     after.tau_motor[i] - after.tau_J[i] - a.viscous_friction * after.dtheta_m[i] +
                         forces.tau_friction[i],
@@ -128,7 +127,7 @@ TEST(Plant, ResidualOfOrdinaryMotionIsBelowThatOfTheHandbook) {
   for (int k = 0; k < 4000; ++k) {
     const double swing = std::sin(5.0 * k * config.step);
     for (int i = 0; i < 6; ++i) {
-      const double rated = config.actuators[static_cast<std::size_t>(i)].torque_rated;
+      const double rated = config.actuators[i].torque_rated;
       input.tau_command[i] = weight[i] + 0.2 * rated * swing;
     }
     input.w_H << 10.0 * swing, -5.0, 8.0, 1.0, 0.5, -0.4;

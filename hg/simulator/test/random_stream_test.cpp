@@ -31,7 +31,7 @@ TEST(RandomStream, UniformNumbersFillTheirIntervalEvenly) {
   for (double value : x) {
     ASSERT_GE(value, 0.0);
     ASSERT_LT(value, 1.0);
-    share[static_cast<std::size_t>(value * 20.0)] += 1.0 / kMany;
+    share[static_cast<int>(value * 20.0)] += 1.0 / kMany;
   }
   for (double each : share) EXPECT_NEAR(each, 0.05, 0.22 * kChance);  // sqrt(0.05 0.95)
 }

@@ -105,7 +105,7 @@ TEST(SafetyPlc, ChannelsMayDifferForHalfASecondAndCountAsOffMeanwhile) {
   for (const int channel : {0, 1}) {
     Bench bench;
     bench.run(20);
-    bench.input.operator_enable.is_on[static_cast<std::size_t>(channel)] = false;
+    bench.input.operator_enable.is_on[channel] = false;
     bench.run(11 + 499);
     EXPECT_FALSE(bench.plc.outputs().operator_enable);
     EXPECT_FALSE(bench.plc.outputs().has_disagreement);

@@ -99,7 +99,7 @@ TEST(WrenchSensor, ALoadOnOneAxisShowsOnTheOthersByTheirFullScales) {
         if (i == j)
           gains.push_back(share[i]);
         else
-          cross_talk[static_cast<std::size_t>(5 * i + (j < i ? j : j - 1))].push_back(share[i]);
+          cross_talk[5 * i + (j < i ? j : j - 1)].push_back(share[i]);
       }
     }
   }

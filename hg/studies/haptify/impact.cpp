@@ -52,7 +52,7 @@ std::size_t contact_of(const Played& played, const ImpactConfig& config) {
   const auto at = std::ranges::find_if(played.instants, [&](const Instant& now) {
     return now.T_B_H.p[kAhead] > config.position[kAhead];
   });
-  return static_cast<std::size_t>(at - played.instants.begin());
+  return at - played.instants.begin();
 }
 
 // From the contact to the deepest point.

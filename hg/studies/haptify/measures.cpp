@@ -41,9 +41,7 @@ class LowPass {
   Eigen::Vector3d x1_ = Eigen::Vector3d::Zero(), x2_ = x1_, y1_ = x1_, y2_ = x1_;
 };
 
-std::size_t count_of(double seconds, double rate_Hz) {
-  return static_cast<std::size_t>(std::llround(seconds * rate_Hz));
-}
+std::size_t count_of(double seconds, double rate_Hz) { return std::llround(seconds * rate_Hz); }
 
 // Forwards and backwards: fourth order, no phase.
 Signal above_band(std::span<const Eigen::Vector3d> input, double rate_Hz) {
@@ -206,7 +204,7 @@ std::vector<double> dft321(std::span<const Eigen::Vector3d> axes) {
 }
 
 Vibration vibration(std::span<const Eigen::Vector3d> acceleration, double rate_Hz) {
-  const auto margin = static_cast<std::size_t>(std::llround(0.25 * rate_Hz));
+  const std::size_t margin = count_of(0.25, rate_Hz);
   if (acceleration.size() < 6 * margin) return {};
   const Signal filtered = above_band(acceleration, rate_Hz);
   const std::vector<double> reduced =
@@ -229,9 +227,8 @@ DynamicFit fit_dynamics(std::span<const double> f, std::span<const double> v,
   const auto n = static_cast<Eigen::Index>(f.size());
   Eigen::MatrixX3d regressors(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double sign = v[k] > 0.0 ? 1.0 : (v[k] < 0.0 ? -1.0 : 0.0);
-    regressors.row(i) << a[k], v[k], sign;
+    const double sign = v[i] > 0.0 ? 1.0 : (v[i] < 0.0 ? -1.0 : 0.0);
+    regressors.row(i) << a[i], v[i], sign;
   }
   const Eigen::Map<const Eigen::VectorXd> force(f.data(), n);
   const Eigen::Vector3d fit = LeastSquares(regressors).solve(force);
@@ -279,7 +276,7 @@ double bandwidth(std::span<const double> frequency_Hz, std::span<const double> r
 
 double delay(std::span<const double> reference, std::span<const double> signal, double rate_Hz,
              double most) {
-  const auto shifts = static_cast<std::size_t>(std::llround(most * rate_Hz));
+  const std::size_t shifts = count_of(most, rate_Hz);
   if (reference.size() <= shifts + 1) return 0.0;
   std::vector<double> cost(shifts + 1, 0.0);
   for (std::size_t shift = 0; shift <= shifts; ++shift) {
@@ -289,7 +286,7 @@ double delay(std::span<const double> reference, std::span<const double> signal, 
       cost[shift] += off * off;
     }
   }
-  const auto best = static_cast<std::size_t>(std::ranges::min_element(cost) - cost.begin());
+  const std::size_t best = std::ranges::min_element(cost) - cost.begin();
   double fraction = 0.0;  // of a sample, by a parabola through three costs
   if (best > 0 && best < shifts) {
     const double bend = cost[best - 1] - 2.0 * cost[best] + cost[best + 1];

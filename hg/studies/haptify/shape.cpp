@@ -29,9 +29,8 @@ std::vector<std::pair<std::string, double>> binding_limits(const DeviceModel& mo
     if (value < range.q_min + kNear && down > kMoves) found.emplace_back(name, range.q_min);
   };
   for (Eigen::Index i = 0; i < arm.size(); ++i) {
-    const auto joint = static_cast<std::size_t>(model.n_p + i);
-    add(model.chain.joints()[joint].name, model.joint_limits[static_cast<std::size_t>(i)], arm[i],
-        gain[i], -gain[i]);
+    const std::size_t joint = model.n_p + i;
+    add(model.chain.joints()[joint].name, model.joint_limits[i], arm[i], gain[i], -gain[i]);
   }
   for (const VirtualJoint& joint : model.virtual_joints) {
     const Eigen::VectorXd gains = joint.weights.cwiseProduct(gain);

@@ -170,7 +170,7 @@ Peak measure_peak(const config::Scenario& scenario, const SurfaceConfig& config,
   Peak result;
   const Loading loading = loading_of(played, config.position.z(), config.least_force);
   // means of a quarter of a second: what mass and damping of the body add swings around the line
-  const auto block = static_cast<std::size_t>(std::llround(0.25 * pressed.device.model.rate_Hz));
+  const std::size_t block = std::llround(0.25 * pressed.device.model.rate_Hz);
   for (std::size_t begin = 0; begin + block <= loading.force.size(); begin += block) {
     double force = 0.0, line = 0.0;
     for (std::size_t i = begin; i < begin + block; ++i) {

@@ -69,7 +69,7 @@ Oscillation oscillation_of(std::span<const double> signal, int swings, double ra
     if (!zeros.empty()) peaks.push_back(peak);
     zeros.push_back(static_cast<double>(i) - signal[i] / (signal[i] - signal[i - 1]));
     peak = 0.0;
-    if (zeros.size() == static_cast<std::size_t>(2 * swings + 1)) break;
+    if (std::ssize(zeros) == 2 * swings + 1) break;
   }
   if (peaks.size() < 2) return {};
   const auto half_swings = static_cast<double>(peaks.size());

@@ -75,7 +75,7 @@ class TrueDistance {
   }
 
  private:
-  const collision::Shape& shape(int i) const { return config_.shapes[static_cast<std::size_t>(i)]; }
+  const collision::Shape& shape(int i) const { return config_.shapes[i]; }
   Pose pose(const collision::Shape& shape) const {
     return shape.frame < 0 ? Pose{} : chain_.pose(shape.frame);
   }

@@ -16,7 +16,7 @@ double at(std::size_t i) { return static_cast<double>(i) / kRate; }
 
 // Speed of a ring-down or its opposite: falls to `share` every second.
 std::vector<double> ringing(double first, double share, double seconds = 4.0) {
-  std::vector<double> speed(static_cast<std::size_t>(seconds * kRate));
+  std::vector<double> speed(std::lround(seconds * kRate));
   for (std::size_t i = 0; i < speed.size(); ++i) {
     speed[i] = first * std::pow(share, at(i)) * std::abs(std::sin(2.0 * kPi * 5.0 * at(i)));
   }

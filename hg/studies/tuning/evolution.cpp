@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "hg/core/index.h"
 #include "hg/core/interval.h"
 #include "hg/core/linear_algebra.h"
 
@@ -57,7 +56,7 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
       best = children[order.front()];
     }
     Eigen::VectorXd step = Eigen::VectorXd::Zero(start.size());
-    for (int i = 0; i < parents; ++i) step += weights[i] * steps[order[index(i)]];
+    for (int i = 0; i < parents; ++i) step += weights[i] * steps[order[i]];
     mean += sigma * step;
 
     const Eigen::VectorXd whitened =
@@ -72,7 +71,7 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
     C *= 1.0 - c_1 - c_mu + (is_short ? 0.0 : c_1 * c_c * (2.0 - c_c));
     C += c_1 * path_c * path_c.transpose();
     for (int i = 0; i < parents; ++i) {
-      const Eigen::VectorXd& one = steps[order[index(i)]];
+      const Eigen::VectorXd& one = steps[order[i]];
       C += c_mu * weights[i] * one * one.transpose();
     }
     sigma *= std::exp(c_sigma / d_sigma * (path_sigma.norm() / expected - 1.0));

@@ -5,7 +5,6 @@
 #include <complex>
 #include <numbers>
 
-#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/studies/haptify/measures.h"
 
@@ -39,7 +38,7 @@ std::array<Complex, 3> felt_over_body(Resolvent& resolvent, const HandleLoop& lo
   const Eigen::MatrixXcd y = loop.C * resolvent.solve(loop.B_push);
   const Complex own = impedance(body, frequency_Hz);
   std::array<Complex, 3> ratio;
-  for (int i = 0; i < 3; ++i) ratio[index(i)] = y(3 + i, i) / y(i, i) / own;
+  for (int i = 0; i < 3; ++i) ratio[i] = y(3 + i, i) / y(i, i) / own;
   return ratio;
 }
 

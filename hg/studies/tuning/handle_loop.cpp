@@ -11,7 +11,6 @@
 #include "hg/controller/rendering/twin_forces.h"
 #include "hg/controller/tracking/sampled_arm.h"
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/chain_data.h"
 
@@ -107,7 +106,7 @@ Dampers dampers_of(const Body& body) {
   Dampers dampers;
   for (int i = 0; i < 6; ++i) {
     dampers.L(i, i) = std::sqrt(i < 3 ? body.mass : body.inertia);
-    dampers.values.dofs[index(i)].damping = i < 3 ? body.damping : body.angular_damping;
+    dampers.values.dofs[i].damping = i < 3 ? body.damping : body.angular_damping;
   }
   return dampers;
 }
@@ -145,7 +144,7 @@ class Period {
     K_.resize(n);
     D_.resize(n);
     for (int i = 0; i < n; ++i) {
-      const ActuatorModel& actuator = plant.actuators[index(i)];
+      const ActuatorModel& actuator = plant.actuators[i];
       K_[i] = actuator.stiffness;
       D_[i] = actuator.damping;
     }
@@ -250,15 +249,15 @@ class Period {
       means.push_back(sum / kGroup);
     }
     for (int group = 0; group < kGroups; ++group) {
-      means[index(group)] += disturbance.wrench.col(group);
+      means[group] += disturbance.wrench.col(group);
     }
     next.head(size) = x.head(size);
     next.segment(at.commands, at.slots * n) = commands.tail(at.slots * n);
     // the oldest go
     for (int i = 0; i < at.groups; ++i) {
       const int from = i + kGroups;
-      const Vector6 value = from < at.groups ? Vector6(now.segment<6>(at.means + 6 * from))
-                                             : means[index(from - at.groups)];
+      const Vector6 value =
+          from < at.groups ? Vector6(now.segment<6>(at.means + 6 * from)) : means[from - at.groups];
       next.segment<6>(at.means + 6 * i) = value;
     }
     return next;
@@ -302,7 +301,7 @@ class Period {
     A.topLeftCorner(5 * n, 5 * n) = arm.topLeftCorner(5 * n, 5 * n);
     A.block(0, size, 5 * n, n) = arm.topRightCorner(5 * n, n);
     for (int i = 0; i < n; ++i) {
-      A(at.dtheta + i, size + n + 3 + i) = 1.0 / plant_.actuators[index(i)].rotor_inertia;
+      A(at.dtheta + i, size + n + 3 + i) = 1.0 / plant_.actuators[i].rotor_inertia;
     }
     A.block(at.dq, 0, n, size) += inverse(M) * J_.transpose() * grip_;
     A.block(at.hand, at.dhand, 3, 3) = I;
@@ -426,12 +425,12 @@ void Resolvent::at(std::complex<double> z) {
   U_ = -H_.cast<std::complex<double>>();
   U_.diagonal().array() += z;
   multipliers_ = Eigen::VectorXcd::Zero(n);
-  is_exchanged_.assign(index(n), false);
+  is_exchanged_.assign(n, false);
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
     const Eigen::Index rest = n - i;
     if (std::abs(U_(i + 1, i)) > std::abs(U_(i, i))) {
       U_.row(i).tail(rest).swap(U_.row(i + 1).tail(rest));
-      is_exchanged_[index(i)] = true;
+      is_exchanged_[i] = true;
     }
     const std::complex<double> multiplier = U_(i + 1, i) / U_(i, i);
     multipliers_[i] = multiplier;
@@ -443,7 +442,7 @@ Eigen::MatrixXcd Resolvent::solve(const MatrixXd& B) const {
   const Eigen::Index n = H_.rows();
   Eigen::MatrixXcd X = (Q_.transpose() * B).cast<std::complex<double>>();
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
-    if (is_exchanged_[index(i)]) X.row(i).swap(X.row(i + 1));
+    if (is_exchanged_[i]) X.row(i).swap(X.row(i + 1));
     X.row(i + 1) -= multipliers_[i] * X.row(i);
   }
   X = U_.triangularView<Eigen::Upper>().solve(X).eval();
@@ -456,7 +455,7 @@ Eigen::MatrixXcd Resolvent::solve_transposed(const MatrixXd& C) const {
   X = U_.transpose().triangularView<Eigen::Lower>().solve(X).eval();
   for (Eigen::Index i = n - 2; i >= 0; --i) {
     X.row(i) -= multipliers_[i] * X.row(i + 1);
-    if (is_exchanged_[index(i)]) X.row(i).swap(X.row(i + 1));
+    if (is_exchanged_[i]) X.row(i).swap(X.row(i + 1));
   }
   return (Q_.cast<std::complex<double>>() * X).transpose();
 }

@@ -64,7 +64,7 @@ std::span<const Knob> knobs() { return kKnobs; }
 Values values_of(const TunedDevice& device) {
   Values values(static_cast<Eigen::Index>(kKnobs.size()));
   for (std::size_t i = 0; i < kKnobs.size(); ++i) {
-    values[static_cast<Eigen::Index>(i)] = kKnobs[i].get(device);
+    values[i] = kKnobs[i].get(device);
   }
   return values;
 }
@@ -73,7 +73,7 @@ TunedDevice with_values(TunedDevice device, const Values& values) {
   for (std::size_t i = 0; i < kKnobs.size(); ++i) {
     const Knob& knob = kKnobs[i];
     const double most = most_of(knob, device);
-    const double value = values[static_cast<Eigen::Index>(i)];
+    const double value = values[i];
     knob.set(device, std::clamp(value, std::min(knob.least, most), most));
   }
   return device;

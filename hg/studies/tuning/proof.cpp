@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "hg/core/index.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/studies/stability_map.h"
 
@@ -52,9 +51,9 @@ std::vector<Deviation> deviations_in_friction(const tracking::Loop& nominal) {
   for (const double real : {0.5, 1.0, 1.25}) {
     for (const double share : {0.5, 1.0, 1.25}) {
       tracking::TruePlant plant = {nominal.device.actuators, nominal.config.loop};
-      plant.bristles.resize(static_cast<Eigen::Index>(nominal.device.actuators.size()));
+      plant.bristles.resize(nominal.device.actuators.size());
       for (Eigen::Index i = 0; i < plant.bristles.size(); ++i) {
-        plant.bristles[i] = real * presliding_stiffness(nominal.device.actuators[index(i)]);
+        plant.bristles[i] = real * presliding_stiffness(nominal.device.actuators[i]);
       }
       all.push_back({.what = fmt::format("bristles x {:g}, fed forward x {:g}", real, share * real),
                      .plant = plant,
@@ -116,7 +115,7 @@ double Demands::radius(const TunedDevice& device, const Case& one) const {
     return std::pow(tracking::spectral_radius(device.loop, q, config.loop.latency, real.plant),
                     scale);
   }
-  const Grasp& grasp = grasps_[index(one.grasp)];
+  const Grasp& grasp = grasps_[one.grasp];
   Body body = is_friction(one) ? body_ : grasp.body;
   body.mass *= real.mass;
   TunedDevice doubted = device;
@@ -134,7 +133,7 @@ double Demands::excess(const TunedDevice& device, const Case& one) const {
 std::string Demands::name(const Case& one) const {
   const std::string& what = deviation(one).what;
   if (one.grasp < 0) return what;
-  const Grasp& grasp = grasps_[index(one.grasp)];
+  const Grasp& grasp = grasps_[one.grasp];
   const double mass = is_friction(one) ? body_.mass : deviation(one).mass * grasp.body.mass;
   return fmt::format("{}, {:.2g} kg, {}", grasp.what, mass, what);
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hg/core/index.h"
 #include "hg/studies/tuning/evolution.h"
 #include "hg/studies/workers.h"
 
@@ -142,7 +141,7 @@ class Search {
         minimise(costs, place_of(start), {.step = step, .generations = problem_.most_rounds},
                  [&](int round, double best) {
                    notify(fmt::format("vibration at most {:.3g} m/s^2: cost {:.3f}", limit, best),
-                          index(round), index(problem_.most_rounds) + 1);
+                          round, problem_.most_rounds + 1);
                  });
     return values_of(with_values(problem_.device, values_at(found.cwiseMax(0.0).cwiseMin(1.0))));
   }

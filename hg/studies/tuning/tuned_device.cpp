@@ -6,7 +6,6 @@
 
 #include "hg/config/control_cycle.h"
 #include "hg/core/error.h"
-#include "hg/core/index.h"
 #include "hg/scenario/assembly.h"
 
 namespace hg::tuning {
@@ -64,7 +63,7 @@ Noise noise_of(const config::SimulatedDeviceConfig& device) {
     least_ratio = device.simulation.gear_ratio.minCoeff();
   noise.motor_encoder = rounding(sensors.motor_encoder.resolution) / least_ratio;
   for (int i = 0; i < device.model.n_m; ++i) {
-    noise.joint[i] = sensors.torque.noise * device.model.actuators[index(i)].torque_max;
+    noise.joint[i] = sensors.torque.noise * device.model.actuators[i].torque_max;
   }
   return noise;
 }
@@ -73,7 +72,7 @@ Eigen::VectorXd unexpected_friction(const config::SimulatedDeviceConfig& device)
   constexpr double kShare = 0.3;
   Eigen::VectorXd friction(device.model.n_m);
   for (int i = 0; i < device.model.n_m; ++i) {
-    friction[i] = kShare * device.model.actuators[index(i)].coulomb_friction;
+    friction[i] = kShare * device.model.actuators[i].coulomb_friction;
   }
   return friction;
 }

@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "hg/core/enumerators.h"
+#include "hg/core/index.h"
 #include "hg/core/open_file.h"
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/frame_parts_message.h"
@@ -488,7 +489,7 @@ void expect_all_words() {
   const auto all = enumerators<E>();
   ASSERT_EQ(words<E>().size(), all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(static_cast<std::size_t>(all[i].value), i);
+    EXPECT_EQ(hg::index(all[i].value), i);
     EXPECT_EQ(words<E>()[i], to_string(all[i].value)) << all[i].name;
   }
 }

@@ -46,7 +46,7 @@ class RawClient {
     while (!bytes.empty()) {
       const ssize_t count = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
       if (count <= 0) return;  // the server has closed: the test reads that next
-      bytes.remove_prefix(static_cast<std::size_t>(count));
+      bytes.remove_prefix(count);
     }
   }
 
@@ -122,7 +122,7 @@ class RawClient {
     std::array<char, 4096> bytes;
     const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), 0);
     if (count <= 0) return false;
-    received_.append(bytes.data(), static_cast<std::size_t>(count));
+    received_.append(bytes.data(), count);
     return true;
   }
 

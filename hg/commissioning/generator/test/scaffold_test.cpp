@@ -24,7 +24,7 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
   EXPECT_EQ(device.model.n_p, 0);
   EXPECT_EQ(device.model.n_m, 6);
   for (int i : {2, 4}) {  // elbow and wrist_bend are singular at 0
-    const limits::JointLimits& range = device.model.joint_limits[static_cast<std::size_t>(i)];
+    const limits::JointLimits& range = device.model.joint_limits[i];
     EXPECT_FALSE(Interval({range.q_min, range.q_max}).contains(0.0)) << i;
     EXPECT_TRUE(Interval({range.q_min, range.q_max}).contains(device.model.posture[i])) << i;
   }

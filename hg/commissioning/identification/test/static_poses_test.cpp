@@ -25,7 +25,7 @@ TEST(StaticPostures, StayWithinTheLimitsAndShowGravityFromManySides) {
   std::vector<StaticPose> poses;
   for (const VectorM& q_m : postures) {
     for (int i = 0; i < 6; ++i) {
-      const limits::JointLimits& joint = device.model.joint_limits[static_cast<std::size_t>(i)];
+      const limits::JointLimits& joint = device.model.joint_limits[i];
       EXPECT_GE(q_m[i], joint.q_min);
       EXPECT_LE(q_m[i], joint.q_max);
     }

@@ -388,7 +388,7 @@ TEST(Scenario, WithoutMotorModelItHasNoMotorLimitsAndTheSameEvents) {
   EXPECT_TRUE(scenario.device.model.motors().empty());
   EXPECT_EQ(scenario.limits.size() + 6, before.limits.size());
   const auto hinge = [](const Scenario& of) {
-    return of.limits[static_cast<std::size_t>(of.events[0].all_of[0].index)].name;
+    return of.limits[of.events[0].all_of[0].index].name;
   };
   EXPECT_EQ(hinge(before), "hinge");
   EXPECT_EQ(hinge(scenario), "hinge");

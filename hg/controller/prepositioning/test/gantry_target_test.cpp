@@ -140,10 +140,9 @@ TEST(GantryTarget, KeepsTheRangesOfAllJoints) {
     chain.update_kinematics(q, at_rest);
     ASSERT_LT((chain.pose(device.handle).p - T_B_H.p).norm(), 5e-3) << k;
     for (int i = 0; i < 8; ++i) {
-      const auto joint = static_cast<std::size_t>(i);
-      const Interval range = i < 2 ? device.gantry_range[joint]
-                                   : Interval{device.joint_limits[joint - 2].q_min,
-                                              device.joint_limits[joint - 2].q_max};
+      const Interval range =
+          i < 2 ? device.gantry_range[i]
+                : Interval{device.joint_limits[i - 2].q_min, device.joint_limits[i - 2].q_max};
       ASSERT_GE(state.q[i], range.lb - 1e-12) << k << " " << i;
       ASSERT_LE(state.q[i], range.ub + 1e-12) << k << " " << i;
     }

@@ -51,11 +51,10 @@ struct HeldHand {
       robot.dq_p = dq;
       command = gantry.step(robot, model::haptic_giant::gantry_target(q, q_m), false);
       for (int i = 0; i < 2; ++i) {
-        const double ddq = drive_acceleration(
-            drive, dq[i], delay[static_cast<std::size_t>(i)].shift(command.dq[i], 4));
+        const double ddq = drive_acceleration(drive, dq[i], delay[i].shift(command.dq[i], 4));
         q[i] += kDt * dq[i] + 0.5 * kDt * kDt * ddq;
         dq[i] += kDt * ddq;
-        const Interval limits = device.gantry_range[static_cast<std::size_t>(i)];
+        const Interval limits = device.gantry_range[i];
         worst_excess = std::max({worst_excess, q[i] - limits.ub, limits.lb - q[i]});
       }
     }
@@ -165,7 +164,7 @@ struct LedGantry {
     last = choose(rule.accelerations(command, robot, last));
     const VectorP dq = rule.velocity_for(last, command, robot);
     for (int i = 0; i < 2; ++i) {
-      const double arrived = delay[static_cast<std::size_t>(i)].shift(dq[i], 4);
+      const double arrived = delay[i].shift(dq[i], 4);
       robot.ddq_p[i] = drive_acceleration(drive, robot.dq_p[i], arrived);
       robot.q_p[i] += kDt * robot.dq_p[i] + 0.5 * kDt * kDt * robot.ddq_p[i];
       robot.dq_p[i] += kDt * robot.ddq_p[i];
@@ -197,8 +196,7 @@ TEST(Prepositioning, TheLawLeadsTheGantryNotFar) {
   for (int k = 0; k < 6000; ++k) {
     gantry.step(Eigen::Vector2d(3.0, 3.0), most);
     for (int i = 0; i < 2; ++i) {
-      EXPECT_LT(gantry.robot.q_p[i], device().gantry_range[static_cast<std::size_t>(i)].ub + 1e-3)
-          << k;
+      EXPECT_LT(gantry.robot.q_p[i], device().gantry_range[i].ub + 1e-3) << k;
     }
   }
   EXPECT_NEAR(gantry.robot.q_p[0], 1.40, 5e-3);

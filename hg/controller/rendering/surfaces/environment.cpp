@@ -208,7 +208,7 @@ void Environment::follow(const Vector3d& handle, double mass_scale, Planes& plan
 }
 
 bool Environment::add(const Found& met, double mass_scale, Planes& planes) const noexcept {
-  const Surface& surface = surfaces_[static_cast<std::size_t>(met.surface)];
+  const Surface& surface = surfaces_[met.surface];
   return planes.add(met.hit.normal, surface, damping_of(surface, mass_scale), met.surface);
 }
 

@@ -40,7 +40,7 @@ class Seams {
     }
     for (std::size_t i = 0; i < 3; ++i) {
       const int a = numbers[i], b = numbers[(i + 1) % 3];
-      next_[static_cast<std::size_t>(last(a))] = last(b);
+      next_[last(a)] = last(b);
       if (a < b) ++surplus_[{a, b}];
       if (b < a) --surplus_[{b, a}];
     }
@@ -48,7 +48,7 @@ class Seams {
   }
   // Representative of all connected corners.
   int last(int corner) {
-    const auto next = [&](int at) -> int& { return next_[static_cast<std::size_t>(at)]; };
+    const auto next = [&](int at) -> int& { return next_[at]; };
     for (; next(corner) != corner; corner = next(corner)) next(corner) = next(next(corner));
     return corner;
   }
@@ -166,9 +166,7 @@ Mesh::Mesh(const std::vector<Corners>& triangles) {
 void Mesh::build(std::vector<int>& order, std::size_t begin, std::size_t end) {
   const std::size_t index = nodes_.size();
   Node& node = nodes_.emplace_back();
-  const auto triangle = [&](int i) -> const Triangle& {
-    return triangles_[static_cast<std::size_t>(i)];
-  };
+  const auto triangle = [&](int i) -> const Triangle& { return triangles_[i]; };
   for (std::size_t i = begin; i < end; ++i) {
     for (const Vector3d& corner : triangle(order[i]).corners) node.box.extend(corner);
   }

@@ -93,10 +93,10 @@ void Mesh::for_each_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, dou
   for (std::size_t i = 0; i < nodes_.size();) {
     const Node& node = nodes_[i];
     if (is_missed(node.box)) {
-      i = static_cast<std::size_t>(node.next);
+      i = node.next;
       continue;
     }
-    if (node.triangle >= 0) visit(triangles_[static_cast<std::size_t>(node.triangle)]);
+    if (node.triangle >= 0) visit(triangles_[node.triangle]);
     ++i;
   }
 }

@@ -152,7 +152,7 @@ void FacingPlanes::add(const Facing& facing, double to_spare) noexcept {
   }
   const auto loosest = std::ranges::max_element(to_spare_);
   if (to_spare >= *loosest) return;
-  planes_[static_cast<std::size_t>(loosest - to_spare_.begin())] = facing;
+  planes_[loosest - to_spare_.begin()] = facing;
   *loosest = to_spare;
 }
 

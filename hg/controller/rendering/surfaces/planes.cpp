@@ -17,13 +17,13 @@ constexpr double kFlat = 1e-12;     // m; smaller depths are no contact
 bool Planes::add(const Vector3d& normal, const Surface& surface, double damping,
                  int index) noexcept {
   for (int i = 0; i < count_; ++i) {
-    Plane& plane = planes_[static_cast<std::size_t>(i)];
+    Plane& plane = planes_[i];
     if (plane.normal.dot(normal) < 1.0 - kParallel) continue;
     plane = {normal, &surface, damping, index};
     return true;
   }
   if (count_ == 3) return false;
-  planes_[static_cast<std::size_t>(count_++)] = {normal, &surface, damping, index};
+  planes_[count_++] = {normal, &surface, damping, index};
   return true;
 }
 
@@ -32,7 +32,7 @@ bool Planes::add(const Vector3d& normal, const Surface& surface, double damping,
 // right one.
 Vector3d Planes::shares(const Vector3d& to_handle) const noexcept {
   Matrix3d N = Matrix3d::Zero();
-  for (int i = 0; i < count_; ++i) N.col(i) = planes_[static_cast<std::size_t>(i)].normal;
+  for (int i = 0; i < count_; ++i) N.col(i) = planes_[i].normal;
   const Vector3d depths = -(N.transpose() * to_handle);
   const double rounding = 1e-11 * to_handle.norm();
   constexpr std::array<int, 8> kBySize = {0b000, 0b001, 0b010, 0b100, 0b011, 0b101, 0b110, 0b111};
@@ -63,7 +63,7 @@ Spread Planes::spread(const Vector3d& handle, const Vector3d& proxy) const noexc
   Spread spread;
   const Vector3d s = shares(handle - proxy);
   Vector3d out = Vector3d::Zero();
-  for (int i = 0; i < count_; ++i) out += s[i] * planes_[static_cast<std::size_t>(i)].normal;
+  for (int i = 0; i < count_; ++i) out += s[i] * planes_[i].normal;
   spread.depth = out.norm();
   spread.tangent = proxy - (handle + out);
   if (spread.depth < kFlat) return spread;
@@ -71,7 +71,7 @@ Spread Planes::spread(const Vector3d& handle, const Vector3d& proxy) const noexc
   const double sum = s.sum();
   double largest = 0.0;
   for (int i = 0; i < count_; ++i) {
-    const Plane& plane = planes_[static_cast<std::size_t>(i)];
+    const Plane& plane = planes_[i];
     const double share = s[i] / sum;
     spread.stiffness += share * plane.surface->stiffness;
     spread.damping += share * plane.damping;

@@ -36,7 +36,7 @@ struct Braking : testing::Test {
     torque += chain.c().tail(6) - J.transpose() * motion.w_H;
     double most = 0.0;
     for (int i = 0; i < 6; ++i) {
-      const ActuatorModel& motor = device.actuators[static_cast<std::size_t>(i)];
+      const ActuatorModel& motor = device.actuators[i];
       const Interval allowed = allowed_torque(motor, motion.dq_m[i]);
       const double given = torque[i] + motor.rotor_inertia * ddq[i];
       most = std::max(most, given > 0.0 ? given / allowed.ub : given / allowed.lb);

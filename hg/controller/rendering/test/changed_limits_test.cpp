@@ -194,7 +194,7 @@ TEST(LargeTwin, OfThirtyJointsWithLimitsStaysSolvedInsideAndAttached) {
                         "l30");
   twin.q_start = q_start;
   for (std::size_t i = 0; i < 30; ++i) {
-    const double q = q_start[static_cast<Eigen::Index>(i)];
+    const double q = q_start[i];
     twin.dofs[i].limits = {q - 0.002, q + 0.002, 2.0, 20.0};
     twin.dofs[i].damping = 0.5;
   }
@@ -215,7 +215,7 @@ TEST(LargeTwin, OfThirtyJointsWithLimitsStaysSolvedInsideAndAttached) {
     ASSERT_LT(result.sync_error, 1e-4) << k;
     int at_limits = 0;
     for (int i = 0; i < 30; ++i) {
-      const LimitReport& limit = result.limits[static_cast<std::size_t>(kFirstTwinLimit + i)];
+      const LimitReport& limit = result.limits[kFirstTwinLimit + i];
       ASSERT_LT(limit.excess, 1e-6) << k << " " << i;
       at_limits += limit.state != LimitState::kInactive;
     }

@@ -132,12 +132,11 @@ struct Arm {
   std::vector<std::pair<Eigen::Vector4d, double>> half_spaces() const {
     std::vector<std::pair<Eigen::Vector4d, double>> all;
     for (int limit = 0; limit < kLimits; ++limit) {
-      const auto k = static_cast<std::size_t>(limit);
       Eigen::Vector4d a;
-      a << row(limit), is_motor(limit) ? 0.0 : approaches[k].need;
-      Interval bounds = approaches[k].room;
-      if (is_motor(limit)) bounds = torque[k - kJoints];
-      const double given = is_motor(limit) ? 0.0 : known[k];
+      a << row(limit), is_motor(limit) ? 0.0 : approaches[limit].need;
+      Interval bounds = approaches[limit].room;
+      if (is_motor(limit)) bounds = torque[limit - kJoints];
+      const double given = is_motor(limit) ? 0.0 : known[limit];
       all.emplace_back(a, bounds.ub - given);
       all.emplace_back(-a, given - bounds.lb);
     }
@@ -237,17 +236,15 @@ class Pushed {
       const Eigen::Vector2d n = normal(i);
       problem.add_row({n.data(), 2},
                       limits::recoverable_bounds(kWall, options, n.dot(p), n.dot(v), kDt));
-      approaches[static_cast<std::size_t>(i) + 2] =
-          approach(kWall, options, n.dot(p), n.dot(v), kDt);
+      approaches[i + 2] = approach(kWall, options, n.dot(p), n.dot(v), kDt);
     }
     if (brakes_together) {
       const std::array<Interval, 2> torque = {Interval{-1.0, 1.0}, Interval{-1.0, 1.0}};
       JointBraking braking(problem, 0, 5, 0, 2);
       const double reserve = braking.reserve(problem, torque, approaches, known);
       for (int i = 0; i < 3; ++i) {
-        problem.set_bounds(i + 2,
-                           braking_bounds(approaches[static_cast<std::size_t>(i) + 2], reserve,
-                                          problem.bounds(i + 2), kWall, options, normal(i).dot(v)));
+        problem.set_bounds(i + 2, braking_bounds(approaches[i + 2], reserve, problem.bounds(i + 2),
+                                                 kWall, options, normal(i).dot(v)));
       }
     }
     problem.add_level();
@@ -280,10 +277,10 @@ class Thrown {
 
   Thrown() {
     for (int i = 0; i < 6; ++i) {
-      device.joint_limits[static_cast<std::size_t>(i)] = {.q_min = kPosture[i] - kAway,
-                                                          .q_max = kPosture[i] + kAway,
-                                                          .dq_max = 3.0,
-                                                          .ddq_max = 10.0};
+      device.joint_limits[i] = {.q_min = kPosture[i] - kAway,
+                                .q_max = kPosture[i] + kAway,
+                                .dq_max = 3.0,
+                                .ddq_max = 10.0};
     }
     for (ActuatorModel motor : reference_actuators()) {
       motor.torque_max *= 0.5;

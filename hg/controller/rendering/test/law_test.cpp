@@ -80,19 +80,19 @@ void add_one_limit(Random& random, const RenderingState& state, DeviceModel& dev
   if (kind == 0) {
     const int i = random.below(6);
     end_at(state.reference.q_m[i]);
-    device.joint_limits[static_cast<std::size_t>(i)] = limits;
+    device.joint_limits[i] = limits;
   } else if (kind == 1) {
     end_at(state.reference.q_m[3] + state.reference.q_m[4]);
     device.virtual_joints = {
         {.name = "q4+q5", .weights = posture({0, 0, 0, 1, 1, 0}), .limits = limits}};
   } else if (kind == 2) {
-    const auto axis = static_cast<std::size_t>(random.below(3));
+    const std::size_t axis = random.below(3);
     end_at(handle_pose(device, kGantryAtHome, state.reference.q_m).p[static_cast<int>(axis)]);
     device.cartesian_limits = {{.name = "hand", .frame = device.handle, .axes = {}, .margin = 0.0}};
     device.cartesian_limits[0].axes[axis] = limits;
   } else {
     const int i = random.below(twin.chain.nv());
-    TwinDof& dof = twin.dofs[static_cast<std::size_t>(i)];
+    TwinDof& dof = twin.dofs[i];
     if (dof.q_index < 0) return;
     end_at(state.twin.q_a[dof.q_index]);
     dof.limits = limits;
@@ -141,8 +141,7 @@ TEST(Laws, AgreeWhileAtMostOneLimitActs) {
     ASSERT_LT((result.ddq_a - expected.ddq_a).norm(), 1e-9 * scale);
     ASSERT_LT((result.ddq_m - expected.ddq_m).norm(), 1e-9 * scale);
     for (int i = 0; i < expected.limit_count; ++i) {
-      const auto limit = static_cast<std::size_t>(i);
-      ASSERT_NEAR(result.limits[limit].reaction, expected.limits[limit].reaction, 1e-6) << i;
+      ASSERT_NEAR(result.limits[i].reaction, expected.limits[i].reaction, 1e-6) << i;
     }
   }
   EXPECT_GT(with_a_limit, 100);
@@ -219,7 +218,7 @@ struct Crowded {
     const Eigen::Vector3d p = handle_pose(device, kGantryAtHome, kPosture).p;
     device.cartesian_limits = {{.name = "hand", .frame = device.handle, .axes = {}, .margin = 0.0}};
     for (int i = 0; i < 3; ++i) {
-      device.cartesian_limits[0].axes[static_cast<std::size_t>(i)] = {p[i] - 1.0, p[i], 1.5, 5.0};
+      device.cartesian_limits[0].axes[i] = {p[i] - 1.0, p[i], 1.5, 5.0};
     }
     twin.dofs[0].limits = {0.0, 1.75, 1.2, 25.0};
     twin.dofs[1].limits = {0.0, 0.80, 6.0, 200.0};

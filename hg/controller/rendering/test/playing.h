@@ -77,9 +77,7 @@ struct Playing {
   }
   double q(int dof) const { return state.twin.q_a[dof]; }
   double dq(int dof) const { return state.twin.dq_a[dof]; }
-  const LimitReport& limit(int dof) const {
-    return result.limits[static_cast<std::size_t>(kFirstTwinLimit + dof)];
-  }
+  const LimitReport& limit(int dof) const { return result.limits[kFirstTwinLimit + dof]; }
 };
 
 inline TwinModel door() {

@@ -83,8 +83,8 @@ TEST(Rendering, ASlowSolveIsKeptAndGivesTheSameAgain) {
   EXPECT_EQ(solver.solve(kept.problem, kept.options, active, solution), hqp::Status::kSolved);
   EXPECT_EQ(solution.iterations, kept.iterations);
   for (int i = 0; i < 6; ++i) {
-    EXPECT_EQ(solution.x[static_cast<std::size_t>(i)], result.ddq_m[i]) << i;
-    EXPECT_EQ(solution.x[static_cast<std::size_t>(6 + i)], result.ddq_a[i]) << i;
+    EXPECT_EQ(solution.x[i], result.ddq_m[i]) << i;
+    EXPECT_EQ(solution.x[6 + i], result.ddq_a[i]) << i;
   }
 }
 
@@ -149,9 +149,9 @@ TEST(Tasks, ASolutionKeepsLimitsOfTheDeviceThatAreMetOrCompleted) {
   device.cartesian_limits[0].axes.fill({-1.5, 1.5, 1.5, 5.0});
   const Tasks tasks(device, golden_twin(), {});
   hqp::Solution solution(tasks.problem().capacity());
-  solution.slack.assign(static_cast<std::size_t>(tasks.problem().rows()), 0.0);
+  solution.slack.assign(tasks.problem().rows(), 0.0);
   EXPECT_TRUE(tasks.keeps_limits_of_device(solution));
-  const auto of_hand = static_cast<std::size_t>(tasks.first_limit_row() + 6 + 1);
+  const std::size_t of_hand = tasks.first_limit_row() + 6 + 1;
   solution.slack[of_hand] = -0.01;
   EXPECT_FALSE(tasks.keeps_limits_of_device(solution));
   EXPECT_TRUE(tasks.keeps_joints(solution));
@@ -219,7 +219,7 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     for (int i = 0; i < 6; ++i) {
       // at its upper limit, at its lower limit, or free
       const double where = uniform(random);
-      limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      limits::JointLimits& limits = device.joint_limits[i];
       if (where > 0.4) limits.q_max = q[i];
       if (where < -0.4) limits.q_min = q[i];
     }
@@ -241,7 +241,7 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     const Eigen::MatrixXd G = inverse(J_m) * J_a;
     Eigen::VectorXd lb(6), ub(6);
     for (int i = 0; i < 6; ++i) {
-      const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      const auto& limits = device.joint_limits[i];
       lb[i] = limits.q_min == q[i] ? 0.0 : -kInfinity;
       ub[i] = limits.q_max == q[i] ? 0.0 : kInfinity;
     }
@@ -251,7 +251,7 @@ TEST(Rendering, EqualsTheBoxQpForAnyNumberOfCompatibleJointLimits) {
     ASSERT_LT((result.ddq_a - expected).norm(), 1e-7 * scale) << "trial " << trial;
     int active = 0;
     for (int i = 0; i < 6; ++i) {
-      const LimitReport& limit = result.limits[static_cast<std::size_t>(i)];
+      const LimitReport& limit = result.limits[i];
       if (limit.state == LimitState::kInactive) continue;
       ++active;
       // a limit only pushes inwards
@@ -380,7 +380,7 @@ TEST(Rendering, AVirtualJointIsHeldAtItsEnd) {
 TEST(Rendering, AGantryThatDragsJointsFromTheirLimitsBlocksTheDevice) {
   DeviceModel device = unlimited_device();
   for (int i = 0; i < 6; ++i) {
-    device.joint_limits[static_cast<std::size_t>(i)] = {kPosture[i], kPosture[i], 1.0, 10.0};
+    device.joint_limits[i] = {kPosture[i], kPosture[i], 1.0, 10.0};
   }
   Rendering rendering(device, door_with_closer(), without_synchronisation());
   RenderingState state = rendering.start(kPosture);

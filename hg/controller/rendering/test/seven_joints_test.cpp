@@ -100,7 +100,7 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
     for (double& value : q) value += 0.3 * uniform(random);
     for (int i = 0; i < 7; ++i) {
       const double where = uniform(random);
-      limits::JointLimits& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      limits::JointLimits& limits = device.joint_limits[i];
       if (where > 0.3) limits.q_max = q[i];
       if (where < -0.3) limits.q_min = q[i];
     }
@@ -123,8 +123,8 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
     double idle_push = 0.0, largest = 0.0;
     int active = 0;
     for (int i = 0; i < 7; ++i) {
-      const LimitReport& limit = result.limits[static_cast<std::size_t>(i)];
-      const auto& limits = device.joint_limits[static_cast<std::size_t>(i)];
+      const LimitReport& limit = result.limits[i];
+      const auto& limits = device.joint_limits[i];
       const double ddq = result.ddq_m[i];
       if (limits.q_max == q[i]) {
         ASSERT_LE(ddq, 1e-9);

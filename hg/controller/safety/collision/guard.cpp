@@ -83,7 +83,7 @@ Braking braking_of(const DeviceModel& device, double gantry) {
     braking.reaction[i] = 2.0 * device.dt() + device.drive.dead_time + device.drive.lag;
   }
   for (int i = 0; i < device.n_m; ++i) {
-    braking.deceleration[device.n_p + i] = device.joint_limits[static_cast<std::size_t>(i)].ddq_max;
+    braking.deceleration[device.n_p + i] = device.joint_limits[i].ddq_max;
   }
   return braking;
 }
@@ -98,8 +98,7 @@ Guard::Guard(const CollisionConfig& config, const Braking& braking, const model:
                      " can be watched; use fewer collision elements in the URDF");
   }
   for (const Pair& pair : config_.pairs.watched) {
-    distances_.emplace_back(config_.shapes[static_cast<std::size_t>(pair.a)],
-                            config_.shapes[static_cast<std::size_t>(pair.b)]);
+    distances_.emplace_back(config_.shapes[pair.a], config_.shapes[pair.b]);
   }
   chain_.emplace(chain);
 }
@@ -107,8 +106,7 @@ Guard::Guard(const CollisionConfig& config, const Braking& braking, const model:
 std::vector<std::string> pair_names(const CollisionConfig& config) {
   std::vector<std::string> names;
   for (const Pair& pair : config.pairs.watched) {
-    names.push_back(config.shapes[static_cast<std::size_t>(pair.a)].name + " - " +
-                    config.shapes[static_cast<std::size_t>(pair.b)].name);
+    names.push_back(config.shapes[pair.a].name + " - " + config.shapes[pair.b].name);
   }
   return names;
 }
@@ -118,12 +116,10 @@ double Guard::distance(int pair, const Path& path, double time) noexcept {
   for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = path.position(i, time);
   chain_->update_poses(q);
   const auto pose = [&](int shape) {
-    const int frame = config_.shapes[static_cast<std::size_t>(shape)].frame;
+    const int frame = config_.shapes[shape].frame;
     return frame < 0 ? Pose{} : chain_->pose(frame);
   };
-  const auto index = static_cast<std::size_t>(pair);
-  return distances_[index](pose(config_.pairs.watched[index].a),
-                           pose(config_.pairs.watched[index].b));
+  return distances_[pair](pose(config_.pairs.watched[pair].a), pose(config_.pairs.watched[pair].b));
 }
 
 // Depth first from the start of the path; `ends` holds the ends of pending intervals.
@@ -132,8 +128,8 @@ void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
   struct Place {
     double time, distance;
   };
-  const Pair& pair = config_.pairs.watched[static_cast<std::size_t>(index)];
-  double& allowed = state.allowed[static_cast<std::size_t>(index)];
+  const Pair& pair = config_.pairs.watched[index];
+  double& allowed = state.allowed[index];
   Place from = {0.0, distance(index, path, 0.0)};
   --budget;
   const double accepted = std::min(config_.safe_distance, from.distance - kApproach);
@@ -148,7 +144,7 @@ void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
     waiting = 1;
   }
   while (waiting > 0) {
-    const Place to = ends[static_cast<std::size_t>(waiting - 1)];
+    const Place to = ends[waiting - 1];
     const double nearer = std::min(from.distance, to.distance);
     const double bound = std::min(
         nearer, 0.5 * (from.distance + to.distance - path.travel(pair, from.time, to.time)));
@@ -161,10 +157,10 @@ void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
       continue;
     }
     const double middle = 0.5 * (from.time + to.time);
-    ends[static_cast<std::size_t>(waiting++)] = {middle, distance(index, path, middle)};
+    ends[waiting++] = {middle, distance(index, path, middle)};
     --budget;
   }
-  state.left[static_cast<std::size_t>(index)] = smallest - allowed;
+  state.left[index] = smallest - allowed;
 }
 
 // Reduces each bound by the change of the path since the last cycle.
@@ -189,8 +185,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
   } else {
     fading_ = {};
     for (int i = 0; i < count; ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      state.allowed[index] = is_moving ? config_.safe_distance : 0.0;
+      state.allowed[i] = is_moving ? config_.safe_distance : 0.0;
       int first_budget = kMaxDistances;
       evaluate(i, path, is_moving, first_budget, state);
       prediction.distances += kMaxDistances - first_budget;
@@ -205,20 +200,19 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
     int next = -1;
     double least = 0.0;
     for (int i = 0; i < count; ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      const double soon = state.left[index] - kAhead * fading_[index] - kClose;
-      if (is_done[index] || soon > least) continue;
+      const double soon = state.left[i] - kAhead * fading_[i] - kClose;
+      if (is_done[i] || soon > least) continue;
       least = soon;
       next = i;
     }
     if (next < 0) break;
-    is_done[static_cast<std::size_t>(next)] = true;
+    is_done[next] = true;
     evaluate(next, path, is_moving, budget, state);
   }
   prediction.distances += had_budget - budget;
 
   const auto nearest = std::min_element(state.left.begin(), state.left.begin() + count);
-  const auto pair = static_cast<std::size_t>(nearest - state.left.begin());
+  const std::size_t pair = nearest - state.left.begin();
   prediction.allowed = state.allowed[pair];
   prediction.report = {*nearest + prediction.allowed, static_cast<int>(pair)};
   prediction.must_brake = *nearest <= 0.0;

@@ -24,7 +24,6 @@
 
 #include "hg/controller/safety/collision/distance.h"
 #include "hg/controller/safety/collision/pairs.h"
-#include "hg/core/index.h"
 #include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
@@ -68,7 +67,7 @@ struct CollisionState {
 void hashed(auto& hash, const CollisionState& state) {
   const auto& [count, q, stop, left, allowed] = state;
   hash.mix(count, q, stop);
-  for (std::size_t i = 0; i < index(count); ++i) hash.mix(left[i], allowed[i]);
+  for (int i = 0; i < count; ++i) hash.mix(left[i], allowed[i]);
 }
 
 struct Prediction {

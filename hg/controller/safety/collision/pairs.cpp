@@ -33,7 +33,7 @@ struct Candidate {
 
 std::vector<Interval> sampled(const model::ChainModel& chain, std::vector<Interval> range) {
   for (std::size_t i = 0; i < range.size(); ++i) {
-    const bool is_slide = chain.joints()[i].type == model::JointType::kPrismatic;
+    const bool is_slide = chain.joints()[i].is_slide();
     const double far = is_slide ? kUnlimitedSlide : std::numbers::pi;
     if (!std::isfinite(range[i].lb)) range[i].lb = std::min(-far, range[i].ub - 2.0 * far);
     if (!std::isfinite(range[i].ub)) range[i].ub = std::max(far, range[i].lb + 2.0 * far);
@@ -48,8 +48,8 @@ Pose pose_of(const model::ChainData& chain, const Shape& shape) {
 double distance_at(const Eigen::VectorXd& q, const std::vector<Shape>& shapes,
                    const Candidate& candidate, model::ChainData& chain) {
   chain.update_poses(q);
-  return candidate.distance(pose_of(chain, shapes[static_cast<std::size_t>(candidate.pair.a)]),
-                            pose_of(chain, shapes[static_cast<std::size_t>(candidate.pair.b)]));
+  return candidate.distance(pose_of(chain, shapes[candidate.pair.a]),
+                            pose_of(chain, shapes[candidate.pair.b]));
 }
 
 void sample(const std::vector<Shape>& shapes, const std::vector<Interval>& range,
@@ -63,15 +63,14 @@ void sample(const std::vector<Shape>& shapes, const std::vector<Interval>& range
   Eigen::VectorXd q(chain.model().nv());
   std::vector<Pose> poses(shapes.size());
   for (int n = 0; n < kSamples; ++n) {
-    for (int i = 0; i < q.size(); ++i) q[i] = uniform(range[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < q.size(); ++i) q[i] = uniform(range[i]);
     chain.update_poses(q);
     for (std::size_t i = 0; i < shapes.size(); ++i) poses[i] = pose_of(chain, shapes[i]);
     for (Candidate& candidate : candidates) {
-      const double distance = candidate.distance(poses[static_cast<std::size_t>(candidate.pair.a)],
-                                                 poses[static_cast<std::size_t>(candidate.pair.b)]);
+      const double distance = candidate.distance(poses[candidate.pair.a], poses[candidate.pair.b]);
       candidate.largest = std::max(candidate.largest, distance);
       candidate.smallest = std::min(candidate.smallest, distance);
-      Candidate::Nearest& nearest = candidate.nearest[static_cast<std::size_t>(n % kStarts)];
+      Candidate::Nearest& nearest = candidate.nearest[n % kStarts];
       if (distance < nearest.distance) nearest = {distance, q};
     }
   }
@@ -87,7 +86,7 @@ void search(const std::vector<Shape>& shapes, const std::vector<Interval>& range
     bool is_better = false;
     for (int i = 0; i < chain.model().nv(); ++i) {
       if (candidate.pair.lever[i] == 0.0) continue;
-      const Interval& joint = range[static_cast<std::size_t>(i)];
+      const Interval& joint = range[i];
       for (const double direction : {-1.0, 1.0}) {
         Eigen::VectorXd q = best.q;
         q[i] = std::clamp(q[i] + direction * step * (joint.ub - joint.lb), joint.lb, joint.ub);
@@ -112,12 +111,12 @@ Pairs choose_pairs(const std::vector<Shape>& shapes, const model::ChainModel& ch
   std::vector<Candidate> candidates;
   for (int i = 0; i < static_cast<int>(shapes.size()); ++i) {
     for (int k = i + 1; k < static_cast<int>(shapes.size()); ++k) {
-      const int body_i = shapes[static_cast<std::size_t>(i)].body;
-      const int body_k = shapes[static_cast<std::size_t>(k)].body;
+      const int body_i = shapes[i].body;
+      const int body_k = shapes[k].body;
       const int a = body_i <= body_k ? i : k;
       const int b = a == i ? k : i;
-      const Shape& inner = shapes[static_cast<std::size_t>(a)];
-      const Shape& outer = shapes[static_cast<std::size_t>(b)];
+      const Shape& inner = shapes[a];
+      const Shape& outer = shapes[b];
       if (inner.body == outer.body) continue;  // never move relative to each other
       if (outer.body - inner.body == 1 && !inner.is_surrounding) {
         pairs.excluded.push_back({a, b, Exclusion::kNeighbours, 0.0});

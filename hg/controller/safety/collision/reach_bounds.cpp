@@ -48,13 +48,12 @@ ReachBounds::ReachBounds(model::ChainModel chain, std::vector<Interval> range)
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain_.model().nv());
   chain_.update_kinematics(chain_.model().neutral(), zero);
   for (int i = 0; i < chain_.model().nv(); ++i) {
-    const auto joint = static_cast<std::size_t>(i);
-    const bool is_slide = chain_.model().joints()[joint].type == model::JointType::kPrismatic;
+    const bool is_slide = chain_.model().joints()[i].is_slide();
     const int frame = frame_on(chain_, i + 1);
     const Vector6 column = chain_.jacobian(frame).col(i);
     origin_.push_back(chain_.pose(frame).p);
     axis_.push_back(is_slide ? column.head<3>() : column.tail<3>());
-    const double farthest = std::max(std::abs(range[joint].lb), std::abs(range[joint].ub));
+    const double farthest = std::max(std::abs(range[i].lb), std::abs(range[i].ub));
     stroke_.push_back(is_slide ? std::min(farthest, kUnlimitedStroke) : 0.0);
   }
 }
@@ -62,8 +61,7 @@ ReachBounds::ReachBounds(model::ChainModel chain, std::vector<Interval> range)
 VectorPM ReachBounds::of(const Shape& shape, int from) const {
   VectorPM lever = VectorPM::Zero(chain_.model().nv());
   for (int i = from; i < shape.body; ++i) {
-    const bool is_slide =
-        chain_.model().joints()[static_cast<std::size_t>(i)].type == model::JointType::kPrismatic;
+    const bool is_slide = chain_.model().joints()[i].is_slide();
     lever[i] = is_slide ? 1.0 : this->lever(i, shape);
   }
   return lever;
@@ -73,22 +71,21 @@ VectorPM ReachBounds::of(const Shape& shape, int from) const {
 // from joint to joint, added up. While all axes are parallel only what is across them counts.
 double ReachBounds::lever(int joint, const Shape& shape) const {
   constexpr double kParallel = 1e-9;
-  const Eigen::Vector3d& axis = axis_[static_cast<std::size_t>(joint)];
+  const Eigen::Vector3d& axis = axis_[joint];
   bool is_parallel = true;
   const auto part = [&](const Eigen::Vector3d& offset) {
     return is_parallel ? offset.cross(axis).norm() : offset.norm();
   };
   double sum = 0.0;
   for (int i = joint + 1; i < shape.body; ++i) {
-    const auto next = static_cast<std::size_t>(i);
-    sum += part(origin_[next] - origin_[next - 1]) + part(stroke_[next] * axis_[next]);
-    const bool turns = chain_.model().joints()[next].type != model::JointType::kPrismatic;
-    if (turns && axis_[next].cross(axis).norm() > kParallel) is_parallel = false;
+    sum += part(origin_[i] - origin_[i - 1]) + part(stroke_[i] * axis_[i]);
+    const bool turns = !chain_.model().joints()[i].is_slide();
+    if (turns && axis_[i].cross(axis).norm() > kParallel) is_parallel = false;
   }
   const Pose T_B_shape = chain_.pose(shape.frame) * shape.T_frame_shape;
   double farthest = 0.0;
   for (const Eigen::Vector3d& corner : corners(shape, T_B_shape)) {
-    farthest = std::max(farthest, part(corner - origin_[static_cast<std::size_t>(shape.body - 1)]));
+    farthest = std::max(farthest, part(corner - origin_[shape.body - 1]));
   }
   return sum + farthest + shape.radius;
 }

@@ -69,7 +69,7 @@ VectorM beyond(const VectorM& torque_max, const ComplianceState& state) noexcept
 VectorM peak_torques(const DeviceModel& device) {
   VectorM torque(static_cast<Eigen::Index>(device.actuators.size()));
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
-    torque[i] = device.actuators[static_cast<std::size_t>(i)].torque_max;
+    torque[i] = device.actuators[i].torque_max;
   }
   return torque;
 }

@@ -62,9 +62,7 @@ struct Bench {
 
 bool is_same(const CommandFrame& a, const CommandFrame& b) {
   const auto same = [](const auto& x, const auto& y) {
-    return x.size() == y.size() &&
-           std::memcmp(x.data(), y.data(), sizeof(double) * static_cast<std::size_t>(x.size())) ==
-               0;
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), sizeof(double) * x.size()) == 0;
   };
   return same(a.q_m, b.q_m) && same(a.dq_m, b.dq_m) && same(a.ddq_m, b.ddq_m) &&
          same(a.tau_m, b.tau_m) && same(a.dq_p, b.dq_p) && a.enable == b.enable;

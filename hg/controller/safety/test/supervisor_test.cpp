@@ -349,11 +349,11 @@ TEST(Rules, AllFaultsHaveARuleAndAllTextsAreThere) {
     EXPECT_EQ(rule.meaning.back(), '.') << rule.name;
     EXPECT_NE(rule.reaction, Stop::kNone) << rule.name;
   }
-  int known = 0;
+  std::size_t known = 0;
   for (int code = 1; code < 1000; ++code) {
     if (to_string(static_cast<FaultCode>(code)) != "unknown fault") ++known;
   }
-  EXPECT_EQ(static_cast<std::size_t>(known), kRuleCount);
+  EXPECT_EQ(known, kRuleCount);
 }
 
 }  // namespace

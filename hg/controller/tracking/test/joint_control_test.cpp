@@ -211,7 +211,7 @@ TEST_P(BothMethods, NoTorqueIsBeyondWhatTheMotorGivesAtItsSpeed) {
     EXPECT_DOUBLE_EQ(braking.command.tau_m[0], side * 176.0);
     EXPECT_GT(standing.report.torque_share[0], 1.0);  // as demanded
     for (int i = 0; i < 6; ++i) {
-      const double peak = config.actuators[static_cast<std::size_t>(i)].torque_max;
+      const double peak = config.actuators[i].torque_max;
       EXPECT_LE(std::abs(standing.command.tau_m[i]), peak);
       EXPECT_LE(std::abs(braking.command.tau_m[i]), peak);
     }
@@ -358,8 +358,7 @@ TEST(ModalControl, TheRateOfLearningIsThatOfTheMissingFriction) {
     robot.theta_m[joint] -= 1e-4;
     robot.q_m[joint] -= 1e-4;
     const VectorM with = answer(control, behind, reference, robot).command.tau_m;
-    const double coulomb =
-        coulomb_torque(config.actuators[static_cast<std::size_t>(joint)], 0.2, level.tau_r[joint]);
+    const double coulomb = coulomb_torque(config.actuators[joint], 0.2, level.tau_r[joint]);
     const double missing = (with - without)[joint] / coulomb;
     const double learnt = behind.friction[joint] - level.friction[joint];
     EXPECT_GT(missing, 0.02);

@@ -20,8 +20,7 @@ std::vector<double> samples(const Tremor& tremor, int axis) {
 
 double mean_product(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
-  for (int i = 0; i < kSamples; ++i)
-    sum += a[static_cast<std::size_t>(i)] * b[static_cast<std::size_t>(i)];
+  for (int i = 0; i < kSamples; ++i) sum += a[i] * b[i];
   return sum / kSamples;
 }
 
@@ -33,7 +32,7 @@ double power(const std::vector<double>& x, double from_Hz, double to_Hz) {
     std::complex<double> line = 0.0;
     for (int i = 0; i < kSamples; ++i) {
       const double window = 1.0 - std::cos(2.0 * M_PI * i / kSamples);
-      line += window * x[static_cast<std::size_t>(i)] * std::polar(1.0, -2.0 * M_PI * f * i * kDt);
+      line += window * x[i] * std::polar(1.0, -2.0 * M_PI * f * i * kDt);
     }
     sum += std::norm(line);
   }

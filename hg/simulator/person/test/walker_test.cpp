@@ -124,7 +124,7 @@ TEST(Walker, ReachesSixCheckpointsInTheirOrder) {
     const double heading = walker.heading();
     walker.step(kDt, handle);
     if (walker.reached() == before) continue;
-    const Checkpoint& point = points[static_cast<std::size_t>(before)];
+    const Checkpoint& point = points[before];
     EXPECT_LT((handle.p.head<2>() - point.p).norm(), 0.10);
     EXPECT_LT(angle_between(heading, point.heading), 15.0 * kPi / 180.0);
   }

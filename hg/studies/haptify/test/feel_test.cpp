@@ -21,7 +21,7 @@ double at(std::size_t i) { return static_cast<double>(i) / kRate; }
 std::vector<HandleSample> swinging(double frequency_Hz, double amplitude, double seconds,
                                    int axis = 0) {
   const double omega = 2.0 * kPi * frequency_Hz;
-  std::vector<HandleSample> motion(static_cast<std::size_t>(seconds * kRate));
+  std::vector<HandleSample> motion(std::lround(seconds * kRate));
   for (std::size_t i = 0; i < motion.size(); ++i) {
     motion[i].a[axis] = amplitude * std::sin(omega * at(i));
     motion[i].v[axis] = -amplitude / omega * std::cos(omega * at(i));

@@ -30,7 +30,7 @@ Signal noise(std::size_t count, std::uint64_t seed) {
 }
 
 Signal sine(double frequency_Hz, double amplitude, const Eigen::Vector3d& axis, double seconds) {
-  Signal signal(static_cast<std::size_t>(seconds * kRate));
+  Signal signal(std::lround(seconds * kRate));
   for (std::size_t i = 0; i < signal.size(); ++i) {
     signal[i] = amplitude * std::sin(2.0 * kPi * frequency_Hz * at(i)) * axis;
   }

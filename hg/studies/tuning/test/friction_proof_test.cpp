@@ -26,8 +26,7 @@ TunedDevice with_presliding(double presliding) {
 VectorM bristles(const TunedDevice& device, double share) {
   VectorM stiffness(device.loop.device.n_m);
   for (int i = 0; i < device.loop.device.n_m; ++i) {
-    stiffness[i] =
-        share * presliding_stiffness(device.loop.device.actuators[static_cast<std::size_t>(i)]);
+    stiffness[i] = share * presliding_stiffness(device.loop.device.actuators[i]);
   }
   return stiffness;
 }

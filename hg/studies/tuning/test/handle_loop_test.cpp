@@ -68,11 +68,11 @@ TEST(HandleLoop, AgreesWithTheSimulation) {
   pushes.periods = 3;
   pushes.least_s = 0.6;
   for (int axis = 0; axis < 2; ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
     const haptify::Response shown = haptify::measure_response(scenario, pushes, axis, 1);
     ASSERT_EQ(shown.failure, "");
     for (const haptify::Answer& answer : shown.answers) {
-      const std::complex<double> felt = felt_over_body(resolvent, loop, {}, answer.frequency_Hz)[i];
+      const std::complex<double> felt =
+          felt_over_body(resolvent, loop, {}, answer.frequency_Hz)[axis];
       const std::complex<double> ratio = answer.impedance / answer.twin;
       EXPECT_LT(std::abs(felt - ratio), 0.1 * std::abs(ratio))
           << "axis " << axis << ", " << answer.frequency_Hz << " Hz";
@@ -80,7 +80,7 @@ TEST(HandleLoop, AgreesWithTheSimulation) {
     const haptify::Answer& slow = shown.answers.front();  // at kLatencyAt
     const double latency_s =
         std::arg(slow.impedance / slow.twin) / (2.0 * std::numbers::pi * slow.frequency_Hz);
-    EXPECT_NEAR(said.latency_s[i], latency_s, 1e-3);
+    EXPECT_NEAR(said.latency_s[axis], latency_s, 1e-3);
   }
   const haptify::FreeSpace walked = haptify::measure_free_space(scenario, {.duration_s = 8.0}, 1);
   ASSERT_EQ(walked.failure, "");

@@ -29,7 +29,7 @@ TuningProblem problem_of(int postures) {
 Values with(const TuningProblem& problem, std::string_view key, double value) {
   Values values = values_of(problem.device);
   for (std::size_t i = 0; i < knobs().size(); ++i) {
-    if (knobs()[i].key == key) values[static_cast<Eigen::Index>(i)] = value;
+    if (knobs()[i].key == key) values[i] = value;
   }
   return values;
 }

@@ -58,8 +58,7 @@ Mesh step_down() {
   };
   std::vector<std::array<Vector3d, 3>> triangles;
   for (const auto& [a, b, c] : front) {
-    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b),
-               k = static_cast<std::size_t>(c);
+    const std::size_t i = a, j = b, k = c;
     triangles.push_back({at(i, -0.2), at(j, -0.2), at(k, -0.2)});
     triangles.push_back({at(i, 0.2), at(k, 0.2), at(j, 0.2)});
   }

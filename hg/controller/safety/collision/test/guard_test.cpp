@@ -25,10 +25,7 @@ class Judge {
     for (const Pair& pair : pairs_.watched) distances_.push_back(distance_of(pair.a, pair.b));
   }
 
-  Distance distance_of(int a, int b) const {
-    return {config_.shapes[static_cast<std::size_t>(a)],
-            config_.shapes[static_cast<std::size_t>(b)]};
-  }
+  Distance distance_of(int a, int b) const { return {config_.shapes[a], config_.shapes[b]}; }
 
   double at(const VectorPM& q, int a, int b, const Distance& distance) {
     chain_.update_poses(q);
@@ -54,7 +51,7 @@ class Judge {
 
  private:
   Pose pose(int shape) const {
-    const int frame = config_.shapes[static_cast<std::size_t>(shape)].frame;
+    const int frame = config_.shapes[shape].frame;
     return frame < 0 ? Pose{} : chain_.pose(frame);
   }
 
@@ -79,21 +76,19 @@ class Wanderer {
 
   void jump() {
     for (int i = 0; i < 8; ++i) {
-      const auto joint = static_cast<std::size_t>(i);
-      q[i] = uniform(lower(joint), upper(joint));
-      dq[i] = uniform(-speed_[joint], speed_[joint]);
+      q[i] = uniform(lower(i), upper(i));
+      dq[i] = uniform(-speed_[i], speed_[i]);
     }
   }
 
   void move() {
     for (int i = 0; i < 8; ++i) {
-      const auto joint = static_cast<std::size_t>(i);
-      if (uniform(0.0, 1.0) < 0.002) goal_[i] = uniform(-speed_[joint], speed_[joint]);
+      if (uniform(0.0, 1.0) < 0.002) goal_[i] = uniform(-speed_[i], speed_[i]);
       const double step = 1e-3 * braking_.deceleration[i];
       dq[i] += std::clamp(goal_[i] - dq[i], -step, step);
       q[i] += 1e-3 * dq[i];
-      if (q[i] < lower(joint) || q[i] > upper(joint)) {
-        q[i] = std::clamp(q[i], lower(joint), upper(joint));
+      if (q[i] < lower(i) || q[i] > upper(i)) {
+        q[i] = std::clamp(q[i], lower(i), upper(i));
         dq[i] = 0.0;
         goal_[i] = -goal_[i];
       }
@@ -283,14 +278,13 @@ TEST(ReachBounds, BoundEveryPointInEveryPosture) {
         const Vector6 column = J.col(i);
         const Eigen::Vector3d v = column.head<3>() + column.tail<3>().cross(arm);
         const double speed = v.norm() + (column.tail<3>().norm() > 0.5 ? hand.radius : 0.0);
-        largest[static_cast<std::size_t>(i)] =
-            std::max(largest[static_cast<std::size_t>(i)], speed);
+        largest[i] = std::max(largest[i], speed);
       }
     }
   }
   for (int i = 0; i < 8; ++i) {
-    EXPECT_LE(largest[static_cast<std::size_t>(i)], lever[i] + 1e-9) << i;
-    EXPECT_GE(largest[static_cast<std::size_t>(i)], 0.6 * lever[i]) << i;  // and not for nothing
+    EXPECT_LE(largest[i], lever[i] + 1e-9) << i;
+    EXPECT_GE(largest[i], 0.6 * lever[i]) << i;  // and not for nothing
   }
 }
 

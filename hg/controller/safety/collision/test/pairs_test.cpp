@@ -14,8 +14,7 @@ namespace hg::collision {
 namespace {
 
 std::string name(const CollisionConfig& config, int a, int b) {
-  return config.shapes[static_cast<std::size_t>(a)].name + " - " +
-         config.shapes[static_cast<std::size_t>(b)].name;
+  return config.shapes[a].name + " - " + config.shapes[b].name;
 }
 
 TEST(Shapes, OfTheHapticGiantAreBoxesAndCapsules) {
@@ -44,8 +43,8 @@ TEST(Shapes, ThatAreMeshesAreNamed) {
 TEST(Pairs, NothingTouchesTheFloorByDesign) {
   const TestDevice device = device_of(haptic_giant_urdf());
   for (const Excluded& pair : device.config.pairs.excluded) {
-    if (device.config.shapes[static_cast<std::size_t>(pair.a)].name != "floor" &&
-        device.config.shapes[static_cast<std::size_t>(pair.b)].name != "floor") {
+    if (device.config.shapes[pair.a].name != "floor" &&
+        device.config.shapes[pair.b].name != "floor") {
       continue;
     }
     EXPECT_NE(pair.reason, Exclusion::kNeighbours) << name(device.config, pair.a, pair.b);
@@ -80,8 +79,7 @@ TEST(Pairs, ThatAreLeftOutStayApart) {
     const Pairs& pairs = device.config.pairs;
     std::vector<Distance> distances;
     for (const Excluded& pair : pairs.excluded) {
-      distances.emplace_back(device.config.shapes[static_cast<std::size_t>(pair.a)],
-                             device.config.shapes[static_cast<std::size_t>(pair.b)]);
+      distances.emplace_back(device.config.shapes[pair.a], device.config.shapes[pair.b]);
     }
     const unsigned seed = 21;
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -90,15 +88,14 @@ TEST(Pairs, ThatAreLeftOutStayApart) {
     Eigen::VectorXd q(8);
     for (int n = 0; n < 50000; ++n) {
       for (int i = 0; i < 8; ++i) {
-        const Interval range = intersect(device.range[static_cast<std::size_t>(i)],
-                                         {-std::numbers::pi, std::numbers::pi});
+        const Interval range = intersect(device.range[i], {-std::numbers::pi, std::numbers::pi});
         // the ends of the ranges more often than the rest
         const double share = std::uniform_real_distribution<double>(-0.3, 1.3)(random);
         q[i] = range.lb + std::clamp(share, 0.0, 1.0) * (range.ub - range.lb);
       }
       chain.update_poses(q);
       const auto pose = [&](int shape) {
-        const int frame = device.config.shapes[static_cast<std::size_t>(shape)].frame;
+        const int frame = device.config.shapes[shape].frame;
         return frame < 0 ? Pose{} : chain.pose(frame);
       };
       for (std::size_t i = 0; i < distances.size(); ++i) {
