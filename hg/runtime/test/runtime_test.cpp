@@ -14,6 +14,7 @@
 
 #include "hg/core/allowed_to_wait.h"
 #include "hg/core/error.h"
+#include "hg/core/index.h"
 #include "hg/core/monotonic_clock.h"
 #include "hg/core/schedule.h"
 #include "hg/runtime/test/still_device.h"
@@ -483,7 +484,7 @@ TEST(Runtime, MeasuresWakeUpsAndStagesInRealTimeOnly) {
     std::uint64_t seen = 0;
     const RuntimeReport report = run(parts, {.is_fast = is_fast, .duration_s = 0.05}, seen);
     EXPECT_EQ(report.wake_up_us.count() > 40, !is_fast);
-    const Histogram& solver = report.stage_us[Stage::kSolver];
+    const Histogram& solver = report.stage_us[index(Stage::kSolver)];
     EXPECT_EQ(solver.count() > 0, !is_fast);
     EXPECT_EQ(report.allocations, 0u);
   }
