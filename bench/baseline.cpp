@@ -19,8 +19,8 @@ BaselineSolve load() {
 }  // namespace
 
 BaselineSolve find_baseline() {
-  static const BaselineSolve solve = load();
-  return solve;
+  static const BaselineSolve kSolve = load();
+  return kSolve;
 }
 
 }  // namespace hg::bench

@@ -2,9 +2,9 @@
 
     lint.py BUILD [--jobs N] [FOLDER...]
 
-To be quick, sources of one folder that do not define the same names are read as one, so that what
-they include is parsed once: clang-tidy needs seconds for Eigen and the standard library, and
-milliseconds for a file of ours. Defines and include folders come from BUILD/compile_commands.json.
+To be quick, sources that do not define the same names are read as one, so that what they include is
+parsed once: clang-tidy needs seconds for Eigen and the standard library, and milliseconds for a file
+of ours. Defines and include folders come from BUILD/compile_commands.json.
 Exits with 1 and a line per finding.
 """
 
@@ -21,6 +21,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["hg", "apps", "bench", "python/src"]
 MOST_TOGETHER = 16  # sources read as one; more need more memory than they save time
+CLANG_TIDY = pathlib.Path(sys.executable).with_name("clang-tidy")  # of the .venv
 FINDING = re.compile(r"(\S+?):(\d+):(\d+): (?:warning|error): (.*)")
 
 
@@ -48,35 +49,32 @@ def own_names(source):
 
 def grouped(sources):
     """Lists of sources that can be read as one, with their flags."""
-    groups = []  # flags, folder, names, sources
+    groups = []  # flags, names, sources
     for source, flags in sources:
         names = own_names(source)
         for group in groups:
-            if (group[0] == flags and group[1] == source.parent and not group[2] & names
-                    and len(group[3]) < MOST_TOGETHER):
-                group[2].update(names)
-                group[3].append(source)
+            if group[0] == flags and not group[1] & names and len(group[2]) < MOST_TOGETHER:
+                group[1].update(names)
+                group[2].append(source)
                 break
         else:
-            groups.append((flags, source.parent, set(names), [source]))
-    return [(flags, members) for flags, _, _, members in groups]
+            groups.append((flags, set(names), [source]))
+    return [(flags, members) for flags, _, members in groups]
 
 
 def tidy(flags, sources, work):
-    """Findings as (file, line, column, words), and whether the sources could be parsed."""
-    unit = sources[0]
-    if len(sources) > 1:
-        unit = work / (str(sources[0].relative_to(ROOT)).replace("/", "_"))
-        unit.write_text("".join(f'#include "{source}"\n' for source in sources))
+    """Findings as (file, line, column, words)."""
+    unit = work / (str(sources[0].relative_to(ROOT)).replace("/", "_"))
+    unit.write_text("".join(f'#include "{source}"\n' for source in sources))
     result = subprocess.run(
-        ["clang-tidy", "--quiet", f"--config-file={ROOT}/.clang-tidy", str(unit), "--", *flags],
+        [CLANG_TIDY, "--quiet", f"--config-file={ROOT}/.clang-tidy", unit, "--", *flags],
         capture_output=True, text=True, cwd=ROOT)
     findings = {(match[1], int(match[2]), int(match[3]), match[4])
                 for match in map(FINDING.match, result.stdout.splitlines()) if match}
     # a finding without a place is about a parameter that the compiler has invented
     if result.returncode != 0 and not findings and "error: " not in result.stdout:
         sys.exit(f"{unit}: clang-tidy has failed:\n{result.stdout}{result.stderr}")
-    return findings, not any("clang-diagnostic" in words for *_, words in findings)
+    return findings
 
 
 def main():
@@ -96,19 +94,13 @@ def main():
         if "test" not in name.parts and any(name.is_relative_to(f) for f in arguments.folders):
             sources.setdefault(source, flags_of(entry["command"]))
 
-    def findings_of(group):
-        flags, members = group
-        findings, is_parsed = tidy(flags, members, work)
-        if is_parsed or len(members) == 1:
-            return findings
-        print(f"lint: one by one, with {members[0].relative_to(ROOT)}", file=sys.stderr)
-        return set().union(*(tidy(flags, [member], work)[0] for member in members))
-
     groups = sorted(grouped(sorted(sources.items())), key=lambda group: -len(group[1]))
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        findings = set().union(*pool.map(findings_of, groups))
+        findings = set().union(*pool.map(lambda group: tidy(*group, work), groups))
     for file, line, column, words in sorted(findings):
         print(f"{os.path.relpath(file, ROOT)}:{line}:{column}: {words}")
+    if any("clang-diagnostic" in words for *_, words in findings):
+        print("lint: where g++ compiles this, a name stands twice among sources that are read as one")
     if findings:
         sys.exit(1)
     print(f"lint: {len(sources)} sources in {len(groups)} readings without findings")

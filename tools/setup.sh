@@ -52,7 +52,6 @@ for package in ca-certificates libyaml-cpp-dev libcli11-dev libfmt-dev \
 done
 if [ "$purpose" = test ]; then
   need clang-format clang-format
-  need clang-tidy clang-tidy
   for package in libgtest-dev librapidcheck-dev chromium; do need "$package"; done
   "$(find_python)" -c 'import os, sysconfig
 os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need python3-dev
@@ -127,7 +126,7 @@ install_list tools/requirements-linked.txt .venv/.hapticgiant-requirements-linke
   "Pinocchio, Coal, Eigen, Boost headers" --require-hashes --no-deps --only-binary=:all:
 install_list tools/requirements.txt .venv/.hapticgiant-requirements "figures, reader of recordings"
 if [ "$purpose" = test ]; then
-  install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots, nanobind and MuJoCo for the tests"
+  install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots, nanobind and MuJoCo for the tests, clang-tidy"
 fi
 if [ "$purpose" = bench ]; then
   install_list tools/requirements-bench.txt .venv/.hapticgiant-requirements-bench \

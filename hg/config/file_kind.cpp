@@ -17,7 +17,7 @@ struct Signature {
 };
 
 const std::array<Signature, 6>& signatures() {
-  static const std::array<Signature, 6> all = {{
+  static const std::array<Signature, 6> kAll = {{
       {FileKind::kDevice,
        {"manipulator", "gantry", "flange", "kinematics", "rate_Hz", "virtual_joints",
         "cartesian_limits", "drive", "synchronisation", "prepositioning", "estimation", "monitor",
@@ -30,7 +30,7 @@ const std::array<Signature, 6>& signatures() {
       {FileKind::kSimulation,
        {"sensors", "seed", "step_s", "factors", "safety", "end_stops", "gear_ratio", "flexible"}},
   }};
-  return all;
+  return kAll;
 }
 
 std::string no_kind(const std::vector<std::string>& given) {

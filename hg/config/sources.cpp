@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uintmax_t kSizeMax = 4 << 20;  // bytes; configuration is written by hand
 
-std::string name_of(const std::filesystem::path& file) {
+std::string name_within(const std::filesystem::path& file) {
   return file.lexically_normal().generic_string();
 }
 
@@ -27,7 +27,7 @@ bool SourceReader::exists(const std::filesystem::path& file) const {
   std::error_code ignored;
   if (!is_recorded_) return std::filesystem::is_regular_file(file, ignored);
   return std::ranges::any_of(
-      recorded_, [name = name_of(file)](const SourceText& text) { return text.name == name; });
+      recorded_, [name = name_within(file)](const SourceText& text) { return text.name == name; });
 }
 
 std::vector<std::string> SourceReader::siblings(const std::filesystem::path& file) const {
@@ -45,7 +45,7 @@ std::vector<std::string> SourceReader::siblings(const std::filesystem::path& fil
 }
 
 std::string SourceReader::read(const std::filesystem::path& file) {
-  const std::string name = name_of(file);
+  const std::string name = name_within(file);
   if (!exists(file)) throw SetupError(name + ": no such file");
   std::string content;
   if (is_recorded_) {

@@ -541,10 +541,10 @@ TouchReport Cycle::feel_touch(bool is_on, const RobotState& robot) noexcept {
   constexpr double kFade = 0.05;  // s
   double share = 1.0;
   if (supervisor.mode() == Mode::kStopping) {
-    const double left =
-        (safety::samples_of(config_.monitor.stop_time, dt_) / 3 - supervisor.stop_samples) * dt_;
+    const int left =
+        safety::samples_of(config_.monitor.stop_time, dt_) / 3 - supervisor.stop_samples;
     const bool is_stopped_by_it = supervisor.fault.code == FaultCode::kTorqueUnexplained;
-    share = is_stopped_by_it ? std::clamp(left / kFade, 0.0, 1.0) : 0.0;
+    share = is_stopped_by_it ? std::clamp(left * dt_ / kFade, 0.0, 1.0) : 0.0;
   }
   const bool gives_way =
       share > 0.0 && is_moving(supervisor.mode()) && state_.motion != Motion::kBrakeJoints;

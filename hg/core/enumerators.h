@@ -20,17 +20,17 @@ namespace detail {
 
 // GCC and Clang write an enumerator as "hg::Refusal::kNone" and any other value as
 // "(hg::Refusal)99".
-template <auto value>
+template <auto kValue>
 constexpr std::string_view name_of() {
   std::string_view text = __PRETTY_FUNCTION__;
-  text = text.substr(text.find("value = ") + 8);
+  text = text.substr(text.find("kValue = ") + 9);
   text = text.substr(0, text.find_first_of(";]"));
   return text.starts_with('(') ? std::string_view{} : text.substr(text.rfind(':') + 1);
 }
 
-template <typename E, std::size_t... i>
-constexpr auto candidates(std::index_sequence<i...>) {
-  return std::array{Enumerator<E>{static_cast<E>(i), name_of<static_cast<E>(i)>()}...};
+template <typename E, std::size_t... kIndex>
+constexpr auto candidates(std::index_sequence<kIndex...>) {
+  return std::array{Enumerator<E>{static_cast<E>(kIndex), name_of<static_cast<E>(kIndex)>()}...};
 }
 
 struct Key {
@@ -57,18 +57,18 @@ constexpr std::string_view key_name() {
   return {detail::kKey<value>.text.data(), detail::kKey<value>.size};
 }
 
-/// All enumerators of E with values from 0 to below `end`, in the order of their values.
-template <typename E, std::size_t end = 64>
+/// All enumerators of E with values from 0 to below `kEnd`, in the order of their values.
+template <typename E, std::size_t kEnd = 64>
 constexpr auto enumerators() {
-  constexpr auto all = detail::candidates<E>(std::make_index_sequence<end>{});
-  constexpr std::size_t count = [&] {
+  constexpr auto kAll = detail::candidates<E>(std::make_index_sequence<kEnd>{});
+  constexpr std::size_t kCount = [&] {
     std::size_t named = 0;
-    for (const Enumerator<E>& one : all) named += one.name.empty() ? 0 : 1;
+    for (const Enumerator<E>& one : kAll) named += one.name.empty() ? 0 : 1;
     return named;
   }();
-  std::array<Enumerator<E>, count> found{};
+  std::array<Enumerator<E>, kCount> found{};
   std::size_t next = 0;
-  for (const Enumerator<E>& one : all) {
+  for (const Enumerator<E>& one : kAll) {
     if (!one.name.empty()) found[next++] = one;
   }
   return found;

@@ -15,7 +15,7 @@
 namespace hg::model {
 namespace {
 
-pinocchio::SE3 to_SE3(const Pose& pose) { return {pose.R, pose.p}; }
+pinocchio::SE3 to_placement(const Pose& pose) { return {pose.R, pose.p}; }
 
 pinocchio::Inertia to_inertia(const Inertial& i) { return {i.mass, i.p_com, i.inertia}; }
 
@@ -93,7 +93,7 @@ pinocchio::JointIndex ChainParts::add_joint(pinocchio::JointIndex parent, Joint 
 
 pinocchio::JointIndex ChainParts::add_floating_root(const Pose& T_B_root) {
   return add_joint(0, {.name = "root", .type = JointType::kFloating, .position = {}},
-                   pinocchio::JointModelFreeFlyer(), to_SE3(T_B_root));
+                   pinocchio::JointModelFreeFlyer(), to_placement(T_B_root));
 }
 
 void ChainParts::add_frame(const std::string& frame_name, pinocchio::JointIndex joint,
@@ -114,7 +114,7 @@ class Builder {
     chain.name = urdf_.name;
     const int root = root_link();
     pinocchio::JointIndex joint = 0;
-    pinocchio::SE3 placement = to_SE3(options_.T_B_root);
+    pinocchio::SE3 placement = to_placement(options_.T_B_root);
     if (options_.floating_root) {
       joint = chain.add_floating_root(options_.T_B_root);
       placement.setIdentity();
@@ -192,7 +192,7 @@ class Builder {
       }
       for (const UrdfJoint& j : urdf_.joints) {
         if (j.parent != at.link || j.type != UrdfJointType::kFixed) continue;
-        merged_.push_back({j.child, at.T_joint_link * to_SE3(j.T_parent_joint)});
+        merged_.push_back({j.child, at.T_joint_link * to_placement(j.T_parent_joint)});
       }
     }
   }
@@ -210,7 +210,7 @@ class Builder {
                            "with root_link): the other joints then stand still");
         }
         found = &j;
-        T_joint_next_ = at.T_joint_link * to_SE3(j.T_parent_joint);
+        T_joint_next_ = at.T_joint_link * to_placement(j.T_parent_joint);
       }
     }
     return found;

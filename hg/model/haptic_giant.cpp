@@ -18,11 +18,11 @@ Eigen::Vector2d e(double angle) noexcept { return {std::cos(angle), std::sin(ang
 
 double wrap(double angle) noexcept { return nearest_turn(angle, 0.0); }
 
-Eigen::Matrix3d Rz(double angle) noexcept {
+Eigen::Matrix3d R_z(double angle) noexcept {
   return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
-Eigen::Matrix3d Ry(double angle) noexcept {
+Eigen::Matrix3d R_y(double angle) noexcept {
   return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
 }
 
@@ -85,7 +85,7 @@ Eigen::Vector3d elbow(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept {
 }
 
 Eigen::Matrix3d hand_orientation(double psi, double s, double q6) noexcept {
-  return Rz(psi) * Ry(pi - s) * Rz(q6 + pi);
+  return R_z(psi) * R_y(pi - s) * R_z(q6 + pi);
 }
 
 Pose hand_pose(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept {

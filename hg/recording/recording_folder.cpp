@@ -43,7 +43,7 @@ bool is_being_written(const fs::path& path) {
 }
 
 std::vector<Recording> oldest_first(const fs::path& folder) {
-  static const std::regex pattern(R"(.*_(\d{8}_\d{6})(?:_(\d{1,6}))?(?:\.partial)?\.mcap)");
+  static const std::regex kPattern(R"(.*_(\d{8}_\d{6})(?:_(\d{1,6}))?(?:\.partial)?\.mcap)");
   std::vector<Recording> recordings;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
@@ -51,7 +51,7 @@ std::vector<Recording> oldest_first(const fs::path& folder) {
     const std::string name = entry->path().filename().string();
     std::error_code no_file;
     std::smatch match;
-    if (!std::regex_match(name, match, pattern) || entry->is_symlink(no_file)) continue;
+    if (!std::regex_match(name, match, kPattern) || entry->is_symlink(no_file)) continue;
     const std::uintmax_t bytes = entry->file_size(no_file);
     if (no_file || is_being_written(entry->path())) continue;
     const int number = match[2].matched ? std::stoi(match[2]) : 1;
@@ -96,8 +96,8 @@ RecordingFolder::RecordingFolder(fs::path folder) : folder_(std::move(folder)) {
 
 fs::path RecordingFolder::new_path(const std::string& name,
                                    std::chrono::system_clock::time_point start) const {
-  static const std::regex pattern("[A-Za-z0-9._-]+");
-  if (!std::regex_match(name, pattern)) {
+  static const std::regex kPattern("[A-Za-z0-9._-]+");
+  if (!std::regex_match(name, kPattern)) {
     throw SetupError(
         "recording name: must consist of letters, digits, dots, dashes and underscores, got \"" +
         name + "\"");

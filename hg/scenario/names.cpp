@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "hg/controller/rendering/tasks.h"
+
 namespace hg::scenario {
 namespace {
 

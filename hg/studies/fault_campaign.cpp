@@ -51,7 +51,7 @@ bool has_reacted(const CycleRecord& record, bool was_on) {
 // Unplanned travel of axes, see FaultCase::travel_share.
 class Travel {
  public:
-  Travel(const config::Scenario& scenario) : device_(scenario.device) {}
+  explicit Travel(const config::Scenario& scenario) : device_(scenario.device) {}
 
   // One period from the begin of the fault on.
   void add(const Truth& truth, const Sample& sample, bool has_reacted) {
@@ -228,10 +228,10 @@ Interval fault_times(const config::Scenario& scenario) {
   return {grasp_s + kSettling, std::min(last_s, grasp_s + kLatest)};
 }
 
-FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
+FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
                      const CampaignConfig& config, double clean_force,
                      const recording::RecordingInfo* recording) {
-  FaultCase result = std::move(drawn);
+  FaultCase result = drawn;
   config::Scenario played = scenario;
   played.faults = {result.injection};
   double from_s = result.injection.from_s;
@@ -328,7 +328,7 @@ Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const Camp
           recording = recordings[which];
           recording.folder /= fmt::format("case_{}", i);
         }
-        campaign.cases[i] = play_fault(scenarios[which], std::move(drawn), config, clean_force,
+        campaign.cases[i] = play_fault(scenarios[which], drawn, config, clean_force,
                                        recordings.empty() ? nullptr : &recording);
       },
       progress);

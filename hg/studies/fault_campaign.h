@@ -86,7 +86,7 @@ Interval fault_times(const config::Scenario& scenario);
 /// Plays one run with the faults of `drawn` and returns it with its result filled in. `scenario`
 /// has a script; `clean_force` is the person's peak without the fault. The run is recorded as
 /// `recording` says, read back and deleted; null = not recorded.
-FaultCase play_fault(const config::Scenario& scenario, FaultCase drawn,
+FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
                      const CampaignConfig& config, double clean_force,
                      const recording::RecordingInfo* recording = nullptr);
 

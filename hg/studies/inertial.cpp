@@ -25,7 +25,7 @@ std::vector<std::string> moved_links(const config::DeviceConfig& device) {
   std::vector<std::string> links;
   Eigen::Index moved = 0;
   for (const std::string& name : chain.model().frame_names()) {
-    const model::Jacobian J = chain.jacobian(chain.model().frame(name));
+    const model::Jacobian& J = chain.jacobian(chain.model().frame(name));
     Eigen::Index joints = 0;
     while (joints < J.cols() && J.col(joints).norm() > 0.0) ++joints;
     if (joints <= moved) continue;

@@ -78,7 +78,7 @@ const Description& description_of(ProcessFault fault) {
 // ended.
 class Witness final : public device::Device {
  public:
-  Witness(const config::Scenario& scenario)
+  explicit Witness(const config::Scenario& scenario)
       : device_(scenario::make_simulated_device(scenario)), scenario_(scenario) {}
 
   void read(SensorFrame& sensors) noexcept override { device_->read(sensors); }

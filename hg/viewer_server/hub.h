@@ -73,7 +73,7 @@ struct Hub {
   /// Queues a command for the program; false when too many are waiting.
   bool put_command(Command command);
   void show(Text frame);
-  void announce(Text event);
+  void announce(const Text& event);
   void answer(std::uint64_t page, const Text& answer);
 
   Listener listener;

@@ -56,7 +56,7 @@ concept IsWord = std::is_enum_v<T>;
 /// Words of all enumerators, in the order of enumerators<E>().
 template <IsWord E>
 const auto& words() {
-  static const auto all = [] {
+  static const auto kWords = [] {
     constexpr auto kAll = enumerators<E>();
     std::array<std::string, kAll.size()> texts;
     for (std::size_t i = 0; i < kAll.size(); ++i) {
@@ -69,7 +69,7 @@ const auto& words() {
     }
     return texts;
   }();
-  return all;
+  return kWords;
 }
 
 template <IsWord E>

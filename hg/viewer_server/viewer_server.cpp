@@ -94,7 +94,7 @@ void Hub::show(Text frame) {
   for (const auto& page : pages) page->show(newest_frame);
 }
 
-void Hub::announce(Text event) {
+void Hub::announce(const Text& event) {
   if (events.size() == kMaxEvents) events.pop_front();
   events.push_back(event);
   for (const auto& page : pages) page->notify(event);

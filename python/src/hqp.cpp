@@ -22,7 +22,6 @@ namespace hg::python {
 namespace {
 
 using hqp::ActiveSet;
-using hqp::Capacity;
 using hqp::LevelResult;
 using hqp::Problem;
 using hqp::RowState;
@@ -54,10 +53,10 @@ ArrayOut vector_to_numpy(std::vector<double> numbers) {
 }
 
 // array of a member of every level's result
-template <int LevelResult::*member>
+template <int LevelResult::*kMember>
 nb::object by_level(const SolutionOut& out) {
   const auto& levels = out.solution.levels;
-  return integers(levels.size(), [&](std::size_t i) { return levels[i].*member; });
+  return integers(levels.size(), [&](std::size_t i) { return levels[i].*kMember; });
 }
 
 ArrayOut slack_squared_of(const SolutionOut& out) {

@@ -106,7 +106,7 @@ void bind_kinematics(nb::class_<ChainData>& chain) {
       .def(
           "integrate",
           [](const ChainData& self, const ArrayIn& q, const ArrayIn& step) {
-            return with_state(self.model(), q, step, [&](auto at, auto by) {
+            return with_state(self.model(), q, step, [&](const auto& at, const auto& by) {
               return to_numpy(self.model().integrate(at, by));
             });
           },
@@ -114,7 +114,8 @@ void bind_kinematics(nb::class_<ChainData>& chain) {
       .def(
           "update",
           [](ChainData& self, const ArrayIn& q, const ArrayIn& dq) {
-            with_state(self.model(), q, dq, [&](auto at, auto with) { self.update(at, with); });
+            with_state(self.model(), q, dq,
+                       [&](const auto& at, const auto& with) { self.update(at, with); });
           },
           nb::arg("q"), nb::arg("dq"),
           "Sets the state, q (nq) and dq (nv), that all results below are for.")
@@ -157,7 +158,7 @@ void bind_dynamics(nb::class_<ChainData>& chain) {
       .def(
           "inverse_dynamics",
           [](ChainData& self, const ArrayIn& q, const ArrayIn& dq, const ArrayIn& ddq) {
-            return with_state(self.model(), q, dq, [&](auto at, auto with) {
+            return with_state(self.model(), q, dq, [&](const auto& at, const auto& with) {
               return to_numpy(
                   self.inverse_dynamics(at, with, vector_of(ddq, self.model().nv(), "ddq")));
             });

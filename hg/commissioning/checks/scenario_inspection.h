@@ -8,6 +8,7 @@
 
 #include "hg/commissioning/checks/findings.h"
 #include "hg/config/device.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/config/twin.h"
 
 namespace hg::checks {

@@ -116,8 +116,10 @@ Pose nominal_handle(const config::DeviceConfig& device) {
 // offsets from the nominal handle, near ones first
 std::vector<Eigen::Vector3d> offsets() {
   std::vector<Eigen::Vector3d> grid;
-  for (int k = 0; k < 27; ++k) {
-    grid.emplace_back(0.3 * (k % 3 - 1), 0.3 * (k / 3 % 3 - 1), 0.15 * (k / 9 - 1));
+  for (const int z : {-1, 0, 1}) {
+    for (const int y : {-1, 0, 1}) {
+      for (const int x : {-1, 0, 1}) grid.emplace_back(0.3 * x, 0.3 * y, 0.15 * z);
+    }
   }
   std::ranges::stable_sort(grid, {}, [](const Eigen::Vector3d& p) { return p.norm(); });
   return grid;

@@ -68,12 +68,12 @@ double Fit::solve_linear(Model& model, const Free& free, double& deviation) cons
   }
   VectorXd w = VectorXd::Ones(rows_.size()), x;
   for (int round = 0; round < 4; ++round) {
-    const MatrixXd WA = w.asDiagonal() * A;
-    MatrixXd H = A.transpose() * WA;
+    const MatrixXd W_A = w.asDiagonal() * A;
+    MatrixXd H = A.transpose() * W_A;
     H.diagonal().array() += 1e-9 * H.trace();
     H(3, 3) += precision(kGainPrior, deviation);
     H(4, 4) += precision(kInertiaPrior, deviation);
-    x = H.ldlt().solve(WA.transpose() * y);
+    x = H.ldlt().solve(W_A.transpose() * y);
     const VectorXd r = y - A * x;
     if (deviation <= 0.0 || round == 0) deviation = deviation_of(r);
     w = weights_of(r, deviation);
@@ -123,10 +123,10 @@ Parameters Fit::deviations(const Model& model, const Free& free, double deviatio
   for (std::size_t b = 0; b < blocks; ++b) {
     const Eigen::Index first = begins[b], rows = begins[b + 1] - first;
     const auto J = normal.J.middleRows(first, rows);
-    const MatrixXd WJ = normal.w.segment(first, rows).asDiagonal() * J;
-    MatrixXd H = normal.H - J.transpose() * WJ;
+    const MatrixXd W_J = normal.w.segment(first, rows).asDiagonal() * J;
+    MatrixXd H = normal.H - J.transpose() * W_J;
     H.diagonal().array() += 1e-9 * H.trace() / static_cast<double>(count);
-    steps.col(b) = H.ldlt().solve(normal.g - WJ.transpose() * normal.r.segment(first, rows));
+    steps.col(b) = H.ldlt().solve(normal.g - W_J.transpose() * normal.r.segment(first, rows));
   }
   const VectorXd mean = steps.rowwise().mean();
   const VectorXd sum = (steps.colwise() - mean).rowwise().squaredNorm();
@@ -199,9 +199,9 @@ Fit::Normal Fit::normal_of(const Model& model, const Free& free, double deviatio
     more.p[parameter] += step;
     normal.J.col(i) = (rows_.dry(more) - dry) / step;
   }
-  const MatrixXd WJ = normal.w.asDiagonal() * normal.J;
-  normal.H = normal.J.transpose() * WJ;
-  normal.g = WJ.transpose() * normal.r;
+  const MatrixXd W_J = normal.w.asDiagonal() * normal.J;
+  normal.H = normal.J.transpose() * W_J;
+  normal.g = W_J.transpose() * normal.r;
   for (Eigen::Index i = 0; i < count; ++i) {
     const int parameter = normal.of[i];
     if (parameter != kGain && parameter != kInertia) continue;

@@ -36,7 +36,7 @@ void Rows::for_each_part(Do&& take) const {
 }
 
 Rows::Rows(const FrictionTrace& trace, double rotor_inertia)
-    : trace_(trace), window_(window()), Jm_(rotor_inertia) {
+    : trace_(trace), window_(window()), J_m_(rotor_inertia) {
   const std::size_t n = trace.theta.size();
   speed_.assign(n, 0.0);
   const double h = trace.period_s;
@@ -62,7 +62,7 @@ Rows::Rows(const FrictionTrace& trace, double rotor_inertia)
   for (Eigen::Index i = 0; i < rows; ++i) {
     const std::size_t k = at_[i];
     ddtheta_[i] = smoothed(acceleration, k);
-    y_[i] = smoothed(driven, k) - Jm_ * ddtheta_[i];
+    y_[i] = smoothed(driven, k) - J_m_ * ddtheta_[i];
     v_[i] = speed_[k];
     tau_[i] = smoothed(trace.tau_J, k);
     slides_[i] = slides(k) ? 1.0 : 0.0;
@@ -79,7 +79,7 @@ VectorXd Rows::dry(const Model& model) const {
   const double F = std::max(1e-6, model.p[kCoulomb]), x = std::exp(model.p[kPresliding]);
   const double over = model.p[kStiction] - 1.0, v_s = std::exp(model.p[kStribeck]);
   const double h = trace_.period_s;
-  const double d = 2.0 * std::max(0.0, model.p[kDamping]) * std::sqrt(F / x * Jm_);
+  const double d = 2.0 * std::max(0.0, model.p[kDamping]) * std::sqrt(F / x * J_m_);
   std::vector<double> f(trace_.theta.size(), 0.0);
   for_each_part([&](std::size_t begin, std::size_t end) {
     std::array<double, kSlipElements> way{};
@@ -111,7 +111,7 @@ VectorXd Rows::dry(const Model& model) const {
 
 MatrixXd Rows::linear() const {
   MatrixXd columns(size(), kParameters - kViscous);
-  columns << v_, VectorXd::Ones(size()), tau_, Jm_ * ddtheta_;
+  columns << v_, VectorXd::Ones(size()), tau_, J_m_ * ddtheta_;
   return columns;
 }
 

@@ -70,7 +70,7 @@ class Rows {
 
   const FrictionTrace& trace_;
   std::array<double, 2 * kSmoothing + 1> window_;
-  double Jm_;
+  double J_m_;
   std::vector<double> speed_;
   std::vector<std::size_t> at_;
   Eigen::VectorXd y_, v_, tau_, ddtheta_, slides_;

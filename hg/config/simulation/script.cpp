@@ -34,13 +34,13 @@ void add_twin_channels(Loader& loader, const rendering::TwinModel& twin, ScriptD
 }  // namespace
 
 std::vector<Channel> common_channels() {
-  constexpr int k = person::kWrenchChannel;
-  return {{"fx_N", k + 0, kAnyNumber, "push along x of the handle"},
-          {"fy_N", k + 1, kAnyNumber, "push along y of the handle"},
-          {"fz_N", k + 2, kAnyNumber, "push along z of the handle"},
-          {"nx_Nm", k + 3, kAnyNumber, "turn about x of the handle"},
-          {"ny_Nm", k + 4, kAnyNumber, "turn about y of the handle"},
-          {"nz_Nm", k + 5, kAnyNumber, "turn about z of the handle"},
+  constexpr int kFirst = person::kWrenchChannel;
+  return {{"fx_N", kFirst + 0, kAnyNumber, "push along x of the handle"},
+          {"fy_N", kFirst + 1, kAnyNumber, "push along y of the handle"},
+          {"fz_N", kFirst + 2, kAnyNumber, "push along z of the handle"},
+          {"nx_Nm", kFirst + 3, kAnyNumber, "turn about x of the handle"},
+          {"ny_Nm", kFirst + 4, kAnyNumber, "turn about y of the handle"},
+          {"nz_Nm", kFirst + 5, kAnyNumber, "turn about z of the handle"},
           {"grip",
            person::kGripChannel,
            {.lb = 0.0, .ub = 1.0},

@@ -21,9 +21,9 @@ double wrench_delay(const WrenchConfig& config, double dt) noexcept {
 
 Vector6 without_weight(const WrenchConfig& config, const SensorFrame& sensors,
                        const Eigen::Matrix3d& R_B_S) noexcept {
-  const Eigen::Vector3d kAtRest = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d at_rest = Eigen::Vector3d::Zero();
   return sensors.w_S -
-         payload_wrench(config.payload, acceleration(config, sensors, R_B_S), kAtRest, kAtRest);
+         payload_wrench(config.payload, acceleration(config, sensors, R_B_S), at_rest, at_rest);
 }
 
 void estimate(const WrenchConfig& config, double dt, const SensorFrame& sensors,

@@ -39,9 +39,9 @@ struct FiniteSum {
     if constexpr (HasFields<T>) {
       fields(*this, value);
     } else if constexpr (std::is_same_v<T, double>) {
-      nothing += value - value;
+      nothing += 0.0 * value;
     } else if constexpr (std::is_class_v<T>) {
-      for (Eigen::Index i = 0; i < value.size(); ++i) nothing += value.data()[i] - value.data()[i];
+      for (Eigen::Index i = 0; i < value.size(); ++i) nothing += 0.0 * value.data()[i];
     } else {
       static_assert(std::is_integral_v<T> || std::is_enum_v<T>);
     }
@@ -59,10 +59,10 @@ bool has_bad_value(const SensorFrame& sensors, bool has_imu) noexcept {
 // Index of the first value that is not finite, for the report. Order: joints, joint speeds, gantry,
 // wrench, motors, joint torques, accelerometer, gyroscope, motor temperatures, clock; -1 = another.
 int first_bad_value(const SensorFrame& sensors, bool has_imu) noexcept {
-  const Eigen::Vector3d kNone = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
   return first_not_finite(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
-                          sensors.tau_m, has_imu ? sensors.a_S : kNone,
-                          has_imu ? sensors.omega_S : kNone, sensors.temperature_m,
+                          sensors.tau_m, has_imu ? sensors.a_S : none,
+                          has_imu ? sensors.omega_S : none, sensors.temperature_m,
                           Eigen::Matrix<double, 1, 1>(sensors.time_s));
 }
 
@@ -143,9 +143,9 @@ Monitor::Monitor(const MonitorConfig& config, const DeviceModel& device,
 }
 
 // A threshold of zero is passed by any value above it.
-template <FaultCode code>
+template <FaultCode kCode>
 void Monitor::look(int index, double value, double limit) noexcept {
-  constexpr std::size_t kRule = rule_index(code);
+  constexpr std::size_t kRule = rule_index(kCode);
   static_assert(kRule < kRuleCount);
   Worst& worst = worst_[kRule];
   if (!(value > worst.share * limit)) return;

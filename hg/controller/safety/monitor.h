@@ -217,7 +217,7 @@ class Monitor {
     int index;
   };
 
-  template <FaultCode code>
+  template <FaultCode kCode>
   void look(int index, double value, double limit) noexcept;
   void check_joint(int joint, const Rendered& rendered, const Watched& watched,
                    MonitorState& state) noexcept;

@@ -23,7 +23,7 @@ const double kFastestFilter = std::sqrt(5.0) - 1.0;  // rad per period, see larg
 constexpr double kSlides = 0.5;          // share of friction_speed's tanh from which a joint slides
 constexpr double kSlips = 0.999;         // share of all bristles that slip, up to rounding
 constexpr int kSweepsAtStart = 12;       // far more than any matrix of seven rows needs
-constexpr double kMotorPdDamping = 1.4;  // [C] 1: Kd = 1.4 sqrt(K Jm)
+constexpr double kMotorPdDamping = 1.4;  // [C] 1: K_d = 1.4 sqrt(K Jm)
 
 // drives that follow positions need no more
 void fill(const ReferenceState& reference, CommandFrame& command) noexcept {
@@ -79,11 +79,11 @@ JointControl::JointControl(const ControlConfig& config, const DeviceModel& devic
   lead_pole_ = estimation::low_pass_pole(config_.lead_low_pass_Hz, dt_);
   stiff_pole_ = estimation::low_pass_pole(config_.stiff_low_pass_Hz, dt_);
   K_.resize(n_m_);
-  Jm_.resize(n_m_);
+  J_m_.resize(n_m_);
   feed_max_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     K_[i] = actuators_[i].stiffness;
-    Jm_[i] = actuators_[i].rotor_inertia;
+    J_m_[i] = actuators_[i].rotor_inertia;
     feed_max_[i] = kFeedforwardShare * actuators_[i].torque_max;
   }
   sqrt_K_ = K_.cwiseSqrt();
@@ -340,20 +340,20 @@ VectorM JointControl::modal_torque(const Errors& errors, const RobotState& robot
            config_.integral_rate * (gains.motor + gains.link) * f_integral[i];
   }
   const double w0_2 = state.poles.w0 * state.poles.w0;
-  const VectorM Jt = K_ / w0_2;
+  const VectorM J_t = K_ / w0_2;
   const VectorM feedback = of_modes(v, state);
-  const VectorM share = Jm_.cwiseQuotient(Jt);  // of a torque on rotors that look like Jt
+  const VectorM share = J_m_.cwiseQuotient(J_t);  // of a torque on rotors that look like J_t
   learn_friction(forward, share.cwiseProduct(feedback), robot, state);
-  const VectorM u = forward.tau + Jt.cwiseProduct(forward.ddtheta) + feedback;
-  // the measured torque makes the rotor look like one of inertia Jt
+  const VectorM u = forward.tau + J_t.cwiseProduct(forward.ddtheta) + feedback;
+  // the measured torque makes the rotor look like one of inertia J_t
   return share.cwiseProduct(u - robot.tau_m) + robot.tau_m;
 }
 
 VectorM JointControl::motor_pd_torque(const Errors& errors,
                                       const Feedforward& forward) const noexcept {
-  const VectorM Kd = kMotorPdDamping * K_.cwiseProduct(Jm_).cwiseSqrt();
-  return forward.tau + Jm_.cwiseProduct(forward.ddtheta) + K_.cwiseProduct(errors.theta) +
-         Kd.cwiseProduct(errors.dtheta);
+  const VectorM K_d = kMotorPdDamping * K_.cwiseProduct(J_m_).cwiseSqrt();
+  return forward.tau + J_m_.cwiseProduct(forward.ddtheta) + K_.cwiseProduct(errors.theta) +
+         K_d.cwiseProduct(errors.dtheta);
 }
 
 // By the motion of the reference, whose sign is known before the motor turns.

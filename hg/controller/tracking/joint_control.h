@@ -176,7 +176,7 @@ class JointControl {
   double dt_;                                  ///< Period, s
   std::vector<ActuatorModel> actuators_;       ///< Actuators, one per joint
   double lead_pole_ = 0.0, stiff_pole_ = 0.0;  ///< Poles of the low-passes
-  VectorM K_, sqrt_K_, Jm_;
+  VectorM K_, sqrt_K_, J_m_;
   bool has_feet_ = false;        ///< Some joint has presliding
   VectorM feed_max_;             ///< Largest torque that is fed forward, Nm
   VectorM link_torque_, ddq_r_;  ///< Result of link_torque() in this step, and its ddq

@@ -85,8 +85,8 @@ Modes::Modes(int n) : Q_(MatrixM::Identity(n, n)), mu_(VectorM::Zero(n)) {}
 
 void Modes::follow(const MatrixM& A, int sweeps) noexcept {
   const int n = static_cast<int>(A.rows());
-  const MatrixM AQ = A.lazyProduct(Q_);  // small: no blocking
-  MatrixM B = Q_.transpose().lazyProduct(AQ);
+  const MatrixM A_Q = A.lazyProduct(Q_);  // small: no blocking
+  MatrixM B = Q_.transpose().lazyProduct(A_Q);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (int p = 0; p + 1 < n; ++p) {
       for (int r = p + 1; r < n; ++r) rotate(p, r, B, Q_);

@@ -11,26 +11,26 @@ namespace hg::tracking {
 
 Eigen::MatrixXd plant_with_input(const TruePlant& plant, const MatrixM& M) {
   const int n = static_cast<int>(M.rows());
-  Eigen::VectorXd Jm(n), K(n), D(n), viscous(n), bristles = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd J_m(n), K(n), D(n), viscous(n), bristles = Eigen::VectorXd::Zero(n);
   if (plant.bristles.size() > 0) bristles = plant.bristles;
   for (int i = 0; i < n; ++i) {
     const ActuatorModel& actuator = plant.actuators[i];
-    Jm[i] = actuator.rotor_inertia;
+    J_m[i] = actuator.rotor_inertia;
     K[i] = actuator.stiffness;
     D[i] = actuator.damping;
     viscous[i] = actuator.viscous_friction;
   }
   const Eigen::MatrixXd M_inverse = inverse(M);
-  const Eigen::VectorXd Jm_inverse = Jm.cwiseInverse();
+  const Eigen::VectorXd J_m_inverse = J_m.cwiseInverse();
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(6 * n, 6 * n);
   const auto block = [&](int row, int column) { return A.block(row * n, column * n, n, n); };
   block(0, 1).setIdentity();
   block(2, 3).setIdentity();
-  block(1, 0) = (-Jm_inverse.cwiseProduct(K + bristles)).asDiagonal();
-  block(1, 1) = (-Jm_inverse.cwiseProduct(D + viscous)).asDiagonal();
-  block(1, 2) = Jm_inverse.cwiseProduct(K).asDiagonal();
-  block(1, 3) = Jm_inverse.cwiseProduct(D).asDiagonal();
-  block(1, 4) = Jm_inverse.asDiagonal();
+  block(1, 0) = (-J_m_inverse.cwiseProduct(K + bristles)).asDiagonal();
+  block(1, 1) = (-J_m_inverse.cwiseProduct(D + viscous)).asDiagonal();
+  block(1, 2) = J_m_inverse.cwiseProduct(K).asDiagonal();
+  block(1, 3) = J_m_inverse.cwiseProduct(D).asDiagonal();
+  block(1, 4) = J_m_inverse.asDiagonal();
   block(3, 0) = M_inverse * K.asDiagonal();
   block(3, 1) = M_inverse * D.asDiagonal();
   block(3, 2) = -(M_inverse * K.asDiagonal());

@@ -12,10 +12,10 @@ namespace hg::udp {
 namespace {
 
 constexpr std::uint32_t kNanosecondMagic = 0xa1b23c4d;
-constexpr std::uint32_t kVersion = 2 | 4U << 16U;
+constexpr std::uint32_t kFormatVersion = 2 | 4U << 16U;
 constexpr std::uint32_t kLinkTypeUser0 = 147;
 constexpr std::uint32_t kLargest = 65535;
-constexpr std::array<std::uint32_t, 6> kFileHeader = {kNanosecondMagic, kVersion,      0, 0,
+constexpr std::array<std::uint32_t, 6> kFileHeader = {kNanosecondMagic, kFormatVersion, 0, 0,
                                                       kLargest,         kLinkTypeUser0};
 using PacketHeader = std::array<std::uint32_t, 4>;  // s, ns, captured bytes, bytes
 

@@ -31,7 +31,7 @@ std::vector<Eigen::Vector3d> corners(const Shape& shape, const Pose& T_B_shape) 
 // update_kinematics().
 int frame_on(const model::ChainData& chain, int body) {
   for (int frame = 0; frame < static_cast<int>(chain.model().frame_names().size()); ++frame) {
-    const model::Jacobian J = chain.jacobian(frame);
+    const model::Jacobian& J = chain.jacobian(frame);
     int moved_by = 0;
     for (int i = 0; i < chain.model().nv(); ++i) {
       if (!J.col(i).isZero(0.0)) moved_by = i + 1;
