@@ -21,6 +21,7 @@
 #include "hg/recording/recorder.h"
 #include "hg/runtime/runtime.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/run.h"
 
 namespace hg::apps {
 namespace {
