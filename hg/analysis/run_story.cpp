@@ -193,9 +193,9 @@ void RunStory::add_limits(const CycleRecord& record) {
 void RunStory::add_others(const Sample& sample) {
   const CycleRecord& record = sample.record;
   if (record.warning.code != FaultCode::kNone) {
-    const safety::Rule& rule = safety::rule_of(record.warning.code);
     const std::string part = part_of(record.warning, names_, sample.sensors);
-    const std::string what = fmt::format("{}{}", rule.name, part.empty() ? "" : " (" + part + ")");
+    const std::string what = fmt::format("{}{}", words_of(record.warning.code).name,
+                                         part.empty() ? "" : " (" + part + ")");
     if (record.warning.code == FaultCode::kOscillation) {
       extend("warning", what + ": hand and device oscillate against each other", record.time_s);
     } else {
@@ -270,15 +270,15 @@ void RunStory::add_fault(const Sample& sample) {
     entries_.push_back({record.time_s, "reset", "the fault is gone and was reset", {}});
     return;
   }
-  const safety::Rule& rule = safety::rule_of(fault.code);
+  const FaultWords& words = words_of(fault.code);
   const std::string figures = figures_of(fault, names_, sample.sensors);
   Entry entry{record.time_s,
               "FAULT",
-              fmt::format("{} {}{}", static_cast<int>(fault.code), rule.name,
+              fmt::format("{} {}{}", static_cast<int>(fault.code), words.name,
                           figures.empty() ? "" : " (" + figures + ")"),
               {}};
-  entry.details.push_back(detail("meaning", std::string(rule.meaning)));
-  entry.details.push_back(detail("released by", release_text(rule)));
+  entry.details.push_back(detail("meaning", std::string(words.meaning)));
+  entry.details.push_back(detail("released by", release_text(safety::rule_of(fault.code))));
   has_aftermath_ = true;
   aftermath_ = {.entry = entries_.size(),
                 .fault_s = record.time_s,

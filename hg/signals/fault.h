@@ -8,54 +8,66 @@
 
 namespace hg {
 
+/// Causes of a stop. Their words are in one table, kFaults of fault.cpp.
 enum class FaultCode : std::uint16_t {
   kNone = 0,
-  kSensorNotFinite = 100,       ///< a measured value is NaN or infinite
-  kSequenceGap = 101,           ///< the device skipped or repeated a sample
-  kEmergencyStop = 102,         ///< a safety input requests a stop
-  kDeviceSilent = 103,          ///< no message from a remote device for too long
-  kDeviceGone = 104,            ///< a remote device ended the session
-  kSensorFrozen = 105,          ///< a measured value is bitwise constant for too long
-  kSensorImplausible = 106,     ///< motor, spring and link of a joint contradict each other
-  kSensorJump = 107,            ///< a joint moved farther in one sample than physically possible
-  kClockWrong = 108,            ///< the device's clock does not match its sample count
-  kBusErrors = 109,             ///< too many samples in a row with missing fieldbus answers
-  kWrenchTooLarge = 110,        ///< the user's force or torque exceeds the sensor's range
-  kJointTorqueExceeded = 111,   ///< a joint torque exceeds its peak
-  kTooHot = 112,                ///< a motor is hotter than allowed
-  kDriveFault = 113,            ///< a drive reports a fault
-  kMotorDeviates = 114,         ///< a motor does not deliver the commanded torque
-  kTorqueUnexplained = 115,     ///< motion and user wrench do not explain a joint torque
-  kTurnUnexplained = 116,       ///< gyroscope and encoders disagree on the rotation of the handle
-  kMotionUnexplained = 117,     ///< accelerometer and encoders disagree on the handle's speed
-  kCommandsLost = 120,          ///< no new commands reach the device
-  kOperatorReleased = 130,      ///< the operator released the enabling switch
-  kScannerField = 131,          ///< a person is in the scanner's field while the handle is free
-  kSafetyInputsDisagree = 132,  ///< the two channels of a safety input disagree for too long
-  kSafeSpeedExceeded = 133,     ///< the safely limited speed is exceeded
-  kSolverFailed = 200,          ///< the rendering problem was not solved
-  kReferenceNotFinite = 201,    ///< the rendering returned NaN or infinity
-  kCommandNotFinite = 202,      ///< the control returned NaN or infinity
-  kCycleOverrun = 203,          ///< too many late cycles
-  kLimitExceeded = 300,         ///< a joint or frame exceeds its limit by more than the tolerance
-  kSpeedExceeded = 301,         ///< a joint exceeds its speed rating
-  kTrackingLost = 302,          ///< the device is too far from its reference
-  kSyncLost = 303,              ///< handle and twin are too far apart
-  kLatencyGrew = 304,           ///< command latency exceeds the stability bound of the torque loop
-  kCollisionAhead = 305,  ///< later braking would end in a collision with itself or surroundings
-  kGantryExceeded = 306,  ///< a gantry axis is beyond its range or its speed rating
-  kGantryDeviates = 307,  ///< a gantry axis does not move as commanded
-  kOscillation = 308,     ///< hand and device oscillate although damping was adapted
-  kEnergy = 309,          ///< the device delivered more energy than its tank holds
-  kStopTooSlow = 310,     ///< a controlled stop did not reach standstill in time
-  kAccelerationExceeded = 311,  ///< the commanded acceleration of a joint exceeds its rating
-  kBrakingPosition = 320,       ///< position of a braking axis deviates from its ramp
-  kBrakingSpeed = 321,          ///< speed of a braking axis deviates from its ramp
-  kStopTooFar = 322,            ///< a braking axis moved too far
-  kBrakesSlip = 323,            ///< an axis moves with drive off and brake closed
+  kSensorNotFinite = 100,
+  kSequenceGap = 101,
+  kEmergencyStop = 102,
+  kDeviceSilent = 103,
+  kDeviceGone = 104,
+  kSensorFrozen = 105,
+  kSensorImplausible = 106,
+  kSensorJump = 107,
+  kClockWrong = 108,
+  kBusErrors = 109,
+  kWrenchTooLarge = 110,
+  kJointTorqueExceeded = 111,
+  kTooHot = 112,
+  kDriveFault = 113,
+  kMotorDeviates = 114,
+  kTorqueUnexplained = 115,
+  kTurnUnexplained = 116,
+  kMotionUnexplained = 117,
+  kCommandsLost = 120,
+  kOperatorReleased = 130,
+  kScannerField = 131,
+  kSafetyInputsDisagree = 132,
+  kSafeSpeedExceeded = 133,
+  kSolverFailed = 200,
+  kReferenceNotFinite = 201,
+  kCommandNotFinite = 202,
+  kCycleOverrun = 203,
+  kLimitExceeded = 300,
+  kSpeedExceeded = 301,
+  kTrackingLost = 302,
+  kSyncLost = 303,
+  kLatencyGrew = 304,
+  kCollisionAhead = 305,
+  kGantryExceeded = 306,
+  kGantryDeviates = 307,
+  kOscillation = 308,
+  kEnergy = 309,
+  kStopTooSlow = 310,
+  kAccelerationExceeded = 311,
+  kBrakingPosition = 320,
+  kBrakingSpeed = 321,
+  kStopTooFar = 322,
+  kBrakesSlip = 323,
 };
 
-/// Text of a fault code in one line, for example "measured value is not finite".
+/// Words for a fault, the same in messages, recordings, Python and docs.
+struct FaultWords {
+  FaultCode code = FaultCode::kNone;
+  std::string_view name;     ///< Two or three words, for example "sensor not finite"
+  std::string_view text;     ///< One line for messages, for example "measured value is not finite"
+  std::string_view meaning;  ///< Explanation in whole sentences
+};
+
+/// Words for `code`; for an unknown code those of an unknown fault.
+const FaultWords& words_of(FaultCode code) noexcept;
+
+/// Text of a fault code in one line: words_of(code).text.
 std::string_view to_string(FaultCode code) noexcept;
 
 /// Kind of oscillation: Fault::index of FaultCode::kOscillation. Numbers never change meaning.

@@ -28,9 +28,10 @@ nlohmann::ordered_json safety_facts() {
     facts["transitions"].push_back(row);
   }
   for (const Rule& rule : kRules) {
+    const FaultWords& words = words_of(rule.code);
     facts["rules"].push_back({{"number", static_cast<int>(rule.code)},
-                              {"name", rule.name},
-                              {"meaning", rule.meaning},
+                              {"name", words.name},
+                              {"meaning", words.meaning},
                               {"threshold", rule.threshold},
                               {"warn_from", rule.warn_from},
                               {"samples", rule.debounce.samples},

@@ -3,11 +3,8 @@
 namespace hg::safety {
 namespace {
 
-constexpr Rule kUnknown = {.name = "unknown",
-                           .meaning = "The cause is unknown to this program.",
-                           .threshold = "none",
-                           .reaction = Stop::kSto,
-                           .release = "the run is started again"};
+constexpr Rule kUnknown = {
+    .threshold = "none", .reaction = Stop::kSto, .release = "the run is started again"};
 
 constexpr bool is_ordered() noexcept {
   for (std::size_t i = 1; i < kRuleCount; ++i) {

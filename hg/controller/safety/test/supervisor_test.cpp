@@ -239,8 +239,8 @@ TEST(Supervisor, EveryRuleHasTheReactionOfItsRow) {
   for (const Rule& rule : kRules) {
     SupervisorState state = in(SafetyState::kByHand);
     break_rule({rule.code, 1, 2.0, 1.0}, state);
-    EXPECT_EQ(state.stop, rule.reaction) << rule.name;
-    EXPECT_EQ(state.fault.code, rule.code) << rule.name;
+    EXPECT_EQ(state.stop, rule.reaction) << to_string(rule.code);
+    EXPECT_EQ(state.fault.code, rule.code) << to_string(rule.code);
     EXPECT_EQ(state.state,
               rule.reaction == Stop::kSto ? SafetyState::kFault : SafetyState::kToFault);
   }
@@ -343,11 +343,12 @@ TEST(CheckSafetyInputs, AStopComesBeforeADisagreement) {
 TEST(Rules, AllFaultsHaveARuleAndAllTextsAreThere) {
   for (const Rule& rule : kRules) {
     EXPECT_EQ(&rule_of(rule.code), &rule);
-    EXPECT_NE(to_string(rule.code), "unknown fault") << rule.name;
-    EXPECT_FALSE(rule.name.empty() || rule.meaning.empty() || rule.threshold.empty() ||
-                 rule.release.empty());
-    EXPECT_EQ(rule.meaning.back(), '.') << rule.name;
-    EXPECT_NE(rule.reaction, Stop::kNone) << rule.name;
+    const FaultWords& words = words_of(rule.code);
+    EXPECT_EQ(words.code, rule.code);
+    EXPECT_FALSE(words.name.empty() || words.text.empty() || words.meaning.empty());
+    EXPECT_FALSE(rule.threshold.empty() || rule.release.empty()) << words.name;
+    EXPECT_EQ(words.meaning.back(), '.') << words.name;
+    EXPECT_NE(rule.reaction, Stop::kNone) << words.name;
   }
   std::size_t known = 0;
   for (int code = 1; code < 1000; ++code) {
