@@ -151,8 +151,8 @@ void restore(controller::Cycle& cycle, const controller::CycleState& state) {
 }
 
 void bind_parts(nb::module_& module) {
-  const nb::class_<controller::CycleState> state(module, "State",
-                                                 "All that a cycle remembers; a snapshot.");
+  const nb::class_<controller::CycleState> snapshot(module, "State",
+                                                    "All that a cycle remembers; a snapshot.");
   nb::class_<OwnCycle>(module, "Cycle",
                        "One pass of the control loop per step(); no clock, no I/O.")
       .def(nb::init<const Scenario&>(), nb::arg("scenario"))
