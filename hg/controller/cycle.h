@@ -42,7 +42,8 @@ struct CycleConfig {
   std::vector<SolverCap> solver_caps;       ///< Injected faults of the computer; empty = none
 };
 
-/// How the device moves in a cycle; decided once, between estimation and prepositioning.
+/// How the device moves in a cycle. Decided between estimation and prepositioning; kRender and
+/// kRenderStop become kBrakeJoints where the solver finds no solution.
 enum class Motion : std::uint8_t {
   kNone,         ///< the sample is unusable: nothing is computed, and the drives are off
   kHold,         ///< the device stands still; before arming, the twin follows it

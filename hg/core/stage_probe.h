@@ -16,14 +16,14 @@ namespace hg {
 enum class Stage : std::uint8_t {
   kSupervision,     ///< sensor check, operating state, changes of parameters
   kEstimation,      ///< sensors to states
-  kPrepositioning,  ///< check of the reference, target of the gantry
+  kPrepositioning,  ///< look ahead for collisions, check of the reference, target of the gantry
   kRenderingSetUp,  ///< device and twin models, torques, rows of the problem
   kSolver,          ///< the lexicographic solver
   kReactions,       ///< constraint torque split, report of the rendering
-  kIntegration,     ///< check of the solution, reference and twin advance by one period
-  kControl,         ///< commands of the drives
+  kIntegration,     ///< energy, check of the solution, reference and twin advance by one period
+  kControl,         ///< monitor, commands of the drives, contacts of the arm
   kSafety,          ///< sanitiser
-  kStateHash,       ///< hash of the state for the record
+  kStateHash,       ///< the record, with the hash of the state
 };
 inline constexpr int kStageCount = 10;
 

@@ -1,5 +1,6 @@
 /// The parameters of a twin that may change while it runs: one table for twin.yaml, the changes of
-/// a scenario, the form of the page, and the check in the control loop.
+/// a scenario, the form of the page, and the check in the control loop. The form offers a smaller,
+/// usual range of each.
 #pragma once
 
 #include <array>
