@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
-#include <limits>
 
 namespace hg::recording {
 namespace {
@@ -29,24 +27,6 @@ std::string npy_head(const std::vector<const Column*>& columns, std::size_t rows
 }
 
 }  // namespace
-
-std::vector<std::byte> padded(const Column& column, std::size_t rows) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const std::size_t numbers = rows * column.width();
-  std::vector<std::byte> bytes(numbers * column.bytes);
-  if (column.kind == 'f') {
-    for (std::size_t i = 0; i < numbers; ++i) {
-      std::memcpy(bytes.data() + i * sizeof kNan, &kNan, sizeof kNan);
-    }
-  }
-  const std::byte* from = column.data.data();
-  for (std::size_t row = 0; row < column.counts.size(); ++row) {
-    const std::size_t size = column.counts[row] * column.bytes;
-    std::copy_n(from, size, bytes.data() + row * column.width() * column.bytes);
-    from += size;
-  }
-  return bytes;
-}
 
 std::string to_npy(const Columns& columns) {
   std::vector<const Column*> kept;

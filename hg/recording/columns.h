@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -145,7 +146,23 @@ class Columns {
 };
 
 /// Bytes of a column in rows of column.width() numbers; shorter rows are padded with NaN or 0.
-std::vector<std::byte> padded(const Column& column, std::size_t rows);
+inline std::vector<std::byte> padded(const Column& column, std::size_t rows) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t numbers = rows * column.width();
+  std::vector<std::byte> bytes(numbers * column.bytes);
+  if (column.kind == 'f') {
+    for (std::size_t i = 0; i < numbers; ++i) {
+      std::memcpy(bytes.data() + i * sizeof kNan, &kNan, sizeof kNan);
+    }
+  }
+  const std::byte* from = column.data.data();
+  for (std::size_t row = 0; row < column.counts.size(); ++row) {
+    const std::size_t size = column.counts[row] * column.bytes;
+    std::copy_n(from, size, bytes.data() + row * column.width() * column.bytes);
+    from += size;
+  }
+  return bytes;
+}
 
 /// The kept columns as the content of a file that numpy.load() reads: a structured array with a
 /// row per sample and a field per column; see padded().
