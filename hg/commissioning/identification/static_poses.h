@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hg/commissioning/identification/payload.h"
-#include "hg/config/device.h"
+#include "hg/config/simulation/simulation.h"
 #include "hg/core/types.h"
 
 namespace hg::identification {
