@@ -104,9 +104,9 @@ using Choices = std::span<const Choice<std::type_identity_t<T>>>;
 /// A choice per enumerator of E, named like it: "either_way" for kEitherWay.
 template <class E>
 constexpr auto choices_of() {
-  const auto choices = []<std::size_t... i>(std::index_sequence<i...>) {
+  const auto choices = []<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
     return std::array{
-        Choice<E>{key_name<enumerators<E>()[i].value>(), enumerators<E>()[i].value}...};
+        Choice<E>{key_name<enumerators<E>()[kIndex].value>(), enumerators<E>()[kIndex].value}...};
   };
   return choices(std::make_index_sequence<enumerators<E>().size()>{});
 }

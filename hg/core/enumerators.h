@@ -38,10 +38,10 @@ struct Key {
   std::size_t size = 0;
 };
 
-template <auto value>
+template <auto kValue>
 inline constexpr Key kKey = [] {
   Key key;
-  for (const char c : name_of<value>().substr(1)) {
+  for (const char c : name_of<kValue>().substr(1)) {
     const bool is_upper = c >= 'A' && c <= 'Z';
     if (is_upper && key.size > 0) key.text[key.size++] = '_';
     key.text[key.size++] = is_upper ? static_cast<char>(c - 'A' + 'a') : c;
@@ -52,9 +52,9 @@ inline constexpr Key kKey = [] {
 }  // namespace detail
 
 /// Name of an enumerator in files and options: kEitherWay is "either_way".
-template <auto value>
+template <auto kValue>
 constexpr std::string_view key_name() {
-  return {detail::kKey<value>.text.data(), detail::kKey<value>.size};
+  return {detail::kKey<kValue>.text.data(), detail::kKey<kValue>.size};
 }
 
 /// All enumerators of E with values from 0 to below `kEnd`, in the order of their values.
