@@ -409,8 +409,7 @@ PassivityReport Cycle::watch_energy(Motion motion, const RobotState& robot,
        .speed = twist_E.head<3>().norm(),
        .is_pushed_back = is_pushed_back(law)},
       state_.passivity);
-  const passivity::AddedImpedance& added = state_.passivity.added;
-  rendering.added = {added.damping, added.inertia};
+  rendering.added = state_.passivity.added;
   const Fault fault = passivity::passivity_fault(config_.passivity, report, state_.passivity);
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
   return report;

@@ -22,28 +22,17 @@
 #include "hg/hqp/solver.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
+#include "hg/signals/added_impedance.h"
 #include "hg/signals/state.h"
 
 namespace hg::rendering {
-
-/// Additional damping and inertia of the twin; see hg/controller/safety/passivity.
-struct AddedImpedance {
-  double damping = 0.0;  ///< Damping of the end effector in all directions, Ns/m
-  double inertia = 1.0;  ///< Factor of the twin's inertia, without more weight
-};
-
-/// Words of the state hash, in its order.
-void hashed(auto& hash, const AddedImpedance& added) {
-  const auto& [damping, inertia] = added;
-  hash.mix(damping, inertia);
-}
 
 /// Part of the copyable state of a cycle.
 struct RenderingState {
   ReferenceState reference;
   TwinState twin;
   TwinInnerState inner;
-  AddedImpedance added;  ///< Additional damping and inertia in the next step
+  AddedImpedance added;  ///< In the next step; see hg/controller/safety/passivity
   /// Wrench on the handle that stands for a contact of the arm, in the next step.
   Vector6 touch = Vector6::Zero();
   hqp::ActiveSet active_set;

@@ -26,6 +26,7 @@
 
 #include "hg/core/turns.h"
 #include "hg/core/types.h"
+#include "hg/signals/added_impedance.h"
 #include "hg/signals/state.h"
 
 namespace hg::passivity {
@@ -57,18 +58,6 @@ struct PassivityInput {
   double speed = 0.0;           ///< Speed of the twin's end effector, m/s
   bool is_pushed_back = false;  ///< A limit or a surface acts on the twin
 };
-
-/// Damping and inertia added to the twin.
-struct AddedImpedance {
-  double damping = 0.0;  ///< Damping at the end effector, in all directions, Ns/m
-  double inertia = 1.0;  ///< Factor of the twin's inertia, >= 1
-};
-
-/// Words of the state hash, in its order.
-void hashed(auto& hash, const AddedImpedance& added) {
-  const auto& [damping, inertia] = added;
-  hash.mix(damping, inertia);
-}
 
 struct PassivityState {
   bool is_started = false;
