@@ -33,6 +33,17 @@ constexpr auto candidates(std::index_sequence<kIndex...>) {
   return std::array{Enumerator<E>{static_cast<E>(kIndex), name_of<static_cast<E>(kIndex)>()}...};
 }
 
+// Passes the name's characters on in lower case, without its "k" and with `separator` between
+// words.
+constexpr void separate(std::string_view enumerator, char separator, auto&& append) {
+  for (std::size_t i = 1; i < enumerator.size(); ++i) {
+    const char c = enumerator[i];
+    const bool is_upper = c >= 'A' && c <= 'Z';
+    if (is_upper && i > 1) append(separator);
+    append(is_upper ? static_cast<char>(c - 'A' + 'a') : c);
+  }
+}
+
 struct Key {
   std::array<char, 32> text{};
   std::size_t size = 0;
@@ -41,11 +52,7 @@ struct Key {
 template <auto kValue>
 inline constexpr Key kKey = [] {
   Key key;
-  for (const char c : name_of<kValue>().substr(1)) {
-    const bool is_upper = c >= 'A' && c <= 'Z';
-    if (is_upper && key.size > 0) key.text[key.size++] = '_';
-    key.text[key.size++] = is_upper ? static_cast<char>(c - 'A' + 'a') : c;
-  }
+  separate(name_of<kValue>(), '_', [&](char c) { key.text[key.size++] = c; });
   return key;
 }();
 
@@ -77,21 +84,16 @@ constexpr auto enumerators() {
 /// Words of an enumerator's name: "kStillMoving" becomes "still moving".
 inline std::string words_of(std::string_view enumerator) {
   std::string words;
-  for (const char c : enumerator.substr(1)) {
-    const bool is_upper = c >= 'A' && c <= 'Z';
-    if (is_upper && !words.empty()) words += ' ';
-    words += is_upper ? static_cast<char>(c - 'A' + 'a') : c;
-  }
+  detail::separate(enumerator, ' ', [&](char c) { words += c; });
   return words;
 }
 
 /// Constant name of an enumerator in other languages: "kStillMoving" becomes "STILL_MOVING".
 inline std::string constant_name(std::string_view enumerator) {
-  std::string name = words_of(enumerator);
-  for (char& c : name) {
-    if (c == ' ') c = '_';
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  }
+  std::string name;
+  detail::separate(enumerator, '_', [&](char c) {
+    name += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  });
   return name;
 }
 
