@@ -123,7 +123,7 @@ double Guard::distance(int pair, const Path& path, double time) noexcept {
 }
 
 // Depth first from the start of the path; `ends` holds the ends of pending intervals.
-void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
+void Guard::evaluate(int index, const Path& path, bool is_powered, int& budget,
                      CollisionState& state) noexcept {
   struct Place {
     double time, distance;
@@ -133,7 +133,7 @@ void Guard::evaluate(int index, const Path& path, bool is_moving, int& budget,
   Place from = {0.0, distance(index, path, 0.0)};
   --budget;
   const double accepted = std::min(config_.safe_distance, from.distance - kApproach);
-  allowed = is_moving ? std::max(allowed, accepted) : accepted;
+  allowed = is_powered ? std::max(allowed, accepted) : accepted;
 
   double smallest = from.distance;
   std::array<Place, kHalvings> ends;
@@ -172,7 +172,7 @@ void Guard::fade(const VectorPM& q, const VectorPM& stop, CollisionState& state)
   }
 }
 
-Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
+Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_powered,
                        CollisionState& state) noexcept {
   Prediction prediction;
   const auto count = static_cast<int>(config_.pairs.watched.size());
@@ -185,9 +185,9 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
   } else {
     fading_ = {};
     for (int i = 0; i < count; ++i) {
-      state.allowed[i] = is_moving ? config_.safe_distance : 0.0;
+      state.allowed[i] = is_powered ? config_.safe_distance : 0.0;
       int first_budget = kMaxDistances;
-      evaluate(i, path, is_moving, first_budget, state);
+      evaluate(i, path, is_powered, first_budget, state);
       prediction.distances += kMaxDistances - first_budget;
     }
   }
@@ -207,7 +207,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_moving,
     }
     if (next < 0) break;
     is_done[next] = true;
-    evaluate(next, path, is_moving, budget, state);
+    evaluate(next, path, is_powered, budget, state);
   }
   prediction.distances += had_budget - budget;
 
