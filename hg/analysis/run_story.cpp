@@ -194,7 +194,7 @@ void RunStory::add_others(const Sample& sample) {
   const CycleRecord& record = sample.record;
   if (record.warning.code != FaultCode::kNone) {
     const std::string part = part_of(record.warning, names_, sample.sensors);
-    const std::string what = fmt::format("{}{}", words_of(record.warning.code).name,
+    const std::string what = fmt::format("{}{}", fault_words(record.warning.code).name,
                                          part.empty() ? "" : " (" + part + ")");
     if (record.warning.code == FaultCode::kOscillation) {
       extend("warning", what + ": hand and device oscillate against each other", record.time_s);
@@ -270,7 +270,7 @@ void RunStory::add_fault(const Sample& sample) {
     entries_.push_back({record.time_s, "reset", "the fault is gone and was reset", {}});
     return;
   }
-  const FaultWords& words = words_of(fault.code);
+  const FaultWords& words = fault_words(fault.code);
   const std::string figures = figures_of(fault, names_, sample.sensors);
   Entry entry{record.time_s,
               "FAULT",

@@ -229,7 +229,7 @@ viewer_server::SafetyView safety_view(const Sample& sample, const analysis::Name
   const auto text_of = [&](const Fault& fault) -> std::string {
     if (fault.code == FaultCode::kNone) return {};
     const std::string figures = analysis::figures_of(fault, names, sample.sensors);
-    return fmt::format("{} {}{}", static_cast<int>(fault.code), words_of(fault.code).meaning,
+    return fmt::format("{} {}{}", static_cast<int>(fault.code), fault_words(fault.code).meaning,
                        figures.empty() ? "" : " (" + figures + ")");
   };
   const bool is_stopped = record.fault.code != FaultCode::kNone;

@@ -207,14 +207,14 @@ static_assert(is_ordered(), "one row per fault, in the order of their numbers");
 
 }  // namespace
 
-const FaultWords& words_of(FaultCode code) noexcept {
+const FaultWords& fault_words(FaultCode code) noexcept {
   for (const FaultWords& words : kFaults) {
     if (words.code == code) return words;
   }
   return kUnknown;
 }
 
-std::string_view to_string(FaultCode code) noexcept { return words_of(code).text; }
+std::string_view to_string(FaultCode code) noexcept { return fault_words(code).text; }
 
 std::string_view to_string(Shaking shaking) noexcept {
   switch (shaking) {

@@ -65,9 +65,9 @@ struct FaultWords {
 };
 
 /// Words for `code`; for an unknown code those of an unknown fault.
-const FaultWords& words_of(FaultCode code) noexcept;
+const FaultWords& fault_words(FaultCode code) noexcept;
 
-/// Text of a fault code in one line: words_of(code).text.
+/// Text of a fault code in one line: fault_words(code).text.
 std::string_view to_string(FaultCode code) noexcept;
 
 /// Kind of oscillation: Fault::index of FaultCode::kOscillation. Numbers never change meaning.

@@ -28,7 +28,7 @@ nlohmann::ordered_json safety_facts() {
     facts["transitions"].push_back(row);
   }
   for (const Rule& rule : kRules) {
-    const FaultWords& words = words_of(rule.code);
+    const FaultWords& words = fault_words(rule.code);
     facts["rules"].push_back({{"number", static_cast<int>(rule.code)},
                               {"name", words.name},
                               {"meaning", words.meaning},

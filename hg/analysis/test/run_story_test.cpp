@@ -154,7 +154,7 @@ TEST(RunStory, ExplainsAFaultAndTheReaction) {
   EXPECT_TRUE(has(fault.text, "302 ")) << fault.text;
   EXPECT_TRUE(has(fault.text, "tracking (m2: 0.083, limit 0.08)")) << fault.text;
   const safety::Rule& rule = safety::rule_of(FaultCode::kTrackingLost);
-  EXPECT_TRUE(has_detail(fault, std::string(words_of(FaultCode::kTrackingLost).meaning)));
+  EXPECT_TRUE(has_detail(fault, std::string(fault_words(FaultCode::kTrackingLost).meaning)));
   EXPECT_TRUE(has_detail(fault, std::string(rule.release)));
   EXPECT_TRUE(has_detail(fault, "SS1"));
   EXPECT_TRUE(has_detail(fault, "drives off 50 ms after the fault"));

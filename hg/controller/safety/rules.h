@@ -19,7 +19,7 @@ struct Debounce {
   double seconds = 0.0;
 };
 
-/// One reason to stop. Its name and meaning are in words_of(code), hg/signals/fault.h.
+/// One reason to stop. Its name and meaning are in fault_words(code), hg/signals/fault.h.
 struct Rule {
   FaultCode code = FaultCode::kNone;
   std::string_view threshold;  ///< Key of device.yaml, or the threshold in words

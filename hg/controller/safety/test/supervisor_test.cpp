@@ -343,7 +343,7 @@ TEST(CheckSafetyInputs, AStopComesBeforeADisagreement) {
 TEST(Rules, AllFaultsHaveARuleAndAllTextsAreThere) {
   for (const Rule& rule : kRules) {
     EXPECT_EQ(&rule_of(rule.code), &rule);
-    const FaultWords& words = words_of(rule.code);
+    const FaultWords& words = fault_words(rule.code);
     EXPECT_EQ(words.code, rule.code);
     EXPECT_FALSE(words.name.empty() || words.text.empty() || words.meaning.empty());
     EXPECT_FALSE(rule.threshold.empty() || rule.release.empty()) << words.name;
