@@ -27,7 +27,7 @@ Fault make_fault(FaultCode code, int index, double value, double limit) noexcept
   return {code, static_cast<std::int16_t>(index), value, limit};
 }
 
-// Archive over the fields() of a frame that sums x - x over all numbers: 0, or NaN if one of them
+// Archive over the fields() of a frame that sums 0 x over all numbers x: 0, or NaN if one of them
 // is not finite. Skips the members at `unchecked`.
 struct FiniteSum {
   std::array<const void*, 3> unchecked;
