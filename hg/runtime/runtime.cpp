@@ -173,11 +173,7 @@ void Runtime::hand_out(const Sample& sample) noexcept {
 
 // sends the last command: drives off, brakes closed, all speeds zero
 void Runtime::release(CommandFrame& command) noexcept {
-  command.enable = false;
-  command.dq_m.setZero();
-  command.ddq_m.setZero();
-  command.tau_m.setZero();
-  command.dq_p.setZero();
+  disable(command);
   device_.write(command);
 }
 

@@ -199,6 +199,15 @@ struct CommandFrame {
   SafetyPanel panel;           ///< Passed through to a simulated safety controller
 };
 
+/// Makes the command one that switches the drives off and moves nothing; positions stay.
+inline void disable(CommandFrame& command) noexcept {
+  command.enable = false;
+  command.dq_m.setZero();
+  command.ddq_m.setZero();
+  command.tau_m.setZero();
+  command.dq_p.setZero();
+}
+
 template <typename Archive, Is<CommandFrame> T>
 void fields(Archive& a, T& command) {
   a("sequence", command.sequence, "sequence of the answered sensor frame");

@@ -80,12 +80,7 @@ void DeviceStation::report(const std::string& words) {
 }
 
 void DeviceStation::release() {
-  CommandFrame& command = session_.sample().command;
-  command.enable = false;
-  command.dq_m.setZero();
-  command.ddq_m.setZero();
-  command.tau_m.setZero();
-  command.dq_p.setZero();
+  disable(session_.sample().command);
   session_.write();
 }
 

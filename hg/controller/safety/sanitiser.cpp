@@ -13,12 +13,8 @@ constexpr double kBrakingShare = 1.5;           // of the rating: the bounds bra
 constexpr double kBrakingWithoutRating = 10.0;  // rad/s^2 or m/s^2
 constexpr unsigned kFirstGantryBit = 16;
 
-void disable(CommandFrame& command) noexcept {
-  command.enable = false;
-  command.dq_m.setZero();
-  command.ddq_m.setZero();
-  command.tau_m.setZero();
-  command.dq_p.setZero();
+void switch_off(CommandFrame& command) noexcept {
+  disable(command);
   for (double& q : command.q_m) q = std::isfinite(q) ? q : 0.0;
 }
 
@@ -54,7 +50,7 @@ Sanitised Sanitiser::step(const SanitiserInput& input, CommandFrame& command) co
   const int index =
       first_not_finite(command.q_m, command.dq_m, command.ddq_m, command.tau_m, command.dq_p);
   if (index >= 0) {
-    disable(command);
+    switch_off(command);
     result.fault = {FaultCode::kCommandNotFinite, static_cast<std::int16_t>(index), NAN, 0.0};
     return result;
   }
