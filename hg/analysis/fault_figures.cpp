@@ -5,6 +5,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "hg/signals/sensor_check.h"
+
 namespace hg::analysis {
 
 std::string name_in(const std::vector<std::string>& list, int index, const char* otherwise) {
@@ -31,6 +33,38 @@ std::string part_in(std::initializer_list<Group> groups, int index) {
     index -= static_cast<int>(group.size);
   }
   return {};
+}
+
+// Name of the value with this index of all of a sample, for example "torque sensor m2".
+std::string value_in(const SensorFrame& sensors, int index, const Names& names) {
+  std::string found;
+  for_each_sensor(sensors, [&](const SensorKind& kind, const auto& values) {
+    const auto size = static_cast<int>(values.size());
+    if (index >= 0 && index < size) {
+      switch (kind.per) {
+        case ValuePer::kJoint:
+          found = fmt::format("{} {}", kind.name, name_in(names.joints, index, "number"));
+          break;
+        case ValuePer::kAxis:
+          found = fmt::format("{} {}", kind.name, name_in(names.gantry, index, "number"));
+          break;
+        case ValuePer::kComponent:
+          found = size == 1 ? std::string(kind.name)
+                            : fmt::format("{}, component {}", kind.name, index + 1);
+          break;
+      }
+    }
+    index -= size;
+  });
+  return found;
+}
+
+std::string kind_in(const SensorFrame& sensors, int index) {
+  std::string found;
+  for_each_sensor(sensors, [&](const SensorKind& kind, const auto&) {
+    if (index-- == 0) found = kind.name;
+  });
+  return found;
 }
 
 constexpr const char* kForceSensor = "force/torque sensor, component";
@@ -61,17 +95,9 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
   const auto n_p = static_cast<int>(sensors.q_p.size());
   switch (fault.code) {
     case FaultCode::kSensorNotFinite:
-      return part_in({{"link encoder", n_m, &names.joints},
-                      {"speed", sensors.dq_m.size(), &names.joints},
-                      {"gantry encoder", n_p, &names.gantry},
-                      {kForceSensor, 6},
-                      {"motor encoder", sensors.theta_m.size(), &names.joints},
-                      {"torque sensor", sensors.tau_m.size(), &names.joints},
-                      {kAccelerometer, 3},
-                      {kGyroscope, 3},
-                      {"temperature", sensors.temperature_m.size(), &names.joints},
-                      {"clock", 1}},
-                     index);
+      return value_in(sensors, index, names);
+    case FaultCode::kSensorIncomplete:
+      return kind_in(sensors, index);
     case FaultCode::kSensorFrozen:
       return part_in({{"torque sensor", n_m, &names.joints},
                       {kForceSensor, 6},
@@ -126,6 +152,9 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
 std::string figures_of(const Fault& fault, const Names& names, const SensorFrame& sensors) {
   std::string text = part_of(fault, names, sensors);
   const char* separator = text.empty() ? "" : ": ";
+  if (fault.code == FaultCode::kSensorIncomplete) {
+    return fmt::format("{}: {:g} values, {:g} expected", text, fault.value, fault.limit);
+  }
   if (!std::isfinite(fault.value)) return fmt::format("{}{}not finite", text, separator);
   const bool has_figures = fault.value != 0.0 || fault.limit != 0.0;
   if (is_yes_or_no(fault.code) || !has_figures) return text;

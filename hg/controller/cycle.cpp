@@ -123,6 +123,10 @@ void copy(const rendering::LawResult& law, CycleRecord& record) noexcept {
 
 Cycle::Cycle(const CycleConfig& config, const DeviceModel& device, const rendering::TwinModel& twin)
     : config_(config),
+      required_{.n_p = device.n_p,
+                .n_m = device.n_m,
+                .has_torque_loop = config.control.method != tracking::Method::kDrives,
+                .has_imu = config.estimation.wrench.has_imu},
       dt_(device.dt()),
       estimation_(config.estimation, device),
       rendering_(device, twin, config.rendering,
@@ -192,7 +196,8 @@ void Cycle::watch(const StageProbe& probe) noexcept {
 // Is this sample usable, which mode is permitted, which parameters change.
 Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
                                     const OperatorFrame& operator_input) noexcept {
-  Supervision result = {.is_usable = safety::is_finite(sensors, config_.estimation.wrench.has_imu)};
+  const Fault values = check_values(sensors, required_);
+  Supervision result = {.is_usable = values.code == FaultCode::kNone};
   if (state_.cycle == 0) state_.next_sequence = sensors.sequence;
   safety::SupervisorState& supervisor = state_.supervisor;
   const ModeRequest request = operator_input.request;
@@ -202,7 +207,7 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
   const bool is_new = request != supervisor.last_request;
   const bool was_fault = supervisor.state == safety::SafetyState::kFault;
   const bool is_arming = is_new && request == ModeRequest::kArm;
-  const Fault fault = check(sensors);
+  const Fault fault = check(sensors, values);
   safety::SupervisorInput input = {
       .request = request,
       .is_held = is_held(sensors),
@@ -222,9 +227,8 @@ Cycle::Supervision Cycle::supervise(const SensorFrame& sensors,
   return result;
 }
 
-Fault Cycle::check(const SensorFrame& sensors) noexcept {
-  const Fault fault =
-      safety::check_sensors(sensors, state_.next_sequence, config_.estimation.wrench.has_imu);
+Fault Cycle::check(const SensorFrame& sensors, const Fault& values) noexcept {
+  const Fault fault = safety::check_sensors(sensors, state_.next_sequence, values);
   if (fault.code != FaultCode::kNone) return fault;
   const bool is_on = safety::is_powered(state_.supervisor.state);
   control_.listen(sensors, is_on, state_.control);

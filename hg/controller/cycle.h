@@ -22,6 +22,7 @@
 #include "hg/controller/tracking/joint_control.h"
 #include "hg/core/nonblocking.h"
 #include "hg/core/stage_probe.h"
+#include "hg/signals/sensor_check.h"
 #include "hg/signals/state.h"
 #include "hg/signals/timed_load.h"
 
@@ -135,7 +136,7 @@ class Cycle {
  private:
   /// Result of the supervisor.
   struct Supervision {
-    bool is_usable = false;  ///< All values of the sample are finite
+    bool is_usable = false;  ///< The sample has all values, and they are finite
     Refusal refusal = Refusal::kNone;
     ChangeStatus change = ChangeStatus::kNone;
   };
@@ -189,7 +190,7 @@ class Cycle {
             const TouchReport& touch, std::uint32_t sanitised, CycleRecord& record) const noexcept;
 
   // parts of these stages
-  Fault check(const SensorFrame& sensors) noexcept;
+  Fault check(const SensorFrame& sensors, const Fault& values) noexcept;
   Refusal refusal_to_arm() const noexcept;
   void reset_controllers() noexcept;
   double speed_max() const noexcept;
@@ -198,6 +199,7 @@ class Cycle {
   void brake_joints() noexcept;
 
   CycleConfig config_;
+  RequiredSensors required_;
   double dt_;           ///< Period, s
   VectorM torque_max_;  ///< Peak torque of each joint, Nm; empty without torque control
   VectorM ddq_max_;     ///< Deceleration of joints that brake without the law, rad/s^2 or m/s^2

@@ -87,6 +87,11 @@ constexpr FaultWords kFaults[] = {
      .text = "accelerometer and encoders contradict each other",
      .meaning = "The handle gets faster than the encoders of gantry and joints say: a coupling or "
                 "belt slips, encoders drift, or the accelerometer is wrong."},
+    {.code = FaultCode::kSensorIncomplete,
+     .name = "sensor incomplete",
+     .text = "sample has the wrong number of values",
+     .meaning = "The driver gives more or fewer values of a sensor than the device has joints or "
+                "axes, or leaves out motor encoders or torque sensors that the control needs."},
     {.code = FaultCode::kCommandsLost,
      .name = "commands lost",
      .text = "no new commands reached the device: lost or held up",

@@ -29,6 +29,7 @@ enum class FaultCode : std::uint16_t {
   kTorqueUnexplained = 115,
   kTurnUnexplained = 116,
   kMotionUnexplained = 117,
+  kSensorIncomplete = 118,
   kCommandsLost = 120,
   kOperatorReleased = 130,
   kScannerField = 131,

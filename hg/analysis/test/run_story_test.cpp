@@ -256,6 +256,11 @@ TEST(FaultFigures, NameThePartTheValueAndTheLimit) {
   EXPECT_EQ(text(FaultCode::kSensorFrozen, 1, 20.0, 20.0), "torque sensor m2: 20, limit 20");
   EXPECT_EQ(text(FaultCode::kSensorFrozen, 4, 20.0, 20.0),
             "force/torque sensor, component 3: 20, limit 20");
+  EXPECT_EQ(text(FaultCode::kSensorNotFinite, 3, NAN, 0.0), "speed m2: not finite");
+  EXPECT_EQ(text(FaultCode::kSensorNotFinite, 5, NAN, 0.0),
+            "force/torque sensor, component 2: not finite");
+  EXPECT_EQ(text(FaultCode::kSensorNotFinite, 16, NAN, 0.0), "clock: not finite");
+  EXPECT_EQ(text(FaultCode::kSensorIncomplete, 4, 0.0, 2.0), "motor encoder: 0 values, 2 expected");
   EXPECT_EQ(text(FaultCode::kCommandNotFinite, 5, NAN, 0.0), "acceleration m2: not finite");
 }
 

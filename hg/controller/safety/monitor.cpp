@@ -5,10 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <type_traits>
 
 #include "hg/controller/safety/stopping.h"
-#include "hg/core/fields.h"
 #include "hg/core/first_not_finite.h"
 
 namespace hg::safety {
@@ -25,45 +23,6 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 Fault make_fault(FaultCode code, int index, double value, double limit) noexcept {
   return {code, static_cast<std::int16_t>(index), value, limit};
-}
-
-// Archive over the fields() of a frame that sums 0 x over all numbers x: 0, or NaN if one of them
-// is not finite. Skips the members at `unchecked`.
-struct FiniteSum {
-  std::array<const void*, 3> unchecked;
-  double nothing = 0.0;
-
-  template <typename T>
-  void operator()(const char*, const T& value, const char*) noexcept {
-    if (std::ranges::find(unchecked, static_cast<const void*>(&value)) != unchecked.end()) return;
-    if constexpr (HasFields<T>) {
-      fields(*this, value);
-    } else if constexpr (std::is_same_v<T, double>) {
-      nothing += 0.0 * value;
-    } else if constexpr (std::is_class_v<T>) {
-      for (Eigen::Index i = 0; i < value.size(); ++i) nothing += 0.0 * value.data()[i];
-    } else {
-      static_assert(std::is_integral_v<T> || std::is_enum_v<T>);
-    }
-  }
-};
-
-// The estimation itself leaves out inertial units without readings.
-bool has_bad_value(const SensorFrame& sensors, bool has_imu) noexcept {
-  FiniteSum sum = {.unchecked = {&sensors.inertial}};
-  if (!has_imu) sum.unchecked = {&sensors.inertial, &sensors.a_S, &sensors.omega_S};
-  fields(sum, sensors);
-  return sum.nothing != 0.0;
-}
-
-// Index of the first value that is not finite, for the report. Order: joints, joint speeds, gantry,
-// wrench, motors, joint torques, accelerometer, gyroscope, motor temperatures, clock; -1 = another.
-int first_bad_value(const SensorFrame& sensors, bool has_imu) noexcept {
-  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-  return first_not_finite(sensors.q_m, sensors.dq_m, sensors.q_p, sensors.w_S, sensors.theta_m,
-                          sensors.tau_m, has_imu ? sensors.a_S : none,
-                          has_imu ? sensors.omega_S : none, sensors.temperature_m,
-                          Eigen::Matrix<double, 1, 1>(sensors.time_s));
 }
 
 // angle wrapped to one turn about 0: encoders of joints without limits wrap
@@ -83,17 +42,13 @@ std::uint16_t count_up(std::uint16_t count) noexcept {
 
 }  // namespace
 
-bool is_finite(const SensorFrame& sensors, bool has_imu) noexcept {
-  return !has_bad_value(sensors, has_imu);
-}
-
 bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept {
   return sensors.w_S.head<3>().norm() <= config.force_max &&
          sensors.w_S.tail<3>().norm() <= config.torque_max;
 }
 
 Fault check_sensors(const SensorFrame& sensors, std::uint64_t expected_sequence,
-                    bool has_imu) noexcept {
+                    const Fault& values) noexcept {
   if (sensors.driver_fault != FaultCode::kNone) {
     return make_fault(sensors.driver_fault, -1, 0.0, 0.0);
   }
@@ -101,10 +56,7 @@ Fault check_sensors(const SensorFrame& sensors, std::uint64_t expected_sequence,
     return make_fault(FaultCode::kSequenceGap, -1, static_cast<double>(sensors.sequence),
                       static_cast<double>(expected_sequence));
   }
-  if (has_bad_value(sensors, has_imu)) {
-    return make_fault(FaultCode::kSensorNotFinite, first_bad_value(sensors, has_imu), NAN, 0.0);
-  }
-  return {};
+  return values;
 }
 
 Fault check_solution(SolverStatus status, const VectorM& ddq_m, const VectorA& ddq_a) noexcept {

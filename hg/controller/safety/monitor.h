@@ -99,16 +99,13 @@ inline bool is_held(const MonitorConfig& config, const SensorFrame& sensors) noe
   return sensors.dead_man || !config.has_dead_man;
 }
 
-/// Whether every measured value is finite; other samples must not reach the estimation.
-/// `has_imu` = the device has an inertial unit, whose values count, too.
-bool is_finite(const SensorFrame& sensors, bool has_imu) noexcept;
-
 /// Whether force and torque at the handle are at most force_max and torque_max.
 bool is_wrench_in_range(const MonitorConfig& config, const SensorFrame& sensors) noexcept;
 
-/// First reason that makes a sample unusable, or kNone.
+/// First reason that makes a sample unusable, or kNone: the driver's own fault, a sample that is
+/// not the next one, or `values`, the result of check_values().
 Fault check_sensors(const SensorFrame& sensors, std::uint64_t expected_sequence,
-                    bool has_imu) noexcept;
+                    const Fault& values) noexcept;
 
 /// Fault that forbids integrating the accelerations that the law found, or kNone.
 Fault check_solution(SolverStatus status, const VectorM& ddq_m, const VectorA& ddq_a) noexcept;

@@ -124,6 +124,10 @@ inline constexpr Rule kRules[] = {
      .reaction = Stop::kSto,
      .release = "at once, and look at couplings, encoders and accelerometer: the device may not be "
                 "where it seems"},
+    {.code = FaultCode::kSensorIncomplete,
+     .threshold = "values per joint or axis",
+     .reaction = Stop::kSto,
+     .release = "samples are complete again; a driver is at fault"},
     {.code = FaultCode::kCommandsLost,
      .threshold = "50 ms; 5 ms once the device does not move as commanded",
      .reaction = Stop::kSto,

@@ -250,6 +250,40 @@ TEST(Cycle, AnInfinityInTheJointsEndsInASafeCommand) {
   expect_safe_stop(loop, FaultCode::kSensorNotFinite);
 }
 
+TEST(Cycle, AVectorThatADriverLeavesOutOrMakesTooLongEndsInASafeCommand) {
+  const auto expect_refused = [](bool has_torque_loop, int index, auto&& corrupt) {
+    SCOPED_TRACE(index);
+    Loop loop(false, has_torque_loop);
+    if (has_torque_loop) loop.run(200);  // until the latency is known
+    loop.start_running();
+    corrupt(loop.sensors);
+    loop.step();
+    EXPECT_FALSE(loop.command.enable);
+    EXPECT_EQ(loop.record.fault.code, FaultCode::kSensorIncomplete);
+    EXPECT_EQ(loop.record.fault.index, index);
+    EXPECT_TRUE(loop.command.tau_m.allFinite());
+  };
+  expect_refused(true, 4, [](SensorFrame& s) { s.theta_m.resize(0); });
+  expect_refused(true, 5, [](SensorFrame& s) { s.tau_m = VectorM::Zero(7); });
+  for (const bool has_torque_loop : {false, true}) {
+    expect_refused(has_torque_loop, 0, [](SensorFrame& s) { s.q_m.resize(0); });
+    expect_refused(has_torque_loop, 1, [](SensorFrame& s) { s.dq_m = VectorM::Zero(7); });
+    expect_refused(has_torque_loop, 2, [](SensorFrame& s) { s.q_p = VectorP::Zero(1); });
+    expect_refused(has_torque_loop, 8, [](SensorFrame& s) { s.temperature_m = VectorM::Zero(5); });
+  }
+}
+
+TEST(Cycle, ADriverThatNeverGivesMotorEncodersIsNotArmed) {
+  Loop loop(false, true);
+  loop.sensors.theta_m.resize(0);
+  loop.run(200);
+  loop.operator_input.request = ModeRequest::kArm;
+  loop.step();
+  EXPECT_EQ(loop.record.mode, Mode::kFault);
+  EXPECT_EQ(loop.record.fault.code, FaultCode::kSensorIncomplete);
+  EXPECT_FALSE(loop.command.enable);
+}
+
 TEST(Cycle, ALostSampleStopsTheDevice) {
   Loop loop;
   loop.start_running();

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include "hg/signals/sensor_check.h"
 
 namespace hg::udp {
 namespace {
@@ -43,19 +43,12 @@ std::string difference(const Description& actual, const Description& expected) {
 }
 
 bool fits(const Description& agreed, const SensorFrame& sensors) noexcept {
-  const auto n_m = static_cast<Eigen::Index>(agreed.n_m);
-  // commanding torques requires both sides of the springs
-  const bool may_lack = agreed.interface == Interface::kPosition;
-  const auto fits_joints = [&](const VectorM& v) {
-    return v.size() == n_m || (may_lack && v.size() == 0);
-  };
-  return sensors.q_m.size() == n_m && sensors.dq_m.size() == n_m && fits_joints(sensors.theta_m) &&
-         fits_joints(sensors.tau_m) &&
-         sensors.q_p.size() == static_cast<Eigen::Index>(agreed.n_p) &&
-         std::isfinite(sensors.time_s) && sensors.q_m.allFinite() && sensors.dq_m.allFinite() &&
-         sensors.theta_m.allFinite() && sensors.tau_m.allFinite() && sensors.q_p.allFinite() &&
-         sensors.w_S.allFinite() && sensors.a_S.allFinite() && sensors.omega_S.allFinite() &&
-         sensors.temperature_m.allFinite();
+  // this side does not know whether the device has an inertial unit: its zeros are finite
+  const RequiredSensors required = {.n_p = static_cast<int>(agreed.n_p),
+                                    .n_m = static_cast<int>(agreed.n_m),
+                                    .has_torque_loop = agreed.interface == Interface::kTorque,
+                                    .has_imu = true};
+  return check_values(sensors, required).code == FaultCode::kNone;
 }
 
 bool fits(const Description& agreed, const CommandFrame& command) noexcept {
