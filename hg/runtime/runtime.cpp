@@ -163,6 +163,13 @@ void Runtime::count_late(std::uint32_t cycles) noexcept {
   session_.input().late_cycles = report_.reported_late_cycles ? cycles : 0;
 }
 
+void Runtime::note(const CycleRecord& record) noexcept {
+  ++report_.cycles;
+  report_.has_run = report_.has_run || record.mode == Mode::kRunning;
+  if (record.refusal != Refusal::kNone) report_.refusal = record.refusal;
+  if (report_.fault.code == FaultCode::kNone) report_.fault = record.fault;
+}
+
 void Runtime::hand_out(const Sample& sample) noexcept {
   if (options_.is_fast && samples_.is_full()) {
     const AllowedToWait whoever_takes_them;  // no real time to keep
@@ -248,7 +255,7 @@ void Runtime::loop() noexcept {
   while (true) {
     run_cycle();
     const CycleRecord& record = sample.record;
-    ++report_.cycles;
+    note(record);
     hand_out(sample);
 
     const bool is_over = options_.duration_s > 0.0 && record.time_s >= options_.duration_s;

@@ -72,6 +72,9 @@ struct RuntimeReport {
   ThreadReport thread;                ///< Real-time properties of the thread, in real time
   bool reported_late_cycles = false;  ///< Late cycles were reported to the cycle
   bool stop_timed_out = false;        ///< Still moving when only the brakes were left to stop it
+  bool has_run = false;               ///< The law moved the device in some cycle
+  Refusal refusal = Refusal::kNone;   ///< Last refused request
+  Fault fault;                        ///< First fault
   Histogram wake_up_us;               ///< Wake-up delay after a cycle was due, in real time
   std::array<Histogram, kStageCount> stage_us;  ///< Durations of the cycle's stages, in real time
 };
@@ -125,6 +128,7 @@ class Runtime {
   void loop() noexcept;
   bool stop_is_requested() const noexcept;
   void run_cycle() noexcept HG_NONBLOCKING;
+  void note(const CycleRecord& record) noexcept;
   void hand_out(const Sample& sample) noexcept;
   void release(CommandFrame& command) noexcept;
   void operate(bool is_stopping) noexcept;

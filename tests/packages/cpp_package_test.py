@@ -56,7 +56,7 @@ def check(holds, what):
 
 def main():
     text = pathlib.Path("docs/start/packages.md").read_text()
-    for example in EXAMPLES.glob("*.cpp"):
+    for example in [*EXAMPLES.glob("*.cpp"), *EXAMPLES.glob("*.h")]:
         check(example.read_text() in text, f"docs/start/packages.md shows another {example.name}")
 
     tree = pathlib.Path(sys.argv[1]).resolve()
@@ -115,6 +115,23 @@ def main():
     found = re.findall(r"\bhg::(?:simulator|person|faults|scenario)::[A-Za-z_]+", symbols)
     found += re.findall(r"\bhg::config::load_(?:simul|scen|script)[a-z_]*", symbols)
     check(not found, f"own_machine has {found[:3]}")
+
+    # the same machine behind a server, and our program as its controller
+    arm = models / "examples" / "arm.yaml"
+    server = subprocess.Popen([both / "serve_machine", arm, "127.0.0.1:0"], text=True,
+                              stdout=subprocess.PIPE)
+    try:
+        address = server.stdout.readline().strip()
+        summary = run(tree / "hapticgiant", "run", "free_space", "--device", arm,
+                      "--device-address", address, "--duration", "2", "--no-viewer", "--no-recording")
+    finally:
+        server.terminate()
+    served = server.communicate()[0]
+    check(re.search(r"^[0-9]+ periods for hapticgiant", served, re.MULTILINE), f"served: {served}")
+    check(server.returncode == 0, f"serve_machine ended with {server.returncode}")
+    check("limits       all held" in summary, f"run on serve_machine: {summary}")
+    refused = run(both / "serve_machine", arm, "nowhere", fails=True)
+    check("HOST:PORT" in refused, f"serve_machine: {refused}")
 
     # a program for a machine behind a network finds all that it links
     remote = work / "remote"

@@ -116,6 +116,27 @@ TEST(Runtime, StaysInAFaultThatCanBeResetAndRequestsNothing) {
   EXPECT_GE(runtime.join().cycles, 2001u);
 }
 
+TEST(Runtime, ReportsTheFirstFaultTheLastRefusalAndWhetherItRan) {
+  Parts parts;
+  std::uint64_t seen = 0;
+  RuntimeReport report = run(parts, {.is_fast = true, .duration_s = 0.1}, seen);
+  EXPECT_TRUE(report.has_run);
+  EXPECT_EQ(report.fault.code, FaultCode::kNone);
+  EXPECT_EQ(report.refusal, Refusal::kNone);
+
+  Parts gap;
+  gap.device.lost_sample = 50;
+  report = run(gap, {.is_fast = true, .duration_s = 0.1}, seen);
+  EXPECT_TRUE(report.has_run);
+  EXPECT_EQ(report.fault.code, FaultCode::kSequenceGap);
+
+  Parts early;
+  const RuntimeOptions options = {
+      .is_fast = true, .duration_s = 0.1, .panel = {{0.01, {}, ModeRequest::kRun}}};
+  report = run(early, options, seen);
+  EXPECT_EQ(report.refusal, Refusal::kNotArmed);
+}
+
 TEST(Runtime, EndsAtAFaultOnceTheDeviceRests) {
   Parts parts;
   parts.device.lost_sample = 50;
