@@ -68,6 +68,8 @@ void take_joints(const model::ChainModel& chain, TwinDraft& draft) {
     taken.dof.is_angle = taken.unit == JointUnit::kAngle;
     taken.dof.limits = {
         .q_min = joint.position.lb, .q_max = joint.position.ub, .dq_max = joint.velocity_max};
+    taken.dof.damping = joint.damping;
+    taken.dof.friction = joint.friction;
   }
 }
 

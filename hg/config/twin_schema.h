@@ -268,7 +268,8 @@ void describe_joints(V& v, TwinDraft& d) {
   v.groups_by_name(
       "joints", d.joint_names, "a joint of the twin",
       [&](auto& child, int index) { describe(child, d.joints[index]); },
-      "limits, forces and start; limits that are not given are taken from the URDF");
+      "limits, forces and start; limits, damping and friction that are not given are taken from "
+      "the URDF");
   describe_reference_wrench(v, d.force_ref, d.torque_ref);
   describe_mass_scale(v, d.mass_scale);
   if (!v.covers(!d.scalar_joints.empty())) return;

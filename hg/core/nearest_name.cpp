@@ -48,4 +48,11 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
   return nearest;
 }
 
+std::string misspelt_name(std::string_view name, std::span<const std::string> candidates) {
+  if (std::ranges::find(candidates, name) != candidates.end()) return {};
+  std::string nearest = nearest_name(name, candidates);
+  const std::size_t wrong = name.size() < 6 ? 1 : 2;
+  return nearest.empty() || edit_distance(name, nearest) > wrong ? std::string() : nearest;
+}
+
 }  // namespace hg

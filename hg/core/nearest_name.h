@@ -11,4 +11,8 @@ namespace hg {
 /// without candidates.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
+/// Candidate that `name` misspells: one wrong letter, or two from six letters on, or another case;
+/// empty if there is none, or if `name` is a candidate itself.
+std::string misspelt_name(std::string_view name, std::span<const std::string> candidates);
+
 }  // namespace hg

@@ -236,6 +236,8 @@ class Builder {
                    .position = j.position,
                    .velocity_max = j.velocity_max,
                    .effort_max = j.effort_max,
+                   .damping = j.damping,
+                   .friction = j.friction,
                    .axis = j.axis,
                    .planar = planar};
     if (j.type == UrdfJointType::kFloating) {

@@ -36,6 +36,8 @@ struct Joint {
   Interval position;                ///< Range, rad or m; unbounded without limit in the URDF
   double velocity_max = kInfinity;  ///< Largest speed, rad/s or m/s
   double effort_max = kInfinity;    ///< Largest effort, Nm or N
+  double damping = 0.0;             ///< Viscous friction by the URDF, Nms/rad or Ns/m
+  double friction = 0.0;            ///< Coulomb friction by the URDF, Nm or N
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< Axis of a scalar joint in its own frame
   std::string planar;  ///< Planar joint of the URDF containing this one, see urdf_parts.h
 

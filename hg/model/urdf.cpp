@@ -50,6 +50,116 @@ std::string place(const Urdf& urdf, int line) {
   throw SetupError(place(urdf, line) + what);
 }
 
+void ignore(Urdf& urdf, const std::string& what, int line) {
+  const auto seen = std::ranges::find(urdf.ignored, what, &UrdfIgnored::what);
+  if (seen != urdf.ignored.end()) {
+    ++seen->count;
+  } else {
+    urdf.ignored.push_back({what, line, 1});
+  }
+}
+
+// Where another format is at hand.
+std::string advice_for(std::string_view root) {
+  if (root == "mujoco") return ": an MJCF file; export the mechanism as a URDF";
+  if (root == "sdf") return ": an SDF file; export the mechanism as a URDF";
+  return {};
+}
+
+// An element of URDF: what is read of it, and what else URDF has.
+struct Known {
+  std::string_view element;
+  std::vector<std::string> attributes, children;
+  std::vector<std::string> other_attributes = {}, other_children = {};
+};
+
+// What is not known here (extensions of tools) is skipped with all that it contains. The page draws
+// <visual> and <material>.
+const std::vector<Known>& known_elements() {
+  static const std::vector<Known> kKnown = {
+      {"robot",
+       {"name"},
+       {"link", "joint", "material"},
+       {"version"},
+       {"transmission", "gazebo", "ros2_control", "sensor"}},
+      {"link", {"name"}, {"inertial", "collision", "visual"}},
+      {"inertial", {}, {"origin", "mass", "inertia"}},
+      {"origin", {"xyz", "rpy"}, {}},
+      {"mass", {"value"}, {}},
+      {"inertia", {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}, {}},
+      {"collision", {"name"}, {"origin", "geometry"}},
+      {"geometry", {}, {"sphere", "cylinder", "box"}, {}, {"mesh", "capsule"}},
+      {"sphere", {"radius"}, {}},
+      {"cylinder", {"radius", "length"}, {}},
+      {"box", {"size"}, {}},
+      {"joint",
+       {"name", "type"},
+       {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"},
+       {},
+       {"calibration", "safety_controller"}},
+      {"parent", {"link"}, {}},
+      {"child", {"link"}, {}},
+      {"axis", {"xyz"}, {}},
+      {"limit", {"lower", "upper", "velocity", "effort"}, {}},
+      {"dynamics", {"damping", "friction"}, {}},
+      {"mimic", {"joint", "multiplier", "offset"}, {}},
+  };
+  return kKnown;
+}
+
+// Lists what is not read of one file, and throws where it is misspelt.
+class Inventory {
+ public:
+  explicit Inventory(Urdf& urdf) : urdf_(urdf) {}
+
+  void take(const XMLElement& e) {
+    const auto known = std::ranges::find(known_elements(), e.Name(), &Known::element);
+    if (known == known_elements().end()) return;
+    for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
+      if (std::string_view(a->Name()).find(':') != std::string_view::npos) continue;  // xmlns
+      look(a->Name(), a->GetLineNum(), known->attributes, known->other_attributes,
+           in_brackets(e) + " ", "");
+    }
+    for (const auto* c = e.FirstChildElement(); c != nullptr; c = c->NextSiblingElement()) {
+      refuse_xacro(*c);
+      if (look(c->Name(), c->GetLineNum(), known->children, known->other_children, "<", ">")) {
+        take(*c);
+      }
+    }
+  }
+
+ private:
+  static std::string in_brackets(const XMLElement& e) { return "<" + std::string(e.Name()) + ">"; }
+
+  // Whether `name` is read; otherwise it is listed, between `before` and `after`.
+  bool look(const std::string& name, int line, const std::vector<std::string>& read,
+            const std::vector<std::string>& others, const std::string& before,
+            const std::string& after) {
+    if (std::ranges::find(read, name) != read.end()) return true;
+    std::vector<std::string> all = read;
+    all.insert(all.end(), others.begin(), others.end());
+    const std::string meant = misspelt_name(name, all);
+    if (!meant.empty()) {
+      fail(urdf_, line,
+           before + name + after + " is unknown to URDF, nearest is " + in_quotes(meant));
+    }
+    ignore(urdf_, before + name + after, line);
+    return false;
+  }
+
+  void refuse_xacro(const XMLElement& e) const {
+    if (!std::string_view(e.Name()).starts_with("xacro:")) return;
+    const std::filesystem::path source = urdf_.source;
+    std::filesystem::path plain = source.stem().replace_extension(".urdf");
+    if (plain == source.filename()) plain = "plain_" + plain.string();
+    fail(urdf_, e.GetLineNum(),
+         "is a xacro file, not a URDF; convert it first: xacro " + urdf_.source + " > " +
+             plain.string());
+  }
+
+  Urdf& urdf_;
+};
+
 // Reads the parts of one file; `item` is the link or joint at hand, for messages.
 class Reader {
  public:
@@ -249,27 +359,25 @@ class Reader {
     return v.normalized();
   }
 
-  double positive(const XMLElement& e, const char* key, const Interval& range,
-                  const std::string& item) const {
-    const double value = number(e, key, range, item);
-    if (!(value > 0.0)) {
-      fail(urdf_, e.GetLineNum(),
-           item + ": limit " + key + " must be positive (leave it out for no limit), got " +
-               to_text(value));
-    }
-    return value;
+  // Exporters write 0 for a rating that they do not know: no limit.
+  double rating(const XMLElement& limit, const char* key, const Interval& range,
+                const std::string& item) {
+    if (limit.Attribute(key) == nullptr) return kInfinity;
+    const double value = number(limit, key, range, item);
+    if (value > 0.0) return value;
+    ignore(urdf_, std::string("<limit> ") + key + " 0", limit.GetLineNum());
+    return kInfinity;
   }
 
   // those of a fixed joint mean nothing; some exporters write zeros
-  void limits(const XMLElement& e, const std::string& item, UrdfJoint& joint) const {
+  void limits(const XMLElement& e, const std::string& item, UrdfJoint& joint) {
     if (joint.type == UrdfJointType::kFixed) return;
     const bool has_range =
         joint.type == UrdfJointType::kRevolute || joint.type == UrdfJointType::kPrismatic;
     const XMLElement* limit = has_range ? &child(e, "limit", item) : e.FirstChildElement("limit");
     if (limit == nullptr) return;
-    if (limit->Attribute("velocity"))
-      joint.velocity_max = positive(*limit, "velocity", kVelocity, item);
-    if (limit->Attribute("effort")) joint.effort_max = positive(*limit, "effort", kEffort, item);
+    joint.velocity_max = rating(*limit, "velocity", kVelocity, item);
+    joint.effort_max = rating(*limit, "effort", kEffort, item);
     if (!has_range) return;
     const Interval& range = joint.type == UrdfJointType::kPrismatic ? kPosition : kAngle;
     joint.position = {number(*limit, "lower", range, item), number(*limit, "upper", range, item)};
@@ -280,7 +388,14 @@ class Reader {
     }
   }
 
-  UrdfJoint joint(const XMLElement& e) const {
+  void dynamics(const XMLElement& e, const std::string& item, UrdfJoint& joint) const {
+    const XMLElement* found = e.FirstChildElement("dynamics");
+    if (found == nullptr) return;
+    if (found->Attribute("damping")) joint.damping = number(*found, "damping", kEffort, item);
+    if (found->Attribute("friction")) joint.friction = number(*found, "friction", kEffort, item);
+  }
+
+  UrdfJoint joint(const XMLElement& e) {
     UrdfJoint result;
     result.name = attribute(e, "name", "joint");
     result.line = e.GetLineNum();
@@ -295,6 +410,7 @@ class Reader {
     const bool is_scalar =
         result.type != UrdfJointType::kFloating && result.type != UrdfJointType::kPlanar;
     if (is_scalar) limits(e, item, result);
+    if (is_scalar) dynamics(e, item, result);
     if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
       result.mimic_line = mimic->GetLineNum();
     }
@@ -350,9 +466,11 @@ Urdf read_urdf_text(std::string_view text, std::string_view source) {
   }
   const XMLElement* root = document.RootElement();
   if (root == nullptr || std::string_view(root->Name()) != "robot") {
+    const std::string got = root == nullptr ? "" : root->Name();
     fail(urdf, root == nullptr ? 1 : root->GetLineNum(),
-         std::string("root element must be <robot>, got <") + (root ? root->Name() : "") + ">");
+         "root element must be <robot>, got <" + got + ">" + advice_for(got));
   }
+  Inventory(urdf).take(*root);
   Reader(urdf).read(*root);
   return urdf;
 }

@@ -1,7 +1,7 @@
 /// Reads a URDF into plain structs and checks each link and joint on its own.
 ///
-/// Visual elements, transmissions and other extensions are skipped. Every error throws SetupError
-/// that starts with `file:line:`. The chain builder checks the topology.
+/// Elements and attributes that are not read are listed, misspelt ones are errors. Every error
+/// throws SetupError that starts with `file:line:`. The chain builder checks the topology.
 #pragma once
 
 #include <filesystem>
@@ -56,7 +56,17 @@ struct UrdfJoint {
   Interval position;                ///< Position range, rad or m
   double velocity_max = kInfinity;  ///< Largest speed, rad/s or m/s
   double effort_max = kInfinity;    ///< Largest effort, Nm or N
+  double damping = 0.0;             ///< Viscous friction, Nms/rad or Ns/m
+  double friction = 0.0;            ///< Coulomb friction, Nm or N
   int mimic_line = 0;               ///< Line of <mimic>; 0 = none
+};
+
+/// A kind of element or attribute that is not read, or a rating of 0, which stands for an unknown
+/// one.
+struct UrdfIgnored {
+  std::string what;  ///< For example "<transmission>", "<limit> current" or "<limit> effort 0"
+  int line = 0;      ///< Line of the first one
+  int count = 0;
 };
 
 struct Urdf {
@@ -64,6 +74,7 @@ struct Urdf {
   std::string source;  ///< File name, for messages
   std::vector<UrdfLink> links;
   std::vector<UrdfJoint> joints;
+  std::vector<UrdfIgnored> ignored;
 };
 
 Urdf read_urdf_file(const std::filesystem::path& file);

@@ -131,6 +131,7 @@ void insert_behind(const std::string& behind, const std::string& name,
   joint.T_parent_joint = {};
   joint.position = {};
   joint.velocity_max = joint.effort_max = kInfinity;
+  joint.damping = joint.friction = 0.0;
   if (joint.type == UrdfJointType::kRevolute) joint.type = UrdfJointType::kContinuous;
   if (axis) joint.axis = axis->normalized();
   found->child = joint.parent;

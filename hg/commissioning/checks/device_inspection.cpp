@@ -10,6 +10,7 @@
 
 #include "hg/commissioning/checks/cartesian_rule.h"
 #include "hg/commissioning/checks/collision_inspection.h"
+#include "hg/commissioning/checks/ignored_urdf.h"
 #include "hg/commissioning/checks/stopping_rule.h"
 #include "hg/commissioning/checks/workspace.h"
 #include "hg/model/chain_data.h"
@@ -249,6 +250,7 @@ Findings inspect(const config::DeviceConfig& device, const Survey& survey) {
   inspect_stopping(device, out);
   inspect_singularities(device, survey, out);
   inspect_collisions(device, out);
+  inspect_ignored(device.sources, UrdfUse::kDevice, out);
   inspect_floor(device, survey, out);
   return std::move(out.findings);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "hg/commissioning/checks/ignored_urdf.h"
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/checks/twin_bodies.h"
 #include "hg/core/linear_algebra.h"
@@ -166,6 +167,7 @@ Findings inspect(const config::Twin& twin, double dt) {
   inspect_mass_matrix(figures, out);
   inspect_weight(figures, out);
   inspect_bodies(twin.sources, out);
+  inspect_ignored(twin.sources, UrdfUse::kTwin, out);
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const rendering::TwinDof& dof = twin.model.dofs[i];
     if (dof.q_index >= 0) inspect_limits(dof, twin.model.q_start[dof.q_index], out);

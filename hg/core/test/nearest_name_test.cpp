@@ -35,5 +35,15 @@ TEST(NearestName, AnswersEmptyNamesAndListsWithoutFailing) {
   EXPECT_EQ(nearest_name("handle", {}), "");
 }
 
+TEST(MisspeltName, IsOneLetterOrTwoOfSixAwayOrInAnotherCase) {
+  EXPECT_EQ(misspelt_name("hendel", kJoints), "handle");
+  EXPECT_EQ(misspelt_name("elbw", kJoints), "elbow");
+  EXPECT_EQ(misspelt_name("Elbow", kJoints), "elbow");
+  EXPECT_EQ(misspelt_name("elw", kJoints), "");
+  EXPECT_EQ(misspelt_name("trunk", kJoints), "");
+  EXPECT_EQ(misspelt_name("m1", kJoints), "");  // a name itself, though "m2" is near
+  EXPECT_EQ(misspelt_name("m1", {}), "");
+}
+
 }  // namespace
 }  // namespace hg

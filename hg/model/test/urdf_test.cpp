@@ -148,6 +148,49 @@ TEST(Urdf, NumbersMayHaveSignsExponentsAndAnyBlanks) {
   EXPECT_EQ(read_urdf_text(text.all(), "").joints[0].position.ub, 0.25);
 }
 
+TEST(Urdf, ARatingOfZeroIsUnknownAndListed) {
+  Text text;
+  text.joint = joint_with("revolute", "<limit lower='-1' upper='1' velocity='0' effort='0.0'/>");
+  const Urdf urdf = read_urdf_text(text.all(), "");
+  EXPECT_EQ(urdf.joints[0].velocity_max, kInfinity);
+  EXPECT_EQ(urdf.joints[0].effort_max, kInfinity);
+  ASSERT_EQ(urdf.ignored.size(), 2U);
+  EXPECT_EQ(urdf.ignored[0].what, "<limit> velocity 0");
+  EXPECT_EQ(urdf.ignored[1].what, "<limit> effort 0");
+}
+
+TEST(Urdf, DynamicsOfAJointAreItsDampingAndFriction) {
+  Text text;
+  text.joint = joint_with("revolute", "<limit lower='-1' upper='1'/><dynamics damping='0.5'/>");
+  Joint joint = ChainModel::from_urdf_text(text.all(), "").joints()[0];
+  EXPECT_EQ(joint.damping, 0.5);
+  EXPECT_EQ(joint.friction, 0.0);
+  text.joint = joint_with("prismatic", "<limit lower='-1' upper='1'/><dynamics friction='7'/>");
+  joint = ChainModel::from_urdf_text(text.all(), "").joints()[0];
+  EXPECT_EQ(joint.damping, 0.0);
+  EXPECT_EQ(joint.friction, 7.0);
+}
+
+TEST(Urdf, WhatIsNotReadIsListedOnceWithItsNumberAndFirstLine) {
+  Text text;
+  text.tip = "<link name='tip'><visual><what/></visual><self_filter/></link>";
+  text.fix +=
+      "<transmission name='a'><limits/></transmission>\n<gazebo><link nam='x'/></gazebo>"
+      "<transmission/>";
+  text.joint = joint_with("revolute",
+                          "<limit lower='-1' upper='1' current='3' xmlns:x='y'/>"
+                          "<dynamics damping='1' K='7000'/><safety_controller k_position='3'/>");
+  std::vector<std::string> found;
+  for (const UrdfIgnored& ignored : read_urdf_text(text.all(), "").ignored) {
+    found.push_back(ignored.what + " " + std::to_string(ignored.line) + " x" +
+                    std::to_string(ignored.count));
+  }
+  EXPECT_EQ(found, (std::vector<std::string>{"<self_filter> 4 x1", "<limit> current 5 x1",
+                                             "<dynamics> K 5 x1", "<safety_controller> 5 x1",
+                                             "<transmission> 6 x2", "<gazebo> 7 x1"}));
+  EXPECT_TRUE(read_urdf_text(Text().all(), "").ignored.empty());
+}
+
 struct Fault {
   const char* what;
   Text text;
@@ -163,6 +206,29 @@ std::vector<Fault> faults_of_elements() {
   };
   const std::string unit = "ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'";
 
+  add(
+      "misspelt element",
+      [](Text& t) { t.joint = joint_with("revolute", "<limits lower='-1' upper='1'/>"); },
+      "arm.urdf:5: <limits> is unknown to URDF, nearest is 'limit'");
+  add(
+      "misspelt attribute",
+      [](Text& t) { t.joint = joint_with("continuous", "<dynamics dampening='1' friction='1'/>"); },
+      "arm.urdf:5: <dynamics> dampening is unknown to URDF, nearest is 'damping'");
+  add(
+      "attribute of another case",
+      [](Text& t) { t.joint = joint_with("continuous", "<axis XYZ='0 0 1'/>"); },
+      "arm.urdf:5: <axis> XYZ is unknown to URDF, nearest is 'xyz'");
+  add(
+      "element of another case", [](Text& t) { t.tip = "<Link name='tip'/>"; },
+      "arm.urdf:4: <Link> is unknown to URDF, nearest is 'link'");
+  add(
+      "negative damping",
+      [](Text& t) { t.joint = joint_with("continuous", "<dynamics damping='-1'/>"); },
+      "arm.urdf:5: joint turn: damping must be 0 .. 1e+09, got '-1'");
+  add(
+      "xacro", [](Text& t) { t.base = "<xacro:property name='l' value='1'/>"; },
+      "arm.urdf:2: is a xacro file, not a URDF; convert it first: xacro arm.urdf > "
+      "plain_arm.urdf");
   add(
       "word instead of number", [](Text& t) { t.arm = arm_with("heavy", ""); },
       "arm.urdf:3: link arm: <inertia> needs the attribute 'ixy'");
@@ -233,11 +299,11 @@ std::vector<Fault> faults_of_elements() {
       [](Text& t) { t.joint = joint_with("revolute", "<limit lower='1' upper='-1.5'/>"); },
       "arm.urdf:5: joint turn: limit lower must be below upper, got lower 1, upper -1.5");
   add(
-      "velocity zero",
+      "velocity negative",
       [](Text& t) {
-        t.joint = joint_with("revolute", "<limit lower='0' upper='1' velocity='0'/>");
+        t.joint = joint_with("revolute", "<limit lower='0' upper='1' velocity='-1'/>");
       },
-      "arm.urdf:5: joint turn: limit velocity must be positive (leave it out for no limit), got 0");
+      "arm.urdf:5: joint turn: velocity must be 0 .. 1e+06, got '-1'");
   add(
       "axis zero",
       [](Text& t) {
@@ -332,7 +398,9 @@ TEST(Urdf, BrokenXmlNamesItsLine) {
             "arm.urdf:2: is not valid XML: XML_ERROR_MISMATCHED_ELEMENT");
   EXPECT_EQ(message_of(""), "arm.urdf:1: is not valid XML: XML_ERROR_EMPTY_DOCUMENT");
   EXPECT_EQ(message_of("<!-- hm -->"), "arm.urdf:1: root element must be <robot>, got <>");
-  EXPECT_EQ(message_of("<mujoco/>"), "arm.urdf:1: root element must be <robot>, got <mujoco>");
+  EXPECT_EQ(message_of("<mujoco/>"),
+            "arm.urdf:1: root element must be <robot>, got <mujoco>: an MJCF file; "
+            "export the mechanism as a URDF");
   EXPECT_EQ(message_of("<robot name='r'/>"), "arm.urdf:1: robot: has no links");
 }
 

@@ -1,0 +1,39 @@
+#include "hg/config/twin.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace hg::config {
+namespace {
+
+Twin gate(const std::string& dynamics, const std::string& joint) {
+  const std::string urdf = R"(<robot name="gate"><link name="post"/>
+<joint name="hinge" type="revolute"><parent link="post"/><child link="panel"/>
+<limit lower="0" upper="1"/>)" +
+                           dynamics + R"(</joint>
+<link name="panel"><inertial><mass value="8"/>
+<inertia ixx="0.1" iyy="0.25" izz="0.25" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>)";
+  SourceReader reader({{"twin.yaml",
+                        "name: gate\nurdf: gate.urdf\nend_effector: panel\n"
+                        "joints: {hinge: {ddq_max_rad_per_s2: 5" +
+                            joint + "}}\n"},
+                       {"gate.urdf", urdf}});
+  return load_twin("twin.yaml", reader);
+}
+
+TEST(Twin, DampingAndFrictionAreThoseOfTheUrdfUnlessTheFileHasItsOwn) {
+  const std::string dynamics = R"(<dynamics damping="0.5" friction="2"/>)";
+  const rendering::TwinDof by_urdf = gate(dynamics, "").model.dofs[0];
+  EXPECT_EQ(by_urdf.damping, 0.5);
+  EXPECT_EQ(by_urdf.friction, 2.0);
+  const rendering::TwinDof own = gate(dynamics, ", damping_Nms_per_rad: 0").model.dofs[0];
+  EXPECT_EQ(own.damping, 0.0);
+  EXPECT_EQ(own.friction, 2.0);
+  const rendering::TwinDof none = gate("", "").model.dofs[0];
+  EXPECT_EQ(none.damping, 0.0);
+  EXPECT_EQ(none.friction, 0.0);
+}
+
+}  // namespace
+}  // namespace hg::config
