@@ -9,6 +9,7 @@
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/progress.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
@@ -47,11 +48,18 @@ int new_device(const NewArguments& arguments) {
 int new_twin(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "twin");
   const bool is_own = !arguments.device.empty();
-  const config::DeviceConfig device =
-      config::load_device(is_own ? fs::path(arguments.device)
-                                 : config::models_root() / "models/haptic_giant/device.yaml");
+  const config::SimulatedDeviceConfig device = config::load_simulated_device(
+      is_own ? fs::path(arguments.device)
+             : config::models_root() / "models/haptic_giant/device.yaml");
   check_writable(output.string());
-  write_output(output.string(), generator::twin_yaml(arguments.part, output.parent_path(), device));
+  const generator::TwinDraft draft = generator::draft_twin(arguments.part, output.parent_path(),
+                                                           device, progress_of("placements"));
+  write_output(output.string(), draft.yaml);
+  const std::string trouble = checks::trouble_of(draft.way);
+  if (!trouble.empty()) {
+    print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), trouble,
+                checks::kCuresOfWay);
+  }
   const std::string with = is_own ? " --device " + arguments.device : "";
   print_out(
       "{0} written. Next:\n"

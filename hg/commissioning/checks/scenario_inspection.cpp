@@ -11,6 +11,7 @@
 #include "hg/commissioning/checks/stiffness.h"
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/checks/twin_inspection.h"
+#include "hg/commissioning/checks/way.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
@@ -133,6 +134,23 @@ void inspect_work(const config::DeviceConfig& device, const config::Twin& twin, 
                   is_paper ? ", take the law gauss" : ""));
 }
 
+bool has_start(const config::DeviceConfig& device, const config::Twin& twin, Collector& out) {
+  try {
+    scenario::find_start(device, twin);
+    return true;
+  } catch (const SetupError& error) {
+    out.add(Severity::kFault, "placement", error.what(), "");
+    return false;
+  }
+}
+
+// What a hand meets that is led through all that the twin can do.
+void inspect_way(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
+                 Collector& out) {
+  const std::string trouble = trouble_of(lead(device, twin));
+  if (!trouble.empty()) out.add(Severity::kWarning, "placement", trouble, kCuresOfWay);
+}
+
 }  // namespace
 
 Match match(const config::DeviceConfig& device, const config::Twin& twin) {
@@ -177,11 +195,7 @@ Match match(const config::DeviceConfig& device, const config::Twin& twin) {
 
 Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {
   Collector out(twin.sources, twin.places);
-  try {
-    scenario::find_start(device, twin);
-  } catch (const SetupError& error) {
-    out.add(Severity::kFault, "placement", error.what(), "");
-  }
+  const bool can_start = has_start(device, twin, out);
   inspect_work(device, twin, out);
   inspect_stiffness(device, twin, out);
   const bool is_bounded = std::ranges::all_of(
@@ -200,6 +214,7 @@ Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin
   for (std::size_t i = 0; i < found.demands.size(); ++i) {
     inspect_demand(twin.model.dofs[i], found.demands[i], out);
   }
+  if (can_start) inspect_way(device, twin, out);
   return std::move(out.findings);
 }
 

@@ -5,10 +5,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
+#include "hg/commissioning/checks/way.h"
 #include "hg/commissioning/generator/chain_part.h"
-#include "hg/config/device.h"
+#include "hg/config/simulation/simulation.h"
 
 namespace hg::generator {
 
@@ -16,9 +18,18 @@ namespace hg::generator {
 /// six or seven joints after them are the manipulator.
 std::string device_yaml(const ChainPart& part, const std::filesystem::path& folder);
 
-/// Text of a twin.yaml that will stand in `folder`, placed upright where `device` reaches most of
-/// what the twin's joints can do.
-std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder,
-                      const config::DeviceConfig& device);
+/// Text of a twin.yaml, and what a trial of it on the device gave.
+struct TwinDraft {
+  std::string yaml;
+  checks::Way way;
+};
+
+/// A twin.yaml that will stand in `folder`: placed upright where `device` can lead a hand through
+/// most of what the twin's joints can do, if possible with no limit of the device in the way. Takes
+/// seconds; `progress`, if given, is called after each trial with the number of trials and the
+/// most.
+TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
+                     const config::SimulatedDeviceConfig& device,
+                     const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 }  // namespace hg::generator

@@ -2,26 +2,35 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <ranges>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
+#include "hg/config/twin.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::generator {
 namespace {
 
-constexpr int kPostures = 24;       // in which a placement is tried
-constexpr double kNear = 0.02;      // m, from here on a joint mostly turns the end effector
-constexpr int kPlacements = 40;     // number of placements tried in all postures
+constexpr int kPostures = 24;    // in which a placement is tried
+constexpr double kNear = 0.02;   // m, from here on a joint mostly turns the end effector
+constexpr int kPlacements = 40;  // number of placements tried in all postures
+constexpr double kRoom = 0.05;   // share of a range, kept from a joint's limits at the start
+constexpr int kTrials = 8;       // number of those in which a hand leads the twin
+constexpr std::uintmax_t kMostBytes = 4'000'000;  // of a URDF, as SourceReader
 constexpr double kShare = 0.8;      // share of the speed and acceleration of the device's handle
 constexpr double kTurnShare = 0.5;  // share of the rating of the slowest of the last three joints
 constexpr double kCoasting = 1.5;   // s, time constant of a released joint
 
-struct TwinDraft {
+struct Mechanism {
   model::ChainData chain;
   int end_effector = 0;
   std::vector<Interval> ranges;
@@ -36,10 +45,10 @@ struct Placement {
   bool is_upright = true;
 };
 
-const model::Joint& joint(const TwinDraft& d, int i) { return d.chain.model().joints()[i]; }
+const model::Joint& joint(const Mechanism& d, int i) { return d.chain.model().joints()[i]; }
 
-TwinDraft make_draft(const ChainPart& part) {
-  TwinDraft d{.chain = model::ChainData(read_part(part)), .ranges = {}, .start = {}, .lever = {}};
+Mechanism make_mechanism(const ChainPart& part) {
+  Mechanism d{.chain = model::ChainData(read_part(part)), .ranges = {}, .start = {}, .lever = {}};
   for (const model::Joint& joint : d.chain.model().joints()) {
     if (joint.nv == 1) continue;
     throw SetupError(part.urdf.generic_string() + ": joint " + joint.name +
@@ -63,7 +72,7 @@ TwinDraft make_draft(const ChainPart& part) {
   return d;
 }
 
-Pose tip(TwinDraft& d, const Eigen::VectorXd& q) {
+Pose tip(Mechanism& d, const Eigen::VectorXd& q) {
   d.chain.update_kinematics(q, Eigen::VectorXd::Zero(q.size()));
   return d.chain.pose(d.end_effector);
 }
@@ -78,19 +87,33 @@ class Reach {
                         .end_effector = 0,
                         .q_start = ConfigurationA::Zero(7)}} {}
 
-  bool contains(const Pose& T_B_H) {
+  bool contains(const Pose& T_B_H) { return start_at(T_B_H).has_value(); }
+
+  // the same, with every joint of the device well inside its limits
+  bool contains_with_room(const Pose& T_B_H) {
+    const std::optional<scenario::Start> start = start_at(T_B_H);
+    if (!start) return false;
+    for (int i = 0; i < device_.model.n_m; ++i) {
+      const limits::JointLimits& range = device_.model.joint_limits[i];
+      const double room = kRoom * (range.q_max - range.q_min);
+      const double q = start->q_m[i];
+      if (std::isfinite(room) && std::min(q - range.q_min, range.q_max - q) < room) return false;
+    }
+    return true;
+  }
+
+ private:
+  std::optional<scenario::Start> start_at(const Pose& T_B_H) {
     ConfigurationA& q = twin_.model.q_start;
     q.head<3>() = T_B_H.p;
     q.segment<4>(3) = Eigen::Quaterniond(T_B_H.R).normalized().coeffs();
     try {
-      scenario::find_start(device_, twin_);
-      return true;
+      return scenario::find_start(device_, twin_);
     } catch (const SetupError&) {
-      return false;
+      return {};
     }
   }
 
- private:
   const config::DeviceConfig& device_;
   config::Twin twin_;
 };
@@ -125,8 +148,9 @@ std::vector<Eigen::Vector3d> offsets() {
   return grid;
 }
 
-// upright, turned and moved until the device reaches the start and most other postures
-Placement find_placement(TwinDraft& d, const config::DeviceConfig& device) {
+// Upright, turned and moved: all placements at which the device reaches the start, with the share
+// of other postures that it reaches, best first. Ends at the first kEnough that reach all.
+std::vector<Placement> find_placements(Mechanism& d, const config::DeviceConfig& device) {
   Reach reach(device);
   const Pose nominal = nominal_handle(device);
   const Pose T_root_start = tip(d, d.start);
@@ -134,24 +158,24 @@ Placement find_placement(TwinDraft& d, const config::DeviceConfig& device) {
   PostureSampler sampler(d.ranges);
   for (int k = 0; k < kPostures; ++k) others.push_back(tip(d, sampler.draw()));
 
-  Placement best;
-  int tried = 0;
+  std::vector<Placement> found;
+  int whole = 0;
   for (const Eigen::Vector3d& offset : offsets()) {
-    for (int turn = 0; turn < 12 && tried < kPlacements && best.share < 1.0; ++turn) {
+    for (int turn = 0; turn < 12; ++turn) {
+      if (std::ssize(found) >= kPlacements || whole >= kTrials) continue;
       const double yaw = turn * M_PI / 6.0;
       const Eigen::Matrix3d R(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
       const Pose T_B_root{nominal.p + offset - R * T_root_start.p, R};
-      if (!reach.contains(T_B_root * T_root_start)) continue;
+      if (!reach.contains_with_room(T_B_root * T_root_start)) continue;
       const auto count = std::ranges::count_if(
           others, [&](const Pose& T_root_E) { return reach.contains(T_B_root * T_root_E); });
-      const double share = static_cast<double>(count) / kPostures;
-      if (share > best.share) best = {T_B_root, yaw, share, true};
-      ++tried;
+      found.push_back({T_B_root, yaw, static_cast<double>(count) / kPostures, true});
+      if (count == kPostures) ++whole;
     }
   }
-  if (best.share >= 0.0) return best;
-  const Pose tilted = nominal * inverse(T_root_start);
-  return {tilted, 0.0, 0.0, false};
+  std::ranges::stable_sort(found, std::greater(), &Placement::share);
+  if (found.empty()) found.push_back({nominal * inverse(T_root_start), 0.0, 0.0, false});
+  return found;
 }
 
 std::string placement_line(const Placement& placement) {
@@ -160,7 +184,7 @@ std::string placement_line(const Placement& placement) {
       fmt::format("placement: {{x_m: {:.3f}, y_m: {:.3f}, z_m: {:.3f}", p.x(), p.y(), p.z());
   if (placement.is_upright) {
     if (placement.yaw != 0.0) text += fmt::format(", yaw_rad: {:.6f}", placement.yaw);
-    return text + fmt::format("}}  # [V] the device follows {:.0f} % of the postures of the twin\n",
+    return text + fmt::format("}}  # [V] the device reaches {:.0f} % of the twin's postures\n",
                               100.0 * placement.share);
   }
   const Eigen::Matrix3d& R = placement.T_B_root.R;
@@ -168,7 +192,7 @@ std::string placement_line(const Placement& placement) {
   text += fmt::format(", roll_rad: {:.6f}, pitch_rad: {:.6f}, yaw_rad: {:.6f}",
                       std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0)));
   return text +
-         "}  # [V] tilted: upright the device cannot hold this end effector at the start;\n"
+         "}  # [V] tilted: upright the device cannot hold this end effector well at the start;\n"
          "# give the URDF a frame turned like the handle of the device to place it upright\n";
 }
 
@@ -196,7 +220,7 @@ TipRatings tip_ratings(const config::DeviceConfig& device) {
   return ratings;
 }
 
-std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
+std::string joint_lines(Mechanism& d, const TipRatings& ratings) {
   const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(d.chain.model().nv());
   d.chain.update(d.start, at_rest);
   const Eigen::MatrixXd M = d.chain.M();
@@ -220,6 +244,11 @@ std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
       text += fmt::format("    dq_max_{}_per_s: {}  # [V] the hand of the device is no faster\n",
                           unit, rounded(speed));
     }
+    if (j.damping > 0.0 || j.friction > 0.0) {
+      text += fmt::format("    # damping {} and friction {} are those of the URDF\n",
+                          rounded(j.damping), rounded(j.friction));
+      continue;
+    }
     text += fmt::format("    damping_{}: {}  # [A] let go it coasts for about {} s\n",
                         turns ? "Nms_per_rad" : "Ns_per_m", rounded(M(i, i) / kCoasting),
                         rounded(kCoasting));
@@ -227,12 +256,8 @@ std::string joint_lines(TwinDraft& d, const TipRatings& ratings) {
   return text;
 }
 
-}  // namespace
-
-std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder,
-                      const config::DeviceConfig& device) {
-  TwinDraft d = make_draft(part);
-  const Placement placement = find_placement(d, device);
+std::string yaml_of(Mechanism& d, const Placement& placement, const ChainPart& part,
+                    const std::filesystem::path& folder, const config::DeviceConfig& device) {
   return fmt::format(
              "# {} as a twin, from {}, placed for the device {}.\n"
              "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
@@ -245,6 +270,52 @@ std::string twin_yaml(const ChainPart& part, const std::filesystem::path& folder
          placement_line(placement) +
          "gravity: false  # true: the hand carries the weight of the twin\n" +
          joint_lines(d, tip_ratings(device));
+}
+
+// Leads a hand through the twin of a draft whose URDF stands beside it.
+checks::Way lead(const std::string& yaml, const ChainPart& part, const std::string& urdf,
+                 const config::SimulatedDeviceConfig& device) {
+  config::SourceReader reader({{"twin.yaml", yaml}, {part.urdf.filename().generic_string(), urdf}});
+  const config::Twin twin = config::load_twin("twin.yaml", reader);
+  try {
+    return checks::lead(device, twin);
+  } catch (const SetupError& error) {
+    return {.share = 0.0, .twin_joint = twin.model.dofs[0].name, .fault = error.what()};
+  }
+}
+
+// Whether `a` went better than `b`: farther, then nearer to no limit.
+bool is_better(const checks::Way& a, const checks::Way& b) {
+  const auto whole = [](const checks::Way& way) { return std::min(way.share, checks::kWholeWay); };
+  if (whole(a) != whole(b)) return whole(a) > whole(b);
+  return std::tuple(!a.fault.empty(), a.excess, a.at_limit_s) <
+         std::tuple(!b.fault.empty(), b.excess, b.at_limit_s);
+}
+
+}  // namespace
+
+TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
+                     const config::SimulatedDeviceConfig& device,
+                     const std::function<void(std::size_t, std::size_t)>& progress) {
+  Mechanism d = make_mechanism(part);
+  std::vector<Placement> placements = find_placements(d, device);
+  const std::string urdf = read_file(part.urdf, kMostBytes);
+  TwinDraft best;
+  const Placement* chosen = nullptr;
+  const std::size_t most = std::min<std::size_t>(kTrials, placements.size());
+  std::size_t trials = 0;
+  for (const Placement& placement : placements | std::views::take(most)) {
+    const checks::Way way =
+        lead(yaml_of(d, placement, part, part.urdf.parent_path(), device), part, urdf, device);
+    if (progress) progress(++trials, most);
+    if (chosen != nullptr && !is_better(way, best.way)) continue;
+    chosen = &placement;
+    best.way = way;
+    if (checks::trouble_of(way).empty()) break;
+  }
+  if (progress) progress(most, most);
+  best.yaml = yaml_of(d, *chosen, part, folder, device);
+  return best;
 }
 
 }  // namespace hg::generator

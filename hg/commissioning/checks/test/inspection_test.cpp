@@ -510,8 +510,31 @@ TEST(Shipped, DeviceAndTwinsHaveNoFaultsAndNoWarningsButTheExplainedOnes) {
   EXPECT_EQ(warnings,
             (std::vector<std::string>{"cartesian_limits[0].ddq_max_m_per_s2 braking hand ",
                                       "cartesian_limits[1].ddq_max_m_per_s2 braking elbow",
-                                      "cartesian_limits[1].ddq_max_m_per_s2 braking elbow"}))
+                                      "cartesian_limits[1].ddq_max_m_per_s2 braking elbow",
+                                      "placement led through i"}))
       << all_of(all);
+}
+
+TEST(IgnoredUrdf, IsNamedInOneNotePerFile) {
+  const Changed extended = {.urdf_from = "</robot>",
+                            .urdf_to = "<transmission/><gazebo/><transmission/></robot>"};
+  const char* const expected = "not read: <transmission> (2 times), <gazebo>";
+  const Findings device = device_findings(extended);
+  const Finding* note = find(device, "urdf", expected);
+  ASSERT_NE(note, nullptr) << all_of(device);
+  EXPECT_EQ(note->severity, Severity::kNote);
+  EXPECT_TRUE(note->file.ends_with(".urdf")) << note->file;
+  const Findings twin = inspect(door(extended), kDt);
+  EXPECT_NE(find(twin, "urdf", expected), nullptr) << all_of(twin);
+  EXPECT_EQ(find(inspect(door({}), kDt), "urdf", "not read"), nullptr);
+}
+
+TEST(IgnoredUrdf, FrictionOfADeviceIsNotTakenFromItsUrdf) {
+  const Changed rubbed = {.urdf_from = "</joint>",
+                          .urdf_to = R"(<dynamics damping="1" friction="0"/></joint>)"};
+  const Findings device = device_findings(rubbed);
+  EXPECT_NE(find(device, "urdf", "not read: <dynamics> damping and friction"), nullptr)
+      << all_of(device);
 }
 
 TEST(Findings, TakesMessagesApart) {

@@ -4,6 +4,7 @@
 
 #include "hg/commissioning/generator/postures.h"
 #include "hg/config/simulation/scenario.h"
+#include "hg/core/open_file.h"
 #include "hg/core/test/message_of.h"
 #include "hg/core/test/temporary_folder.h"
 #include "hg/scenario/start_posture.h"
@@ -74,7 +75,8 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
         .description = {},
         .device = config::load_simulated_device(device),
         .twin = config::load_twin(folder.write(
-            "gate.yaml", twin_yaml(kGate, folder.path(), config::load_device(device)))),
+            "gate.yaml",
+            draft_twin(kGate, folder.path(), config::load_simulated_device(device)).yaml)),
         .script = {},
         .limits = {},
         .events = {},
@@ -89,6 +91,19 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
     EXPECT_LT(0.45 * scenario.twin.model.dofs[0].limits.ddq_max, 5.0);
     EXPECT_LT(0.45 * scenario.twin.model.dofs[0].limits.dq_max, 1.5);
   }
+}
+
+TEST(Scaffold, AJointWithDynamicsKeepsThem) {
+  const TemporaryFolder folder;
+  std::string urdf = read_file("models/examples/gate.urdf", 1'000'000);
+  const std::string end = "effort=\"100\"/>";
+  urdf.insert(urdf.find(end) + end.size(), R"(<dynamics damping="0.7" friction="0.3"/>)");
+  const ChainPart gate = {folder.write("gate.urdf", urdf), "", ""};
+  const auto device = config::load_simulated_device("models/haptic_giant/device.yaml");
+  const config::Twin twin =
+      config::load_twin(folder.write("gate.yaml", draft_twin(gate, folder.path(), device).yaml));
+  EXPECT_EQ(twin.model.dofs[0].damping, 0.7);
+  EXPECT_EQ(twin.model.dofs[0].friction, 0.3);
 }
 
 TEST(Scaffold, TooFewJointsAreRefusedWithAdvice) {

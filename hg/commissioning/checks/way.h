@@ -1,0 +1,44 @@
+/// Whether a device can lead a hand through all that a twin can do, tried by a run.
+///
+/// A simulated hand moves each joint of the twin from its start to both ends and back, at the
+/// speeds that the twin allows, while the control cycle runs on the simulated device: gantry,
+/// posture level and all limits act as they do in use.
+#pragma once
+
+#include <string>
+
+#include "hg/config/simulation/simulation.h"
+#include "hg/config/twin.h"
+
+namespace hg::checks {
+
+/// Result of a trial.
+struct Way {
+  double share = 1.0;       ///< Least share of a joint's range through which it was led, 0..1
+  std::string twin_joint;   ///< That joint
+  std::string fault;        ///< Fault that ended the trial; empty: none
+  double at_limit_s = 0.0;  ///< Longest time at which one limit of the device stood at its end, s
+  std::string limit;        ///< That limit; empty: none stood there for long
+  double excess = 0.0;      ///< Largest true excess over a limit of the device, rad or m
+  std::string exceeded;     ///< That limit; empty: none by more than kExcessAllowed
+};
+
+/// Share from which a way counts as whole.
+inline constexpr double kWholeWay = 0.95;
+/// Largest excess of a limit that counts as none, rad or m.
+inline constexpr double kExcessAllowed = 1e-3;
+
+/// What a user should know of a trial, in one line; empty where nothing was in the way.
+std::string trouble_of(const Way& way);
+
+/// What helps.
+inline constexpr const char* kCuresOfWay =
+    "move or turn the placement, start elsewhere (start of the twin's joints, posture of the "
+    "device), or narrow the limits of the twin's joints";
+
+/// Leads `twin` on `device`. Locks, conditional limits, springs, weight and friction of the twin
+/// are left out, since they are no matter of the device; a floating joint is not led.
+/// Deterministic. Throws SetupError where the device cannot hold the twin at its start.
+Way lead(const config::SimulatedDeviceConfig& device, const config::Twin& twin);
+
+}  // namespace hg::checks
