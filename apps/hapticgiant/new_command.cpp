@@ -10,6 +10,7 @@
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
+#include "hg/commissioning/checks/way.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
@@ -55,9 +56,8 @@ int new_twin(const NewArguments& arguments) {
   const generator::TwinDraft draft = generator::draft_twin(arguments.part, output.parent_path(),
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
-  const std::string trouble = checks::trouble_of(draft.way);
-  if (!trouble.empty()) {
-    print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), trouble,
+  if (!draft.trouble.empty()) {
+    print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), draft.trouble,
                 checks::kCuresOfWay);
   }
   const std::string with = is_own ? " --device " + arguments.device : "";

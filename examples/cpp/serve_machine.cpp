@@ -24,7 +24,7 @@ int main(int count, char** arguments) try {
       .n_m = static_cast<std::uint32_t>(device.model.n_m),
       .rate_Hz = device.model.rate_Hz,
       .interface = hg::udp::Interface::kPosition};  // kTorque: its drives take torques
-  // not simulated: `hapticgiant run` then asks for a start test, which tries the brakes
+  // true: this stand-in has no brakes. Yours: false, so that a start test tries them before a run
   hg::udp::DeviceServer server(
       hg::udp::parse_address("HOST:PORT", arguments[2]),
       {.actual = description, .server = "serve_machine", .is_simulated = true});

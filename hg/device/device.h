@@ -14,9 +14,9 @@ class Device {
   virtual ~Device() = default;
   /// Reads the sensors of one sample. Needed: `sequence` (one more than in the last sample) and
   /// `time_s`; `q_m`, `dq_m` and `q_p` with one value per joint or axis (no axes: empty); `w_S`;
-  /// `dead_man`, unless device.yaml says has_dead_man: false; and with torque control
-  /// (control.method modal or motor_pd) `theta_m`, `tau_m` and `answered_sequence`. The rest may
-  /// stay as it is. A sample without what is needed is refused with FaultCode::kSensorIncomplete.
+  /// `dead_man`, unless the tool has none; and with torque control (control.method modal or
+  /// motor_pd) `theta_m`, `tau_m` and `answered_sequence`. The rest may stay as it is. A sample
+  /// with too few or too many values is refused with FaultCode::kSensorIncomplete.
   virtual void read(SensorFrame& sensors) noexcept = 0;
   /// Sends the command until the next sample.
   virtual void write(const CommandFrame& command) noexcept = 0;

@@ -390,9 +390,18 @@ class Reader {
 
   void dynamics(const XMLElement& e, const std::string& item, UrdfJoint& joint) const {
     const XMLElement* found = e.FirstChildElement("dynamics");
-    if (found == nullptr) return;
+    if (found == nullptr || joint.type == UrdfJointType::kFixed) return;
     if (found->Attribute("damping")) joint.damping = number(*found, "damping", kEffort, item);
     if (found->Attribute("friction")) joint.friction = number(*found, "friction", kEffort, item);
+  }
+
+  void ignore_ratings(const XMLElement& e) {
+    for (const char* key : {"limit", "dynamics"}) {
+      const XMLElement* found = e.FirstChildElement(key);
+      if (found == nullptr) continue;
+      ignore(urdf_, "<" + std::string(key) + "> of a floating or planar joint",
+             found->GetLineNum());
+    }
   }
 
   UrdfJoint joint(const XMLElement& e) {
@@ -409,8 +418,12 @@ class Reader {
     if (has_axis) result.axis = axis(e, item);
     const bool is_scalar =
         result.type != UrdfJointType::kFloating && result.type != UrdfJointType::kPlanar;
-    if (is_scalar) limits(e, item, result);
-    if (is_scalar) dynamics(e, item, result);
+    if (is_scalar) {
+      limits(e, item, result);
+      dynamics(e, item, result);
+    } else {
+      ignore_ratings(e);
+    }
     if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
       result.mimic_line = mimic->GetLineNum();
     }

@@ -147,8 +147,12 @@ bool has_start(const config::DeviceConfig& device, const config::Twin& twin, Col
 // What a hand meets that is led through all that the twin can do.
 void inspect_way(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
                  Collector& out) {
-  const std::string trouble = trouble_of(lead(device, twin));
-  if (!trouble.empty()) out.add(Severity::kWarning, "placement", trouble, kCuresOfWay);
+  try {
+    const std::string trouble = trouble_of(lead(device, twin));
+    if (!trouble.empty()) out.add(Severity::kWarning, "placement", trouble, kCuresOfWay);
+  } catch (const SetupError& error) {
+    out.add(Severity::kFault, "placement", error.what(), "");
+  }
 }
 
 }  // namespace

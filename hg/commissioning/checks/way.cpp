@@ -9,7 +9,6 @@
 
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/model/chain_data.h"
-#include "hg/model/joint_range.h"
 #include "hg/scenario/session.h"
 
 namespace hg::checks {
@@ -18,7 +17,9 @@ namespace {
 constexpr double kFirst = 1.0;       // s, from the grasp to the first motion
 constexpr double kBeyond = 0.1;      // of a range, how far beyond its ends the hand pulls
 constexpr double kRest = 1.0;        // s, at each end
-constexpr double kLongest = 20.0;    // s, of one motion
+constexpr double kShortest = 0.5;    // s, of one motion
+constexpr double kLongest = 60.0;    // s, of one motion: a joint that takes longer is not led
+constexpr double kCoasting = 1.5;    // s, time constant of a twin that is let go
 constexpr double kTipSpeed = 0.5;    // m/s, where the twin has no speed limit
 constexpr double kTurnSpeed = 1.0;   // rad/s, the same where the handle turns on the spot
 constexpr double kSpeedShare = 0.9;  // of the twin's own limits
@@ -27,27 +28,24 @@ constexpr double kAtLimit = 0.1;     // s, from which a limit counts as in the w
 constexpr double kNearLever = 0.02;  // m, below it a joint turns the handle on the spot
 constexpr double kReached = 0.02;    // share of a range within which an end counts as reached
 
-// Only what moves the device is left of the twin.
+// Only what moves the device is left of the twin. It coasts, so that the hand has hardly to pull.
 void strip(rendering::TwinModel& twin) {
   twin.locks.clear();
   twin.conditional_limits.clear();
   twin.w_ref.setZero();
-  for (rendering::TwinDof& dof : twin.dofs) {
+  model::ChainData chain(twin.chain);
+  chain.update(twin.q_start, VectorA::Zero(twin.chain.nv()));
+  const Eigen::MatrixXd M = chain.M();
+  for (int i = 0; i < std::ssize(twin.dofs); ++i) {
+    rendering::TwinDof& dof = twin.dofs[i];
     dof.stiffness = dof.preload = dof.friction = dof.quadratic_damping = 0.0;
+    dof.damping = M(i, i) / kCoasting;
     dof.closer = {};
   }
 }
 
-// The first ones: a script has a channel for each of eight joints.
-int led_joints(const rendering::TwinModel& twin) {
-  return std::min(person::kPoseChannels, static_cast<int>(twin.dofs.size()));
-}
-
-Interval range_of(const rendering::TwinDof& dof) {
-  return model::finite_range({dof.limits.q_min, dof.limits.q_max}, dof.is_angle);
-}
-
 // Duration of a minimum-jerk motion over `way` that joint `dof` and a hand can follow, s.
+// `chain` is the twin at its start.
 double duration_of(const rendering::TwinModel& twin, const person::HandImpedance& hand,
                    model::ChainData& chain, int dof, double way) {
   const rendering::TwinDof& joint = twin.dofs[dof];
@@ -62,24 +60,37 @@ double duration_of(const rendering::TwinModel& twin, const person::HandImpedance
   // minimum jerk: peak speed 1.875 way / T, peak acceleration 5.77 way / T^2
   const double by_speed = 1.875 * way / (kSpeedShare * speed);
   const double by_acceleration = std::sqrt(5.77 * way / acceleration);
-  return std::clamp(std::max(by_speed, by_acceleration), 0.5, kLongest);
+  return std::max({by_speed, by_acceleration, kShortest});
+}
+
+// Joints that have a range through which they can be led in time.
+std::vector<int> led_joints(const rendering::TwinModel& twin, const person::HandImpedance& hand,
+                            model::ChainData& chain) {
+  std::vector<int> led;
+  for (int i = 0; i < std::ssize(twin.dofs); ++i) {
+    const limits::JointLimits& limits = twin.dofs[i].limits;
+    const double range = limits.q_max - limits.q_min;
+    if (std::isfinite(range) && duration_of(twin, hand, chain, i, range) < kLongest)
+      led.push_back(i);
+  }
+  return led;
 }
 
 // Each joint from its start to its upper end, to its lower end, and back to the start. As people
 // do, the hand pulls on at an end.
-person::Script script_through(const rendering::TwinModel& twin, const person::HandImpedance& hand) {
-  model::ChainData chain(twin.chain);
-  chain.update(twin.q_start, VectorA::Zero(twin.chain.nv()));
+person::Script script_through(const rendering::TwinModel& twin, const person::HandImpedance& hand,
+                              const std::vector<int>& led, model::ChainData& chain) {
   person::Script script = {.frame = person::ScriptFrame::kTwinJoints};
   script.start[person::kGripChannel] = 1.0;
   double t = kFirst;
-  for (int i = 0; i < led_joints(twin); ++i) {
-    const Interval range = range_of(twin.dofs[i]);
-    double at = twin.q_start[twin.dofs[i].q_index];
-    const double beyond = kBeyond * (range.ub - range.lb);
-    for (const double to : {range.ub + beyond, range.lb - beyond, at}) {
-      const double duration = duration_of(twin, hand, chain, i, std::abs(to - at));
-      script.segments.push_back({t, duration, i, person::Blend::kTo, to});
+  for (const int dof : led) {
+    const limits::JointLimits& limits = twin.dofs[dof].limits;
+    const double start = twin.q_start[twin.dofs[dof].q_index];
+    const double beyond = kBeyond * (limits.q_max - limits.q_min);
+    double at = start;
+    for (const double to : {limits.q_max + beyond, limits.q_min - beyond, start}) {
+      const double duration = duration_of(twin, hand, chain, dof, std::abs(to - at));
+      script.segments.push_back({t, duration, dof, person::Blend::kTo, to});
       t += duration + kRest;
       at = to;
     }
@@ -88,46 +99,56 @@ person::Script script_through(const rendering::TwinModel& twin, const person::Ha
   return script;
 }
 
-config::Scenario scenario_of(const config::SimulatedDeviceConfig& device,
-                             const config::Twin& twin) {
-  config::Scenario scenario = {.title = {},
-                               .description = {},
-                               .device = device,
-                               .twin = twin,
-                               .person = person::PersonKind::kScript,
-                               .script = {},
-                               .limits = {},
-                               .events = {},
-                               .changes = {},
-                               .sources = {},
-                               .places = {}};
-  strip(scenario.twin.model);
-  scenario.limits = rendering::make_catalogue(device.model, scenario.twin.model);
+// A trial: its scenario, and the joints of the twin that are led.
+struct Trial {
+  config::Scenario scenario;
+  std::vector<int> led;
+};
+
+Trial make_trial(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {
+  Trial trial = {.scenario = {.title = {},
+                              .description = {},
+                              .device = device,
+                              .twin = twin,
+                              .person = person::PersonKind::kScript,
+                              .script = {},
+                              .limits = {},
+                              .events = {},
+                              .changes = {},
+                              .sources = {},
+                              .places = {}},
+                 .led = {}};
+  config::Scenario& scenario = trial.scenario;
+  rendering::TwinModel& model = scenario.twin.model;
+  strip(model);
+  scenario.limits = rendering::make_catalogue(device.model, model);
   scenario.changes.push_back({0.0, {Parameter::kGravity, -1, 0.0}});
-  scenario.script.hand.tremor_rms = 0.0;
-  scenario.script.script = script_through(scenario.twin.model, scenario.script.hand);
-  return scenario;
+  person::HandImpedance& hand = scenario.script.hand;
+  hand.tremor_rms = 0.0;
+  model::ChainData chain(model.chain);
+  chain.update(model.q_start, VectorA::Zero(model.chain.nv()));
+  trial.led = led_joints(model, hand, chain);
+  scenario.script.script = script_through(model, hand, trial.led, chain);
+  return trial;
 }
 
 // Follows a trial from cycle to cycle.
 class Watch {
  public:
-  explicit Watch(const config::Scenario& scenario)
-      : scenario_(scenario),
-        positions_(scenario.device.model),
-        at_limit_s_(scenario.device.model.limit_count()) {
-    const ConfigurationA& start = scenario.twin.model.q_start;
-    for (const rendering::TwinDof& dof : scenario.twin.model.dofs) {
-      const double q = start[dof.q_index];
+  explicit Watch(const Trial& trial)
+      : trial_(trial),
+        positions_(trial.scenario.device.model),
+        at_limit_s_(trial.scenario.device.model.limit_count()) {
+    for (const int dof : trial.led) {
+      const double q = position(trial.scenario.twin.model.q_start, dof);
       reached_.push_back({q, q});
     }
   }
 
   void look(const Sample& sample) {
     if (sample.record.mode != Mode::kRunning) return;
-    const std::vector<rendering::TwinDof>& dofs = scenario_.twin.model.dofs;
-    for (std::size_t i = 0; i < dofs.size(); ++i) {
-      const double q = sample.record.twin.q_a[dofs[i].q_index];
+    for (int i = 0; i < std::ssize(trial_.led); ++i) {
+      const double q = position(sample.record.twin.q_a, trial_.led[i]);
       reached_[i] = {std::min(reached_[i].lb, q), std::max(reached_[i].ub, q)};
     }
     look_at_limits(sample.record);
@@ -136,43 +157,46 @@ class Watch {
 
   Way result(const CycleRecord& last) {
     if (last.mode == Mode::kFault) way_.fault = to_string(last.fault.code);
-    const std::vector<rendering::TwinDof>& dofs = scenario_.twin.model.dofs;
-    for (int i = 0; i < led_joints(scenario_.twin.model); ++i) {
-      const Interval range = range_of(dofs[i]);
-      const double reached = (reached_[i].ub - reached_[i].lb) / (range.ub - range.lb);
-      const double share = std::min(1.0, reached + kReached);
-      if (share >= way_.share && i > 0) continue;
+    for (int i = 0; i < std::ssize(trial_.led); ++i) {
+      const rendering::TwinDof& dof = trial_.scenario.twin.model.dofs[trial_.led[i]];
+      const double range = dof.limits.q_max - dof.limits.q_min;
+      const double share = std::min(1.0, (reached_[i].ub - reached_[i].lb) / range + kReached);
+      if (share >= way_.share) continue;
       way_.share = share;
-      way_.twin_joint = dofs[i].name;
+      way_.twin_joint = dof.name;
     }
     return std::move(way_);
   }
 
  private:
+  double position(const ConfigurationA& q, int dof) const {
+    return q[trial_.scenario.twin.model.dofs[dof].q_index];
+  }
+
   void look_at_limits(const CycleRecord& record) {
     for (std::size_t i = 0; i < at_limit_s_.size(); ++i) {
       const LimitReport& limit = record.limits[i];
       const bool is_at_end =
           limit.state != LimitState::kInactive && limit.cause == LimitCause::kPosition;
-      at_limit_s_[i] = is_at_end ? at_limit_s_[i] + scenario_.device.model.dt() : 0.0;
+      at_limit_s_[i] = is_at_end ? at_limit_s_[i] + trial_.scenario.device.model.dt() : 0.0;
       if (at_limit_s_[i] < kAtLimit || at_limit_s_[i] <= way_.at_limit_s) continue;
       way_.at_limit_s = at_limit_s_[i];
-      way_.limit = scenario_.limits[i].name;
+      way_.limit = trial_.scenario.limits[i].name;
     }
   }
 
   void look_at_truth(const Truth& truth) {
     positions_.find(truth.q_p, truth.q_m, values_);
     for (std::size_t i = 0; i < values_.size(); ++i) {
-      const Interval& range = scenario_.limits[i].range;
+      const Interval& range = trial_.scenario.limits[i].range;
       const double excess = std::max(range.lb - values_[i], values_[i] - range.ub);
       if (!(excess > std::max(kExcessAllowed, way_.excess))) continue;
       way_.excess = excess;
-      way_.exceeded = scenario_.limits[i].name;
+      way_.exceeded = trial_.scenario.limits[i].name;
     }
   }
 
-  const config::Scenario& scenario_;
+  const Trial& trial_;
   rendering::LimitPositions positions_;
   std::vector<double> at_limit_s_, values_;
   std::vector<Interval> reached_;
@@ -200,12 +224,13 @@ std::string trouble_of(const Way& way) {
 }
 
 Way lead(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {
-  const bool can_be_led = std::ranges::all_of(
-      twin.model.dofs, [](const rendering::TwinDof& dof) { return dof.q_index >= 0; });
-  if (!can_be_led) return {};
-  const config::Scenario scenario = scenario_of(device, twin);
-  scenario::Session session(scenario);
-  Watch watch(scenario);
+  const std::vector<rendering::TwinDof>& dofs = twin.model.dofs;
+  const bool is_floating =
+      std::ranges::any_of(dofs, [](const rendering::TwinDof& dof) { return dof.q_index < 0; });
+  if (is_floating || std::ssize(dofs) > person::kPoseChannels) return {};
+  const Trial trial = make_trial(device, twin);
+  scenario::Session session(trial.scenario);
+  Watch watch(trial);
   while (session.advance()) watch.look(session.sample());
   return watch.result(session.record());
 }

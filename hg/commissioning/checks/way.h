@@ -36,9 +36,11 @@ inline constexpr const char* kCuresOfWay =
     "move or turn the placement, start elsewhere (start of the twin's joints, posture of the "
     "device), or narrow the limits of the twin's joints";
 
-/// Leads `twin` on `device`. Locks, conditional limits, springs, weight and friction of the twin
-/// are left out, since they are no matter of the device; a floating joint is not led.
-/// Deterministic. Throws SetupError where the device cannot hold the twin at its start.
+/// Leads `twin` on `device`. Locks, conditional limits, springs, weight, damping and friction of
+/// the twin are left out, since they are no matter of the device. Joints without limits and those
+/// that take longer than a minute are not led; nor is a twin with a floating joint, or with more
+/// joints than the eight that a script can move. Deterministic. Throws SetupError where the device
+/// cannot hold the twin at its start, or the two do not make a control cycle.
 Way lead(const config::SimulatedDeviceConfig& device, const config::Twin& twin);
 
 }  // namespace hg::checks

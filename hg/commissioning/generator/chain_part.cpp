@@ -51,10 +51,13 @@ std::string quoted(const std::string& name) {
   return "'" + text + "'";
 }
 
-std::string part_lines(const ChainPart& part, const std::filesystem::path& folder) {
+std::string urdf_in(const ChainPart& part, const std::filesystem::path& folder) {
   const std::filesystem::path base = folder.empty() ? "." : folder;
-  std::string text = fmt::format(
-      "urdf: {}\n", quoted(std::filesystem::relative(part.urdf, base).generic_string()));
+  return std::filesystem::relative(part.urdf, base).generic_string();
+}
+
+std::string part_lines(const ChainPart& part, const std::filesystem::path& folder) {
+  std::string text = fmt::format("urdf: {}\n", quoted(urdf_in(part, folder)));
   if (!part.root_link.empty()) text += fmt::format("root_link: {}\n", quoted(part.root_link));
   if (!part.tip_link.empty()) text += fmt::format("tip_link: {}\n", quoted(part.tip_link));
   return text;

@@ -27,6 +27,9 @@ std::string rounded(double value);
 /// A name for YAML, in quotes where needed.
 std::string quoted(const std::string& name);
 
+/// Path of the part's URDF as a file in `folder` names it, without symbolic links.
+std::string urdf_in(const ChainPart& part, const std::filesystem::path& folder);
+
 /// Lines of a YAML file in `folder`: `urdf:` and, where given, the ends of the part.
 std::string part_lines(const ChainPart& part, const std::filesystem::path& folder);
 

@@ -8,7 +8,6 @@
 #include <functional>
 #include <string>
 
-#include "hg/commissioning/checks/way.h"
 #include "hg/commissioning/generator/chain_part.h"
 #include "hg/config/simulation/simulation.h"
 
@@ -18,10 +17,10 @@ namespace hg::generator {
 /// six or seven joints after them are the manipulator.
 std::string device_yaml(const ChainPart& part, const std::filesystem::path& folder);
 
-/// Text of a twin.yaml, and what a trial of it on the device gave.
+/// Text of a twin.yaml, and what a user should know of its trial on the device; empty: all is well.
 struct TwinDraft {
   std::string yaml;
-  checks::Way way;
+  std::string trouble;
 };
 
 /// A twin.yaml that will stand in `folder`: placed upright where `device` can lead a hand through

@@ -9,23 +9,22 @@
 #include <tuple>
 #include <vector>
 
+#include "hg/commissioning/checks/way.h"
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
-#include "hg/core/open_file.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::generator {
 namespace {
 
-constexpr int kPostures = 24;    // in which a placement is tried
-constexpr double kNear = 0.02;   // m, from here on a joint mostly turns the end effector
-constexpr int kPlacements = 40;  // number of placements tried in all postures
-constexpr double kRoom = 0.05;   // share of a range, kept from a joint's limits at the start
-constexpr int kTrials = 8;       // number of those in which a hand leads the twin
-constexpr std::uintmax_t kMostBytes = 4'000'000;  // of a URDF, as SourceReader
+constexpr int kPostures = 24;       // in which a placement is tried
+constexpr double kNear = 0.02;      // m, from here on a joint mostly turns the end effector
+constexpr int kPlacements = 40;     // number of placements tried in all postures
+constexpr double kRoom = 0.05;      // share of a range, kept from a joint's limits at the start
+constexpr int kTrials = 8;          // number of those in which a hand leads the twin
 constexpr double kShare = 0.8;      // share of the speed and acceleration of the device's handle
 constexpr double kTurnShare = 0.5;  // share of the rating of the slowest of the last three joints
 constexpr double kCoasting = 1.5;   // s, time constant of a released joint
@@ -41,7 +40,8 @@ struct Mechanism {
 struct Placement {
   Pose T_B_root;
   double yaw = 0.0;
-  double share = -1.0;  ///< share of the postures that the device can follow
+  double share = -1.0;  ///< share of the postures that the device reaches
+  bool has_room = false;
   bool is_upright = true;
 };
 
@@ -87,22 +87,6 @@ class Reach {
                         .end_effector = 0,
                         .q_start = ConfigurationA::Zero(7)}} {}
 
-  bool contains(const Pose& T_B_H) { return start_at(T_B_H).has_value(); }
-
-  // the same, with every joint of the device well inside its limits
-  bool contains_with_room(const Pose& T_B_H) {
-    const std::optional<scenario::Start> start = start_at(T_B_H);
-    if (!start) return false;
-    for (int i = 0; i < device_.model.n_m; ++i) {
-      const limits::JointLimits& range = device_.model.joint_limits[i];
-      const double room = kRoom * (range.q_max - range.q_min);
-      const double q = start->q_m[i];
-      if (std::isfinite(room) && std::min(q - range.q_min, range.q_max - q) < room) return false;
-    }
-    return true;
-  }
-
- private:
   std::optional<scenario::Start> start_at(const Pose& T_B_H) {
     ConfigurationA& q = twin_.model.q_start;
     q.head<3>() = T_B_H.p;
@@ -114,9 +98,28 @@ class Reach {
     }
   }
 
+ private:
   const config::DeviceConfig& device_;
   config::Twin twin_;
 };
+
+// Whether gantry, joints and sums of joints are well inside their ranges.
+bool has_room(const DeviceModel& device, const scenario::Start& start) {
+  const auto is_inside = [](double q, const Interval& range) {
+    const double room = kRoom * (range.ub - range.lb);
+    return !std::isfinite(room) || std::min(q - range.lb, range.ub - q) >= room;
+  };
+  for (int i = 0; i < device.n_p; ++i) {
+    if (!is_inside(start.q_p[i], device.gantry_range[i])) return false;
+  }
+  for (int i = 0; i < device.n_m; ++i) {
+    const limits::JointLimits& limits = device.joint_limits[i];
+    if (!is_inside(start.q_m[i], {limits.q_min, limits.q_max})) return false;
+  }
+  return std::ranges::all_of(device.virtual_joints, [&](const VirtualJoint& sum) {
+    return is_inside(sum.weights.dot(start.q_m), {sum.limits.q_min, sum.limits.q_max});
+  });
+}
 
 // the handle with every joint of the device at its goal or in the middle of its range
 Pose nominal_handle(const config::DeviceConfig& device) {
@@ -148,8 +151,9 @@ std::vector<Eigen::Vector3d> offsets() {
   return grid;
 }
 
-// Upright, turned and moved: all placements at which the device reaches the start, with the share
-// of other postures that it reaches, best first. Ends at the first kEnough that reach all.
+// Upright, turned and moved: placements at which the device reaches the start, best first. Those
+// with room at the start come before the others, then the share of other postures that it reaches
+// counts. Without any, one that is tilted. Ends early with as many good ones as are tried.
 std::vector<Placement> find_placements(Mechanism& d, const config::DeviceConfig& device) {
   Reach reach(device);
   const Pose nominal = nominal_handle(device);
@@ -159,22 +163,32 @@ std::vector<Placement> find_placements(Mechanism& d, const config::DeviceConfig&
   for (int k = 0; k < kPostures; ++k) others.push_back(tip(d, sampler.draw()));
 
   std::vector<Placement> found;
-  int whole = 0;
+  int good = 0;
   for (const Eigen::Vector3d& offset : offsets()) {
     for (int turn = 0; turn < 12; ++turn) {
-      if (std::ssize(found) >= kPlacements || whole >= kTrials) continue;
+      if (std::ssize(found) >= kPlacements || good >= kTrials) break;
       const double yaw = turn * M_PI / 6.0;
       const Eigen::Matrix3d R(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
       const Pose T_B_root{nominal.p + offset - R * T_root_start.p, R};
-      if (!reach.contains_with_room(T_B_root * T_root_start)) continue;
-      const auto count = std::ranges::count_if(
-          others, [&](const Pose& T_root_E) { return reach.contains(T_B_root * T_root_E); });
-      found.push_back({T_B_root, yaw, static_cast<double>(count) / kPostures, true});
-      if (count == kPostures) ++whole;
+      const std::optional<scenario::Start> start = reach.start_at(T_B_root * T_root_start);
+      if (!start) continue;
+      const auto count = std::ranges::count_if(others, [&](const Pose& T_root_E) {
+        return reach.start_at(T_B_root * T_root_E).has_value();
+      });
+      found.push_back({.T_B_root = T_B_root,
+                       .yaw = yaw,
+                       .share = static_cast<double>(count) / kPostures,
+                       .has_room = has_room(device.model, *start)});
+      if (found.back().has_room && count == kPostures) ++good;
     }
   }
-  std::ranges::stable_sort(found, std::greater(), &Placement::share);
-  if (found.empty()) found.push_back({nominal * inverse(T_root_start), 0.0, 0.0, false});
+  std::ranges::stable_sort(found, std::greater(), [](const Placement& placement) {
+    return std::tuple(placement.has_room, placement.share);
+  });
+  if (found.empty()) {
+    found.push_back(
+        {.T_B_root = nominal * inverse(T_root_start), .share = 0.0, .is_upright = false});
+  }
   return found;
 }
 
@@ -192,7 +206,7 @@ std::string placement_line(const Placement& placement) {
   text += fmt::format(", roll_rad: {:.6f}, pitch_rad: {:.6f}, yaw_rad: {:.6f}",
                       std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0)));
   return text +
-         "}  # [V] tilted: upright the device cannot hold this end effector well at the start;\n"
+         "}  # [V] tilted: upright the device cannot hold this end effector at the start;\n"
          "# give the URDF a frame turned like the handle of the device to place it upright\n";
 }
 
@@ -272,19 +286,27 @@ std::string yaml_of(Mechanism& d, const Placement& placement, const ChainPart& p
          joint_lines(d, tip_ratings(device));
 }
 
-// Leads a hand through the twin of a draft whose URDF stands beside it.
-checks::Way lead(const std::string& yaml, const ChainPart& part, const std::string& urdf,
-                 const config::SimulatedDeviceConfig& device) {
-  config::SourceReader reader({{"twin.yaml", yaml}, {part.urdf.filename().generic_string(), urdf}});
-  const config::Twin twin = config::load_twin("twin.yaml", reader);
+// A trial of a draft. The worst is one that cannot begin.
+struct Trial {
+  checks::Way way;
+  std::string refusal;  ///< why it cannot; empty: it began
+
+  std::string trouble() const { return refusal.empty() ? checks::trouble_of(way) : refusal; }
+};
+
+// Leads a hand through the twin of a draft that stands beside its URDF.
+Trial try_out(const std::string& yaml, const std::string& urdf, const std::string& urdf_name,
+              const config::SimulatedDeviceConfig& device) {
+  config::SourceReader reader({{"twin.yaml", yaml}, {urdf_name, urdf}});
   try {
-    return checks::lead(device, twin);
+    return {.way = checks::lead(device, config::load_twin("twin.yaml", reader)), .refusal = {}};
   } catch (const SetupError& error) {
-    return {.share = 0.0, .twin_joint = twin.model.dofs[0].name, .fault = error.what()};
+    return {.way = {.share = -1.0}, .refusal = error.what()};
   }
 }
 
-// Whether `a` went better than `b`: farther, then nearer to no limit.
+// Whether `a` went better than `b`: farther, then without a fault, then with fewer limits in the
+// way.
 bool is_better(const checks::Way& a, const checks::Way& b) {
   const auto whole = [](const checks::Way& way) { return std::min(way.share, checks::kWholeWay); };
   if (whole(a) != whole(b)) return whole(a) > whole(b);
@@ -299,23 +321,24 @@ TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
                      const std::function<void(std::size_t, std::size_t)>& progress) {
   Mechanism d = make_mechanism(part);
   std::vector<Placement> placements = find_placements(d, device);
-  const std::string urdf = read_file(part.urdf, kMostBytes);
-  TwinDraft best;
+  const std::string urdf = config::SourceReader().read(part.urdf);
+  const std::filesystem::path beside = part.urdf.parent_path();
+  const std::string urdf_name = urdf_in(part, beside);
+  Trial best;
   const Placement* chosen = nullptr;
   const std::size_t most = std::min<std::size_t>(kTrials, placements.size());
   std::size_t trials = 0;
   for (const Placement& placement : placements | std::views::take(most)) {
-    const checks::Way way =
-        lead(yaml_of(d, placement, part, part.urdf.parent_path(), device), part, urdf, device);
+    const Trial trial =
+        try_out(yaml_of(d, placement, part, beside, device), urdf, urdf_name, device);
     if (progress) progress(++trials, most);
-    if (chosen != nullptr && !is_better(way, best.way)) continue;
+    if (chosen != nullptr && !is_better(trial.way, best.way)) continue;
     chosen = &placement;
-    best.way = way;
-    if (checks::trouble_of(way).empty()) break;
+    best = trial;
+    if (best.trouble().empty()) break;
   }
   if (progress) progress(most, most);
-  best.yaml = yaml_of(d, *chosen, part, folder, device);
-  return best;
+  return {.yaml = yaml_of(d, *chosen, part, folder, device), .trouble = best.trouble()};
 }
 
 }  // namespace hg::generator

@@ -191,6 +191,15 @@ TEST(Urdf, WhatIsNotReadIsListedOnceWithItsNumberAndFirstLine) {
   EXPECT_TRUE(read_urdf_text(Text().all(), "").ignored.empty());
 }
 
+TEST(Urdf, RatingsOfAPlanarJointAreListed) {
+  Text text;
+  text.joint = joint_with("planar", "<limit velocity='2'/><dynamics damping='1'/>");
+  const std::vector<UrdfIgnored> ignored = read_urdf_text(text.all(), "").ignored;
+  ASSERT_EQ(ignored.size(), 2U);
+  EXPECT_EQ(ignored[0].what, "<limit> of a floating or planar joint");
+  EXPECT_EQ(ignored[1].what, "<dynamics> of a floating or planar joint");
+}
+
 struct Fault {
   const char* what;
   Text text;

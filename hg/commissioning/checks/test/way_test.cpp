@@ -27,7 +27,7 @@ config::Twin gate(double y, const std::string& keys = "") {
         "placement: {x_m: 0.05, y_m: " +
             std::to_string(y) +
             ", z_m: 0.78}\n"
-            "joints: {hinge: {ddq_max_rad_per_s2: 4, damping_Nms_per_rad: 1" +
+            "joints: {hinge: {ddq_max_rad_per_s2: 4, damping_Nms_per_rad: 90" +
             keys + "}}\n"},
        {"gate.urdf", read_file("models/examples/gate.urdf", 1'000'000)}});
   return config::load_twin("twin.yaml", reader);
@@ -54,7 +54,9 @@ TEST(Way, IsTheSameInEveryTrial) {
 }
 
 TEST(Way, ForcesOfTheTwinAreNoMatterOfTheDevice) {
-  const std::string heavy = ", stiffness_Nm_per_rad: 200, friction_Nm: 300, preload_Nm: 100";
+  const std::string heavy =
+      ", stiffness_Nm_per_rad: 200, friction_Nm: 300, preload_Nm: 100, "
+      "quadratic_damping_Nms2_per_rad2: 50";
   EXPECT_EQ(trouble_of(lead(arm(), gate(kNear, heavy))), "");
 }
 
@@ -63,9 +65,17 @@ TEST(Way, LocksAreOpen) {
   EXPECT_EQ(trouble_of(lead(giant(), config::load_twin("models/twins/door/twin.yaml"))), "");
 }
 
-TEST(Way, AFloatingTwinIsNotLed) {
-  const config::Twin twin = config::load_twin("models/twins/free_space/twin.yaml");
-  EXPECT_EQ(trouble_of(lead(giant(), twin)), "");
+TEST(Way, ATwinThatFloatsOrHasMoreJointsThanAScriptMovesIsNotLed) {
+  for (const char* name : {"free_space", "chain_20"}) {
+    const config::Twin twin = config::load_twin(std::string("models/twins/") + name + "/twin.yaml");
+    EXPECT_EQ(trouble_of(lead(giant(), twin)), "") << name;
+  }
+}
+
+TEST(Way, AJointWithoutLimitsHasNoRangeToBeLedThrough) {
+  config::Twin twin = gate(kFar);
+  twin.model.dofs[0].limits.q_max = kInfinity;
+  EXPECT_EQ(lead(arm(), twin).share, 1.0);
 }
 
 TEST(Way, TroubleSaysHowFarAndWhatIsInTheWay) {

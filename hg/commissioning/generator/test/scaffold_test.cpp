@@ -106,6 +106,26 @@ TEST(Scaffold, AJointWithDynamicsKeepsThem) {
   EXPECT_EQ(twin.model.dofs[0].friction, 0.3);
 }
 
+TEST(Scaffold, AUrdfBehindASymbolicLinkIsFound) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "v2");
+  fs::copy_file("models/examples/gate.urdf", folder.path() / "v2" / "gate_v2.urdf");
+  fs::create_symlink("v2/gate_v2.urdf", folder.path() / "gate.urdf");
+  const auto device = config::load_simulated_device("models/haptic_giant/device.yaml");
+  const TwinDraft draft = draft_twin({folder.path() / "gate.urdf", "", ""}, folder.path(), device);
+  EXPECT_EQ(draft.trouble, "");
+  EXPECT_NO_THROW(config::load_twin(folder.write("gate.yaml", draft.yaml)));
+}
+
+TEST(Scaffold, ADraftThatCannotBeTriedIsWrittenWithTheReason) {
+  const TemporaryFolder folder;
+  auto device = config::load_simulated_device("models/haptic_giant/device.yaml");
+  device.control.loop.latency = 0.5;  // no stable torque loop
+  const TwinDraft draft = draft_twin(kGate, folder.path(), device);
+  EXPECT_NE(draft.trouble.find("latency"), std::string::npos) << draft.trouble;
+  EXPECT_NO_THROW(config::load_twin(folder.write("gate.yaml", draft.yaml)));
+}
+
 TEST(Scaffold, TooFewJointsAreRefusedWithAdvice) {
   const std::string message = message_of([] { device_yaml(kGate, "."); });
   EXPECT_NE(message.find("six or seven manipulator joints"), std::string::npos) << message;
