@@ -171,15 +171,16 @@ std::vector<Placement> find_placements(Mechanism& d, const config::DeviceConfig&
       const Eigen::Matrix3d R(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
       const Pose T_B_root{nominal.p + offset - R * T_root_start.p, R};
       const std::optional<scenario::Start> start = reach.start_at(T_B_root * T_root_start);
-      if (!start) continue;
+      const bool is_roomy = start && has_room(device.model, *start);
+      if (!start || (!is_roomy && !found.empty())) continue;  // one without room is enough
       const auto count = std::ranges::count_if(others, [&](const Pose& T_root_E) {
         return reach.start_at(T_B_root * T_root_E).has_value();
       });
       found.push_back({.T_B_root = T_B_root,
                        .yaw = yaw,
                        .share = static_cast<double>(count) / kPostures,
-                       .has_room = has_room(device.model, *start)});
-      if (found.back().has_room && count == kPostures) ++good;
+                       .has_room = is_roomy});
+      if (is_roomy && count == kPostures) ++good;
     }
   }
   std::ranges::stable_sort(found, std::greater(), [](const Placement& placement) {
