@@ -48,5 +48,5 @@ install(FILES ${PROJECT_BINARY_DIR}/generated/hapticgiantConfig.cmake
 
 if(HG_TESTS)
   hg_python_test(package_cpp tests/packages/cpp_package_test.py ${PROJECT_BINARY_DIR}
-    ${Eigen3_DIR} TIMEOUT 300)
+    ${Eigen3_DIR} TIMEOUT 900)
 endif()

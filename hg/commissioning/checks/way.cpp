@@ -49,7 +49,7 @@ void strip(rendering::TwinModel& twin) {
 double duration_of(const rendering::TwinModel& twin, const person::HandImpedance& hand,
                    model::ChainData& chain, int dof, double way) {
   const rendering::TwinDof& joint = twin.dofs[dof];
-  const model::Jacobian J = chain.jacobian(twin.end_effector);
+  const model::Jacobian& J = chain.jacobian(twin.end_effector);
   const double lever = J.col(dof).head<3>().norm();
   const bool is_on_the_spot = lever < kNearLever;
   const double speed =
