@@ -74,19 +74,26 @@ void Collector::add_at_urdf(Severity severity, std::string_view kind, const std:
                      std::string(kind) + " " + name,
                      std::move(what),
                      std::move(fix)};
-  for (const config::SourceText& source : sources_) {
-    if (source.content.find("<robot") == std::string::npos) continue;
-    const model::Urdf urdf = model::read_urdf_text(source.content, source.name);
+  for (const model::Urdf& urdf : urdfs_among(sources_)) {
     const auto look = [&](const auto& parts) {
       for (const auto& part : parts) {
         if (part.name != name) continue;
-        finding.file = source.name;
+        finding.file = urdf.source;
         finding.place = {part.line, 1};
       }
     };
     kind == "joint" ? look(urdf.joints) : look(urdf.links);
   }
   findings.push_back(std::move(finding));
+}
+
+std::vector<model::Urdf> urdfs_among(const std::vector<config::SourceText>& sources) {
+  std::vector<model::Urdf> urdfs;
+  for (const config::SourceText& source : sources) {
+    if (source.content.find("<robot") == std::string::npos) continue;
+    urdfs.push_back(model::read_urdf_text(source.content, source.name));
+  }
+  return urdfs;
 }
 
 Findings findings_of_message(std::string_view message, const std::string& file) {

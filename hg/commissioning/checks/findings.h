@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hg/config/sources.h"
+#include "hg/model/urdf.h"
 
 namespace hg::checks {
 
@@ -48,6 +49,9 @@ class Collector {
   const std::vector<config::SourceText>& sources_;
   const config::Places& places_;
 };
+
+/// The URDFs among these texts.
+std::vector<model::Urdf> urdfs_among(const std::vector<config::SourceText>& sources);
 
 /// Findings from an error message of a loader or another part of the program: one per line of
 /// `message`, each "file:line:column: item: what" as far as given; `file` replaces a missing one.

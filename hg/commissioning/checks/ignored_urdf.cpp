@@ -23,9 +23,7 @@ void add_dynamics(model::Urdf& urdf) {
 }  // namespace
 
 void inspect_ignored(const std::vector<config::SourceText>& sources, UrdfUse use, Collector& out) {
-  for (const config::SourceText& source : sources) {
-    if (source.content.find("<robot") == std::string::npos) continue;
-    model::Urdf urdf = model::read_urdf_text(source.content, source.name);
+  for (model::Urdf& urdf : urdfs_among(sources)) {
     if (use == UrdfUse::kDevice) add_dynamics(urdf);
     if (urdf.ignored.empty()) continue;
     std::string list;
@@ -37,7 +35,7 @@ void inspect_ignored(const std::vector<config::SourceText>& sources, UrdfUse use
       first_line = std::min(first_line, ignored.line);
     }
     out.findings.push_back({.severity = Severity::kNote,
-                            .file = source.name,
+                            .file = urdf.source,
                             .place = {first_line, 1},
                             .item = "urdf",
                             .what = "not read: " + list,

@@ -46,9 +46,7 @@ void inspect_link(const model::Urdf& urdf, int index, Collector& out) {
 }  // namespace
 
 void inspect_bodies(const std::vector<config::SourceText>& sources, Collector& out) {
-  for (const config::SourceText& source : sources) {
-    if (source.content.find("<robot") == std::string::npos) continue;
-    const model::Urdf urdf = model::read_urdf_text(source.content, source.name);
+  for (const model::Urdf& urdf : urdfs_among(sources)) {
     for (int i = 0; i < static_cast<int>(urdf.links.size()); ++i) inspect_link(urdf, i, out);
   }
 }

@@ -29,13 +29,12 @@ constexpr double kNearLever = 0.02;  // m, below it a joint turns the handle on 
 constexpr double kReached = 0.02;    // share of a range within which an end counts as reached
 
 // Only what moves the device is left of the twin. It coasts, so that the hand has hardly to pull.
-void strip(rendering::TwinModel& twin) {
+// `chain` is the twin at its start.
+void strip(rendering::TwinModel& twin, model::ChainData& chain) {
   twin.locks.clear();
   twin.conditional_limits.clear();
   twin.w_ref.setZero();
-  model::ChainData chain(twin.chain);
-  chain.update(twin.q_start, VectorA::Zero(twin.chain.nv()));
-  const Eigen::MatrixXd M = chain.M();
+  const Eigen::MatrixXd& M = chain.M();
   for (int i = 0; i < std::ssize(twin.dofs); ++i) {
     rendering::TwinDof& dof = twin.dofs[i];
     dof.stiffness = dof.preload = dof.friction = dof.quadratic_damping = 0.0;
@@ -120,13 +119,13 @@ Trial make_trial(const config::SimulatedDeviceConfig& device, const config::Twin
                  .led = {}};
   config::Scenario& scenario = trial.scenario;
   rendering::TwinModel& model = scenario.twin.model;
-  strip(model);
+  model::ChainData chain(model.chain);
+  chain.update(model.q_start, VectorA::Zero(model.chain.nv()));
+  strip(model, chain);
   scenario.limits = rendering::make_catalogue(device.model, model);
   scenario.changes.push_back({0.0, {Parameter::kGravity, -1, 0.0}});
   person::HandImpedance& hand = scenario.script.hand;
   hand.tremor_rms = 0.0;
-  model::ChainData chain(model.chain);
-  chain.update(model.q_start, VectorA::Zero(model.chain.nv()));
   trial.led = led_joints(model, hand, chain);
   scenario.script.script = script_through(model, hand, trial.led, chain);
   return trial;
