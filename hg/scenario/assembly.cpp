@@ -49,22 +49,30 @@ Interval end_stops(const config::SimulationConfig& reality, const model::Joint& 
   return {q_min - beyond, q_max + beyond};
 }
 
-simulator::PlantConfig elastic_plant(const config::SimulatedDeviceConfig& device,
-                                     const Start& start, double step) {
+// Delays between a sample and the torques of the motors.
+TorqueLoop torque_loop(const config::SimulatedDeviceConfig& device) {
+  const config::PositionDrives& drives = device.simulation.drives;
+  const bool has_loop = plant_of(device) == config::PlantKind::kPositionDrives;
+  const TorqueLoop nominal =
+      has_loop ? TorqueLoop{drives.latency, drives.current_lag} : device.control.loop;
+  return actual(nominal, device.simulation.factors);
+}
+
+// Machine whose motors take torques, or follow positions with a controller of their own.
+simulator::PlantConfig motor_plant(const config::SimulatedDeviceConfig& device, const Start& start,
+                                   double step) {
   const config::SimulationConfig& reality = device.simulation;
-  simulator::PlantConfig plant = {
-      .step = step,
-      .gantry = reality.gantry,
-      .manipulator = reality.manipulator,
-      .flexible = reality.flexible,
-      .current_lag = actual(device.control.loop, reality.factors).current_lag,
-      .mass = reality.factors.mass,
-      .drive = actual(device.model.drive, reality.factors),
-      .end_stop = reality.end_stop,
-      .waviness = reality.waviness,
-      .seed = reality.seed,
-      .q_p_start = start.q_p,
-      .q_m_start = start.q_m};
+  simulator::PlantConfig plant = {.step = step,
+                                  .gantry = reality.gantry,
+                                  .manipulator = reality.manipulator,
+                                  .flexible = reality.flexible,
+                                  .mass = reality.factors.mass,
+                                  .drive = actual(device.model.drive, reality.factors),
+                                  .end_stop = reality.end_stop,
+                                  .waviness = reality.waviness,
+                                  .seed = reality.seed,
+                                  .q_p_start = start.q_p,
+                                  .q_m_start = start.q_m};
   if (!reality.chain) {
     for (int i = 0; i < device.model.n_p; ++i) plant.gantry.push_back(i);
     for (int i = 0; i < device.model.n_m; ++i) plant.manipulator.push_back(device.model.n_p + i);
@@ -75,8 +83,12 @@ simulator::PlantConfig elastic_plant(const config::SimulatedDeviceConfig& device
     const Interval& limits = device.model.gantry_range[axis];
     plant.gantry_stops.push_back(end_stops(reality, joints[axis], limits.lb, limits.ub));
   }
+  const bool has_loop = plant_of(device) == config::PlantKind::kPositionDrives;
+  const auto& actuators = has_loop ? reality.drives.actuators : device.model.actuators;
+  plant.current_lag = torque_loop(device).current_lag;
+  if (has_loop) plant.position_loop = reality.drives.loop;
   for (int i = 0; i < device.model.n_m; ++i) {
-    plant.actuators.push_back(actual(device.model.actuators[i], reality.factors));
+    plant.actuators.push_back(actual(actuators[i], reality.factors));
     plant.effects.push_back(
         effects_of(plant.actuators.back(), reality.motors, reality.gears, reality.gear_ratio[i]));
     const limits::JointLimits& limits = device.model.joint_limits[i];
@@ -85,18 +97,19 @@ simulator::PlantConfig elastic_plant(const config::SimulatedDeviceConfig& device
   return plant;
 }
 
-// The machine of a device: elastic joints where its joints have actuators.
+// The machine of a device.
 simulator::SimulatorConfig device_simulation(const config::SimulatedDeviceConfig& device,
                                              const Start& start) {
   const config::SimulationConfig& reality = device.simulation;
   const double period = device.model.dt();
-  const bool is_elastic = device.control.method != tracking::Method::kDrives;
+  const config::PlantKind kind = plant_of(device);
+  const bool has_motors = kind != config::PlantKind::kIdeal;
   simulator::SimulatorConfig config = {.sensors = reality.sensors,
                                        .has_dead_man = device.monitor.has_dead_man};
-  if (is_elastic) {
+  if (has_motors) {
     config.steps = static_cast<int>(std::ceil(period / reality.step_s - 1e-9));
-    config.latency = actual(device.control.loop, reality.factors).latency;
-    config.plant = elastic_plant(device, start, period / config.steps);
+    config.latency = torque_loop(device).latency;
+    config.plant = motor_plant(device, start, period / config.steps);
   } else {
     config.plant = simulator::IdealPlantConfig{.period = period,
                                                .drive = actual(device.model.drive, reality.factors),
@@ -112,12 +125,14 @@ simulator::SimulatorConfig device_simulation(const config::SimulatedDeviceConfig
   sensed.T_H_S = device.model.T_H_S;
   sensed.payload = actual(device.estimation.wrench.payload, reality.factors);
   sensed.torque_full_scale = VectorM::Ones(device.model.n_m);
-  sensed.torque_rated = VectorM::Zero(is_elastic ? device.model.n_m : 0);
+  sensed.has_position_drives = kind == config::PlantKind::kPositionDrives;
+  const bool has_joint_sensors = kind == config::PlantKind::kTorqueDrives;
+  sensed.torque_rated = VectorM::Zero(has_joint_sensors ? device.model.n_m : 0);
   for (int i = 0; i < device.model.n_m; ++i) {
     const std::size_t in_chain = device.model.n_p + i;
     sensed.is_endless[i] =
         device.model.chain.joints()[in_chain].type == model::JointType::kContinuous;
-    if (!is_elastic) continue;
+    if (!has_joint_sensors) continue;
     sensed.torque_full_scale[i] = device.model.actuators[i].torque_max;
     sensed.torque_rated[i] = device.model.actuators[i].torque_rated;
   }
@@ -130,7 +145,7 @@ void place(const config::BystanderInTheWay& bystander, const model::ChainModel& 
   auto* plant = std::get_if<simulator::PlantConfig>(&simulation.plant);
   if (plant == nullptr) {
     throw SetupError(
-        "bystander: only elastic joints can hit a person, here the drives follow positions: leave "
+        "bystander: only joints with motors can hit a person, here the drives are perfect: leave "
         "it out, or run with --plant elastic");
   }
   plant->bystander = bystander.config;
@@ -140,9 +155,9 @@ void place(const config::BystanderInTheWay& bystander, const model::ChainModel& 
 simulator::Simulation simulation_of(
     const config::SimulatedDeviceConfig& device, const Start& start, person::Person person,
     const std::optional<config::BystanderInTheWay>& bystander = {}) {
-  const bool is_elastic = device.control.method != tracking::Method::kDrives;
+  const bool has_motors = plant_of(device) != config::PlantKind::kIdeal;
   const model::ChainModel& chain =
-      device.simulation.chain && is_elastic ? *device.simulation.chain : device.model.chain;
+      device.simulation.chain && has_motors ? *device.simulation.chain : device.model.chain;
   const std::string& handle = device.model.chain.frame_names()[device.model.handle];
   simulator::SimulatorConfig config = device_simulation(device, start);
   for (const int frame : device.estimation.units.frames) {

@@ -88,9 +88,13 @@ void choose(const char* option, const std::string& text, config::Choices<T> choi
 // applies --plant, --sensors, --hand, --seed and --step
 void apply_to_simulation(const ScenarioOptions& options, config::Scenario& scenario) {
   config::SimulatedDeviceConfig& device = scenario.device;
-  if (options.plant == "ideal") device.control.method = tracking::Method::kDrives;
-  if (options.plant == "elastic" && device.model.actuators.empty()) {
-    throw SetupError("--plant elastic: needs 'actuators' in " + device.sources.front().name);
+  if (options.plant == "ideal") {
+    device.control.method = tracking::Method::kDrives;
+    device.simulation.drives.actuators.clear();
+  }
+  if (options.plant == "elastic" && config::plant_of(device) == config::PlantKind::kIdeal) {
+    throw SetupError("--plant elastic: needs 'actuators' in " + device.sources.front().name +
+                     ", or 'drives' with actuators in its simulation");
   }
   if (options.seed) device.simulation.seed = *options.seed;
   device.simulation.sensors.seed = device.simulation.seed;

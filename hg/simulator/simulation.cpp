@@ -85,6 +85,7 @@ void Simulation::watch_over(const SafetyPanel& panel) noexcept {
 void Simulation::take_due_command() noexcept {
   while (waiting_count_ > 0 && waiting_[first_waiting_].due <= steps_) {
     at_work_ = waiting_[first_waiting_].command;
+    arrived_ = waiting_[first_waiting_].due;
     first_waiting_ = (first_waiting_ + 1) % waiting_.size();
     --waiting_count_;
   }
@@ -97,16 +98,22 @@ void Simulation::move(const CommandFrame& command) noexcept {
     ideal->step(command, is_on);
     return;
   }
+  auto& plant = std::get<Plant>(plant_);
   PlantInput input = {.tau_command = command.tau_m,
                       .brakes_closed = !is_on,
                       .faults = faults_,
                       .dq_p_command = command.dq_p,
                       .w_H = w_H_};
+  if (plant.config().position_loop) {
+    const double age = static_cast<double>(steps_ + 1 - arrived_) * config_.sensed.step;
+    input.reference =
+        interpolated({command.q_m, command.dq_m, command.ddq_m}, age, config_.sensed.period);
+  }
   if (!is_on) {
-    input.tau_command.setZero();
+    input.tau_command = VectorM::Zero(truth_.q_m.size());
     input.dq_p_command.setZero();
   }
-  std::get<Plant>(plant_).step(input);
+  plant.step(input);
 }
 
 // The person's wrench follows from the present motion of the handle and holds until the next step;

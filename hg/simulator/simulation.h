@@ -23,10 +23,10 @@ namespace hg::simulator {
 
 /// Set-up data of a simulation.
 struct SimulatorConfig {
-  /// Series elastic joints that take torques, or drives that take positions.
+  /// Joints with motors, or drives that follow positions perfectly.
   std::variant<IdealPlantConfig, PlantConfig> plant;
   int steps = 1;         ///< steps of the plant per period; 1 for an ideal one
-  double latency = 0.0;  ///< delay of torque commands, s; rounded to steps of the plant
+  double latency = 0.0;  ///< delay of commands to joints with motors, s; rounded to steps of the plant
   SensorsConfig sensors = ideal_sensors();
   SensedDevice sensed;          ///< its step and period are those of plant and loop
   std::vector<int> link_units;  ///< frames of the plant's chain that carry an inertial unit
@@ -81,6 +81,7 @@ class Simulation {
   std::uint64_t last_number_ = 0;  ///< number of the last command
   double silent_s_ = 0.0;          ///< time since the last new command, s
   CommandFrame at_work_;           ///< the newest command that has reached the drives
+  std::uint64_t arrived_ = 0;      ///< step of the plant at which it did
   Vector6 w_H_ = Vector6::Zero();
   Truth truth_;
   SensorFrame frame_;

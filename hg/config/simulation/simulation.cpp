@@ -237,6 +237,12 @@ SimulationConfig ideal_simulation(const DeviceConfig& device) {
 
 }  // namespace
 
+PlantKind plant_of(const SimulatedDeviceConfig& device) noexcept {
+  if (device.control.method != tracking::Method::kDrives) return PlantKind::kTorqueDrives;
+  return device.simulation.drives.actuators.empty() ? PlantKind::kIdeal
+                                                    : PlantKind::kPositionDrives;
+}
+
 SimulatedDeviceConfig load_simulated_device(const std::filesystem::path& file) {
   SourceReader reader;
   return load_simulated_device(file, reader);

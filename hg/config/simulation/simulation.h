@@ -16,6 +16,7 @@
 #include "hg/signals/drive_model.h"
 #include "hg/signals/payload.h"
 #include "hg/simulator/plant/plant_config.h"
+#include "hg/simulator/plant/position_loop.h"
 #include "hg/simulator/safety_plc.h"
 #include "hg/simulator/sensors/sensors.h"
 
@@ -62,6 +63,14 @@ TorqueLoop actual(TorqueLoop nominal, const RealityFactors& factors);
 DriveModel actual(DriveModel nominal, const RealityFactors& factors);
 Payload actual(Payload nominal, const RealityFactors& factors);
 
+/// Drives that follow positions, for a device without actuators of its own.
+struct PositionDrives {
+  simulator::PositionLoopConfig loop;
+  double latency = 0.0;         ///< from a sample to the arrival of its answer at the drives, s
+  double current_lag = 0.5e-3;  ///< time constant from the loop's torque to that of the motor, s
+  std::vector<ActuatorModel> actuators;  ///< one per manipulator joint; empty = drives are perfect
+};
+
 struct SimulationConfig {
   bool is_from_file = false;  ///< false: no simulation file, the device file is exact
   double step_s = 0.25e-3;    ///< largest step of the plant; a period is a whole number of steps
@@ -73,6 +82,7 @@ struct SimulationConfig {
   simulator::SensorsConfig sensors;  ///< sensors, seeded with `seed`
   simulator::SafetyPlcConfig safety;
   VectorM gear_ratio;  ///< gear ratio per manipulator joint
+  PositionDrives drives;
   MotorEffects motors;
   GearEffects gears;
   std::vector<simulator::Waviness> waviness;  ///< waviness per axis of the gantry; empty = none
@@ -100,6 +110,14 @@ SimulationConfig load_simulation(const std::filesystem::path& file, SourceReader
 struct SimulatedDeviceConfig : DeviceConfig {
   SimulationConfig simulation;
 };
+
+/// What moves the joints of a simulated device.
+enum class PlantKind {
+  kIdeal,           ///< drives that follow positions perfectly
+  kPositionDrives,  ///< drives that follow positions as motors and gears let them
+  kTorqueDrives,    ///< motors that take torques
+};
+PlantKind plant_of(const SimulatedDeviceConfig& device) noexcept;
 
 /// Loads a device with its simulation. Throws SetupError with all faults of the device's file or
 /// else of the simulation's, one per line.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/config/device_schema.h"
 #include "hg/config/schema.h"
 #include "hg/config/simulation/simulation.h"
 #include "hg/simulator/sensors/sensors.h"
@@ -373,6 +374,30 @@ void describe_effects(V& v, SimulationDraft& draft, const std::vector<std::strin
 }
 
 template <class V>
+void describe(V& v, PositionDrives& drives, const std::vector<std::string>& manipulator) {
+  v.number("position_Hz", drives.loop.position_Hz, {.lb = 0.1, .ub = 200.0},
+           "bandwidth of the position loop: how fast an error vanishes");
+  v.number("speed_Hz", drives.loop.speed_Hz, {.lb = 1.0, .ub = 500.0},
+           "bandwidth of the speed loop inside it");
+  v.rule(drives.loop.speed_Hz >= 2.0 * drives.loop.position_Hz, "speed_Hz",
+         "must be at least twice position_Hz, or the two loops oscillate",
+         model::to_text(drives.loop.speed_Hz));
+  v.number("latency_s", drives.latency, {.lb = 0.0, .ub = 0.1},
+           "from a sample to the arrival of its answer at the drives");
+  v.number("current_lag_s", drives.current_lag, kNotNegative, "time constant of the current");
+  v.groups_by_name(
+      "actuators", manipulator, "a joint of the manipulator",
+      [&](auto& child, int index) {
+        drives.actuators.resize(manipulator.size());
+        describe(child, drives.actuators[index]);
+      },
+      "motor and gear of each joint, for all or none; without them the drives are perfect");
+  const bool is_incomplete = std::ranges::any_of(
+      drives.actuators, [](const ActuatorModel& a) { return a.torque_max == 0.0; });
+  v.rule(!is_incomplete, "actuators", "all joints of the manipulator need one");
+}
+
+template <class V>
 void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>& gantry,
                    const std::vector<std::string>& manipulator) {
   v.groups_by_name(
@@ -388,6 +413,9 @@ void describe_rest(V& v, SimulationDraft& draft, const std::vector<std::string>&
   v.group(
       "factors", [&](auto& child) { describe(child, draft.simulation.factors); },
       "true values over those of the device file and its URDF");
+  v.group(
+      "drives", [&](auto& child) { describe(child, draft.simulation.drives, manipulator); },
+      "of a device without 'actuators': how they follow positions");
   v.group(
       "safety", [&](auto& child) { describe(child, draft.simulation.safety); },
       "the safety controller, docs/concepts/safety.md");

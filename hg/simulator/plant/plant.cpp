@@ -47,6 +47,7 @@ Plant::Plant(const PlantConfig& config, const model::ChainModel& chain, int hand
   for (int i = 0; i < n_p_; ++i) q_[config_.gantry[i]] = strayed(i).q;
   for (int i = 0; i < n_m_; ++i) q_[links_[i]] = config_.q_m_start[i];
   current_ = VectorM::Zero(n_m_);
+  if (config_.position_loop) position_loop_ = {*config_.position_loop, config_.step};
   if (config_.bystander) bystander_ = Bystander(*config_.bystander);
   start_in_balance();
 }
@@ -110,7 +111,7 @@ void Plant::start_in_balance() noexcept {
 }
 
 void Plant::step(const PlantInput& input) noexcept {
-  move_motors(input.tau_command);
+  move_motors(config_.position_loop ? follow(input) : input.tau_command);
   const VectorP ddq_p = move_gantry(input.dq_p_command);
   truth_.w_H = input.w_H;
   tau_user_.noalias() = J_H_.transpose().lazyProduct(input.w_H);
@@ -130,6 +131,24 @@ void Plant::meet_bystander() noexcept {
   const Eigen::Vector3d force = bystander_.step(config_.step, chain_.pose(frame).p);
   const model::Jacobian J = chain_.jacobian(frame);
   tau_bystander_.noalias() = J.topRows<3>().transpose().lazyProduct(force);
+}
+
+// Torques of drives that follow positions; they know the arm as its maker does.
+VectorM Plant::follow(const PlantInput& input) noexcept {
+  if (input.brakes_closed) {
+    position_loop_.rest();
+    return input.tau_command;
+  }
+  VectorM inertia(n_m_), tau_known(n_m_), torque_max(n_m_);
+  for (int i = 0; i < n_m_; ++i) {
+    const int joint = links_[i];
+    const ActuatorModel& a = config_.actuators[i];
+    inertia[i] = a.rotor_inertia + chain_.M()(joint, joint) / config_.mass;
+    tau_known[i] = chain_.c()[joint] / config_.mass;
+    torque_max[i] = a.torque_max;
+  }
+  return position_loop_.torque(input.reference, truth_.theta_m, truth_.dtheta_m, inertia, tau_known,
+                               torque_max);
 }
 
 // Currents with their lag; a moving motor is limited to the torque available at its speed. Ripple

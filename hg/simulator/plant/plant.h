@@ -28,7 +28,8 @@ namespace hg::simulator {
 
 /// Inputs of the plant during one step.
 struct PlantInput {
-  VectorM tau_command;            ///< motor torques, Nm
+  VectorM tau_command;            ///< motor torques, Nm; not read by drives that follow positions
+  DriveReference reference;       ///< of drives that follow positions
   bool brakes_closed = true;      ///< state of all brakes of manipulator joints
   HardwareFaults faults;          ///< faults of single brakes
   VectorP dq_p_command;           ///< commands to the gantry's drives, before their dead time
@@ -92,6 +93,7 @@ class Plant {
 
   model::Loads loads() const noexcept;
   void start_in_balance() noexcept;
+  VectorM follow(const PlantInput& input) noexcept;
   void move_motors(const VectorM& tau_command) noexcept;
   void meet_bystander() noexcept;
   void draw_phases() noexcept;
@@ -127,6 +129,7 @@ class Plant {
   VectorM friction_lost_, hysteresis_lost_;  // powers of the last step, W
   VectorP travel_, speed_;  // gantry position and speed as seen by its drives, without waviness
   VectorP waviness_phase_;
+  PositionLoop position_loop_;
   VectorM current_;  // currents as motor torques, before the speed limit
   model::Jacobian J_H_;
   VectorQ q_, dq_, ddq_;

@@ -114,6 +114,10 @@ void check_plant_config(const PlantConfig& config, const model::ChainModel& chai
   require_positive("step", config.step);
   require_not_negative("current_lag", config.current_lag);
   require_positive("mass", config.mass);
+  if (config.position_loop) {
+    require_positive("position_Hz", config.position_loop->position_Hz);
+    require_positive("speed_Hz", config.position_loop->speed_Hz);
+  }
   require_size("actuators", config.actuators.size(), config.manipulator.size());
   require_size("q_p_start", config.q_p_start.size(), config.gantry.size());
   require_size("q_m_start", config.q_m_start.size(), config.manipulator.size());

@@ -14,6 +14,7 @@
 #include "hg/signals/drive_model.h"
 #include "hg/simulator/plant/bystander.h"
 #include "hg/simulator/plant/friction.h"
+#include "hg/simulator/plant/position_loop.h"
 
 namespace hg::simulator {
 
@@ -71,6 +72,8 @@ struct PlantConfig {
   double current_lag = 0.5e-3;  ///< time constant from torque command to torque, s, >= 0; [C] 0
   double mass = 1.0;            ///< factor on all masses of the chain, > 0
   DriveModel drive;             ///< dynamics of every gantry axis
+  /// Present: the actuators follow positions and have this controller; empty: they take torques
+  std::optional<PositionLoopConfig> position_loop;
   std::vector<Interval> gantry_stops;  ///< buffers at the ends of the gantry; empty = none
   std::vector<Interval> end_stops;     ///< end stops of the manipulator's links; empty = none
   EndStopModel end_stop;

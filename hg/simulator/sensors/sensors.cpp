@@ -116,20 +116,22 @@ void Sensors::sample_joints(const Truth& truth, SensorFrame& frame) noexcept {
   const Eigen::Index n = truth.q_m.size();
   frame.q_m.resize(n);
   frame.dq_m.resize(n);
-  frame.theta_m.resize(truth.theta_m.size());
-  frame.tau_m.resize(truth.tau_J.size());
+  const bool is_motor_side = device_.has_position_drives;
+  frame.theta_m.resize(is_motor_side ? 0 : truth.theta_m.size());
+  frame.tau_m.resize(is_motor_side ? 0 : truth.tau_J.size());
   q_m_before_.conservativeResize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto reported = [&](double q) { return device_.is_endless[i] ? wrapped(q) : q; };
-    const double q = link_encoders_[i].reading(truth.q_m[i]);
+    const double q = is_motor_side ? motor_encoders_[i].reading(truth.theta_m[i])
+                                   : link_encoders_[i].reading(truth.q_m[i]);
+    const double dq = is_motor_side ? truth.dtheta_m[i] : truth.dq_m[i];
     const double before = samples_ == 0 ? q : q_m_before_[i];
     q_m_before_[i] = q;
     frame.q_m[i] = reported(q);
-    frame.dq_m[i] =
-        config_.has_differenced_velocity ? (q - before) / device_.period : truth.dq_m[i];
-    if (i < truth.theta_m.size())
+    frame.dq_m[i] = config_.has_differenced_velocity ? (q - before) / device_.period : dq;
+    if (i < frame.theta_m.size())
       frame.theta_m[i] = reported(motor_encoders_[i].reading(truth.theta_m[i]));
-    if (i < truth.tau_J.size())
+    if (i < frame.tau_m.size())
       frame.tau_m[i] = torque_sensors_[i].sample(
           truth.tau_J[i], i < truth.theta_m.size() ? truth.theta_m[i] : truth.q_m[i]);
   }

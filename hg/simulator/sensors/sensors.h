@@ -58,6 +58,9 @@ struct SensedDevice {
   std::array<bool, kMaxManipulator> is_endless{};  ///< manipulator joints without limits
   VectorM gear_ratio;                              ///< motor turns per turn of the joint
   VectorM torque_full_scale;                       ///< full scale of the joint torque sensors, Nm
+  /// Drives that follow positions: they report the angles of their motors at the output of the
+  /// gear, and neither the other side of the gear nor torques.
+  bool has_position_drives = false;
   VectorM torque_rated;  ///< rated torque of the motors, Nm; empty: their heating is unknown
   Pose T_H_S;            ///< force/torque sensor in the handle frame
   Payload payload;       ///< load beyond the force/torque sensor
