@@ -20,24 +20,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path output_of(const NewArguments& arguments, const char* kind) {
-  const fs::path output = arguments.output.empty()
-                              ? arguments.part.urdf.stem().string() + "_" + kind + ".yaml"
-                              : arguments.output;
+void check_new(const NewArguments& arguments, const fs::path& output) {
   std::error_code error;
   if (fs::exists(output, error) && !arguments.may_overwrite) {
     throw SetupError(output.string() +
                      ": exists already; --force overwrites it, -o FILE writes another file");
   }
+  check_writable(output.string());
+}
+
+fs::path output_of(const NewArguments& arguments, const char* kind) {
+  const fs::path output = arguments.output.empty()
+                              ? arguments.part.urdf.stem().string() + "_" + kind + ".yaml"
+                              : arguments.output;
+  check_new(arguments, output);
   return output;
+}
+
+generator::Drives drives_named(const std::string& name) {
+  if (name == "torque") return generator::Drives::kTorque;
+  return name == "ideal" ? generator::Drives::kIdeal : generator::Drives::kPosition;
 }
 
 }  // namespace
 
 int new_device(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "device");
-  check_writable(output.string());
-  write_output(output.string(), generator::device_yaml(arguments.part, output.parent_path()));
+  const fs::path simulation = output.parent_path() / (output.stem().string() + "_simulation.yaml");
+  const generator::Drives drives = drives_named(arguments.drives);
+  if (drives != generator::Drives::kIdeal) check_new(arguments, simulation);
+  const generator::DeviceFiles files = generator::draft_device(
+      arguments.part, output.parent_path(), drives, simulation.filename().string());
+  if (!files.simulation.empty()) {
+    write_output(simulation.string(), files.simulation);
+    print_out("{} written: its simulated drives and sensors, typical ones ([A]: assumed).\n",
+              simulation.string());
+  } else if (drives != generator::Drives::kIdeal) {
+    print_out(
+        "note        a joint is prismatic, and the known drives turn: it is simulated with "
+        "ideal drives\n");
+  }
+  write_output(output.string(), files.device);
   print_out(
       "{0} written. Next:\n"
       "  hapticgiant check {0}\n"
@@ -52,7 +75,6 @@ int new_twin(const NewArguments& arguments) {
   const config::SimulatedDeviceConfig device = config::load_simulated_device(
       is_own ? fs::path(arguments.device)
              : config::models_root() / "models/haptic_giant/device.yaml");
-  check_writable(output.string());
   const generator::TwinDraft draft = generator::draft_twin(arguments.part, output.parent_path(),
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
@@ -92,7 +114,11 @@ void add_new(CLI::App& app, int& exit_code) {
     what->callback([arguments, &exit_code, run] { exit_code = run(*arguments); });
     return what;
   };
-  add("device", "the robot whose handle is held", new_device);
+  add("device", "the robot whose handle is held", new_device)
+      ->add_option("--drives", arguments->drives,
+                   "how its joints take commands, and how they are simulated: position, torque, or "
+                   "ideal (positions, followed exactly)")
+      ->check(CLI::IsMember({"position", "torque", "ideal"}));
   add("twin", "the mechanism that is felt", new_twin)
       ->add_option("--device", arguments->device, "device.yaml that the twin is placed for");
 }

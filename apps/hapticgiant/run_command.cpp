@@ -273,7 +273,10 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
       .script_end_s = options.duration_s == 0.0 ? scenario::planned_duration_s(scenario) : 0.0,
       .names = scenario::part_names(scenario),
       .news = analysis::RunNews(scenario::part_names(scenario))};
-  print_out(fmt::format("HapticGiant {}  {}\n", kVersion, scenario.title));
+  const std::string ideal =
+      run.remote == nullptr ? scenario::idealisation(scenario.device) : std::string();
+  print_out(fmt::format("HapticGiant {}  {}{}\n", kVersion, scenario.title,
+                        ideal.empty() ? "" : fmt::format("  ({})", ideal)));
   if (run.remote != nullptr && !scenario::notices_frozen_sensors(scenario.device)) {
     print_out(
         "note        frozen sensors are not noticed (rule 105): simulation.yaml says that they "
@@ -303,7 +306,11 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   print_recorded(recorded, arguments.program);
   analysis::RunFacts facts = scenario::facts_of_run(scenario, options, report);
   facts.version = kVersion;
-  if (run.remote != nullptr) facts.link = run.remote->counts();
+  if (run.remote != nullptr) {
+    facts.link = run.remote->counts();
+    facts.plant.clear();
+    facts.sensors.clear();
+  }
   facts.recording = recorded.recording.file.string();
   facts.unrecorded = recorded.recording.dropped;
   facts.recording_error = recorded.recording.error;

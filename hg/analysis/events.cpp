@@ -52,6 +52,17 @@ Situation situation_of(const LimitInfo& info, const LimitReport& report) noexcep
   return Situation::kFree;
 }
 
+// A limit that is pressed with a changing force is reached once: it is left where the quantity has
+// moved away from it.
+Situation settled(Situation before, Situation now, const LimitInfo& info,
+                  const LimitReport& report) noexcept {
+  if (now != Situation::kFree) return now;
+  const double gone = 2.0 * (info.is_angle ? kNearRadians : kNearMetres);
+  const bool is_still_there = (before == Situation::kAtLower && report.to_lower <= gone) ||
+                              (before == Situation::kAtUpper && report.to_upper <= gone);
+  return is_still_there ? before : now;
+}
+
 // empty = not reported
 const char* event_text(Situation before, Situation now) noexcept {
   if (before == Situation::kLocked) return "unlocked";
@@ -138,8 +149,10 @@ std::optional<RunEvent> EventDetector::observe_limits(const CycleRecord& record)
   const bool is_first = situations_.empty();
   situations_.resize(catalogue_.size(), Situation::kFree);
   for (std::size_t i = 0; i < catalogue_.size(); ++i) {
-    const Situation now = situation_of(catalogue_[i], record.limits[i]);
-    const Situation before = std::exchange(situations_[i], now);
+    const Situation before = situations_[i];
+    const Situation now = settled(before, situation_of(catalogue_[i], record.limits[i]),
+                                  catalogue_[i], record.limits[i]);
+    situations_[i] = now;
     if (is_first || now == before) continue;
     const char* what = event_text(before, now);
     if (what[0] != '\0') return RunEvent{catalogue_[i].name, record.time_s, what};

@@ -125,6 +125,10 @@ nlohmann::ordered_json Summary::to_json(const RunFacts& facts,
   json["bounds"] = facts.bounds;
   json["gantry"] = facts.gantry;
   json["braking"] = facts.braking;
+  if (!facts.plant.empty()) {
+    json["plant"] = facts.plant;
+    json["sensors"] = facts.sensors;
+  }
   json["rate_Hz"] = facts.rate_Hz;
   json["fast"] = facts.timing.is_fast;
   json["duration_s"] = duration_s_;
@@ -278,6 +282,10 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   line("law", fmt::format("{}, {} bounds{}{}", facts.law, facts.bounds,
                           facts.gantry == "law" ? ", gantry led by the law" : "",
                           facts.braking == "together" ? ", limits brake together" : ""));
+  if (!facts.plant.empty()) {
+    line("plant", facts.plant);
+    line("sensors", facts.sensors);
+  }
   line("events", missing.empty() ? fmt::format("{} of {} in order", events_.size(), events_.size())
                                  : fmt::format("{} happened; missing: {}", events_.size(),
                                                fmt::join(missing, ", ")));

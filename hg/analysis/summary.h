@@ -26,6 +26,8 @@ struct RunFacts {
   std::string bounds;   ///< bounds of the limits
   std::string gantry;   ///< guidance of the gantry, "rule" or "law"
   std::string braking;  ///< braking before limits, "alone" or "together"
+  std::string plant;    ///< what moves the simulated joints; empty = a machine, or one elsewhere
+  std::string sensors;  ///< errors of the simulated sensors; empty likewise
   double rate_Hz = 0.0;
   Timing timing;
   std::uint64_t dropped = 0;     ///< number of samples neither evaluated nor recorded

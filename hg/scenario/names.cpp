@@ -1,5 +1,8 @@
 #include "hg/scenario/names.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cstddef>
 
 #include "hg/controller/rendering/tasks.h"
@@ -13,6 +16,32 @@ std::vector<std::string> joint_names(const DeviceModel& device, int first, int c
     names.push_back(device.chain.joints()[i].name);
   }
   return names;
+}
+
+std::string plant_words(const config::SimulatedDeviceConfig& device) {
+  switch (plant_of(device)) {
+    case config::PlantKind::kIdeal:
+      return "ideal drives, which follow every position at once";
+    case config::PlantKind::kPositionDrives:
+      return fmt::format(
+          "position drives with motors and gears, position loop {:g} Hz, {:g} ms late",
+          device.simulation.drives.loop.position_Hz, 1e3 * device.simulation.drives.latency);
+    case config::PlantKind::kTorqueDrives:
+      return fmt::format("torque drives with elastic joints and friction, {:g} ms late",
+                         1e3 * device.control.loop.latency);
+  }
+  return {};
+}
+
+simulator::PerfectSensors perfect(const config::SimulatedDeviceConfig& device) {
+  const bool is_motor_side = plant_of(device) == config::PlantKind::kPositionDrives;
+  return perfect_sensors(device.simulation.sensors, is_motor_side);
+}
+
+std::string sensor_words(const config::SimulatedDeviceConfig& device) {
+  const auto [encoders, wrench] = perfect(device);
+  return fmt::format("encoders {}, force/torque sensor {}", encoders ? "ideal" : "with errors",
+                     wrench ? "ideal" : "with noise, bias and delay");
 }
 
 }  // namespace
@@ -32,6 +61,15 @@ analysis::Names part_names(const config::Scenario& scenario) {
           .limits = scenario.limits};
 }
 
+std::string idealisation(const config::SimulatedDeviceConfig& device) {
+  std::vector<std::string> parts;
+  const auto [encoders, wrench] = perfect(device);
+  if (plant_of(device) == config::PlantKind::kIdeal) parts.emplace_back("ideal drives");
+  if (encoders) parts.emplace_back("ideal encoders");
+  if (wrench) parts.emplace_back("ideal force/torque sensor");
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 analysis::RunFacts facts_of_scenario(const config::Scenario& scenario) {
   using rendering::Braking;
   using rendering::Gantry;
@@ -44,7 +82,9 @@ analysis::RunFacts facts_of_scenario(const config::Scenario& scenario) {
           .law = std::string(rendering::to_string(law.law)),
           .bounds = std::string(rendering::to_string(law.bounds)),
           .gantry = std::string(rendering::to_string(gantry)),
-          .braking = std::string(rendering::to_string(braking))};
+          .braking = std::string(rendering::to_string(braking)),
+          .plant = plant_words(scenario.device),
+          .sensors = sensor_words(scenario.device)};
 }
 
 }  // namespace hg::scenario

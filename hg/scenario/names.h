@@ -19,7 +19,12 @@ std::vector<std::string> manipulator_joints(const config::DeviceConfig& device);
 /// Names of the parts of the device for messages.
 analysis::Names part_names(const config::Scenario& scenario);
 
-/// Summary facts of a run given by its scenario: title, and the actual law, not the requested one.
+/// What a simulation leaves out, "ideal drives, ideal encoders, ideal force/torque sensor"; empty
+/// where all of them are as real ones.
+std::string idealisation(const config::SimulatedDeviceConfig& device);
+
+/// Summary facts of a run given by its scenario: title, plant, sensors, and
+/// the actual law, not the requested one.
 analysis::RunFacts facts_of_scenario(const config::Scenario& scenario);
 
 }  // namespace hg::scenario

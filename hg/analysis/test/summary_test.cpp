@@ -91,6 +91,22 @@ TEST(EventDetector, WithoutRulesEveryLimitThatBeginsToActIsAnEvent) {
   EXPECT_FALSE(detector.observe(record));
 }
 
+TEST(EventDetector, ALimitThatIsPressedWithAChangingForceIsReachedOnce) {
+  EventDetector detector({}, catalogue());
+  CycleRecord record = running(0.0);
+  EXPECT_FALSE(detector.observe(record));
+  const auto press = [&](LimitState state, double to_lower) {
+    record.limits[1].state = state;
+    record.limits[1].to_lower = to_lower;
+    return detector.observe(record).has_value();
+  };
+  EXPECT_TRUE(press(LimitState::kLower, 0.0));
+  EXPECT_FALSE(press(LimitState::kInactive, 1e-3));
+  EXPECT_FALSE(press(LimitState::kLower, 0.0));
+  EXPECT_FALSE(press(LimitState::kInactive, 0.1));  // it has moved away
+  EXPECT_TRUE(press(LimitState::kLower, 0.0));
+}
+
 TEST(EventDetector, WithoutRulesLocksThatOpenAndCloseAreEvents) {
   EventDetector detector({}, catalogue());
   CycleRecord record = running(0.0);
@@ -229,6 +245,14 @@ TEST(Summary, NamesTheLawThatLeadsTheGantry) {
   EXPECT_NE(summary.to_text(facts, {}).find("bounds, gantry led by the law\n"), std::string::npos);
   const auto json = summary.to_json(facts, {});
   EXPECT_EQ(json["gantry"].get<std::string>(), "law");
+}
+
+TEST(Summary, NamesPlantAndSensorsOfASimulation) {
+  const Summary summary(catalogue(), {}, 1000.0);
+  const RunFacts facts = {.plant = "ideal drives", .sensors = "encoders ideal"};
+  EXPECT_NE(summary.to_text(facts, {}).find("plant        ideal drives\n"), std::string::npos);
+  EXPECT_EQ(summary.to_json(facts, {})["sensors"].get<std::string>(), "encoders ideal");
+  EXPECT_FALSE(summary.to_json({}, {}).contains("plant"));  // a machine
 }
 
 TEST(Summary, ReportsWhereLimitsBrakeTogether) {

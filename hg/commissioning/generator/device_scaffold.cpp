@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hg/commissioning/generator/drives.h"
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/core/error.h"
@@ -256,9 +257,41 @@ std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   return text;
 }
 
+// the manipulator's joints, with the torque that weight and acceleration need
+std::vector<DrivenJoint> driven_joints(DeviceDraft& d) {
+  constexpr double kReserve = 1.5;
+  std::vector<DrivenJoint> joints;
+  for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
+    joints.push_back({joint(d, i), speed_of(joint(d, i)), 0.0});
+  }
+  PostureSampler sampler(d.ranges);
+  for (int k = 0; k < kPostures; ++k) {
+    d.chain.update(sampler.draw(), Eigen::VectorXd::Zero(d.chain.model().nv()));
+    for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
+      const double torque =
+          std::abs(d.chain.c()[i]) + d.chain.M()(i, i) * acceleration_of(joint(d, i));
+      double& need = joints[i - d.n_p].need;
+      need = std::max(need, kReserve * torque);
+    }
+  }
+  return joints;
+}
+
+std::string drive_lines(const std::vector<DrivenJoint>& joints, Drives drives,
+                        const std::string& simulation_file) {
+  if (drives == Drives::kIdeal) return "";
+  std::string text = fmt::format("simulation: {}  # how its simulation differs from this file\n",
+                                 quoted(simulation_file));
+  text += "\nestimation: {has_imu: false}  # [A] a force/torque sensor alone\n";
+  if (drives == Drives::kPosition) return text;
+  return text + "\nactuators:  # [A] typical joints of models/actuators.yaml\n" +
+         actuator_lines(joints, "  ");
+}
+
 }  // namespace
 
-std::string device_yaml(const ChainPart& part, const std::filesystem::path& folder) {
+DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& folder, Drives drives,
+                         const std::string& simulation_file) {
   DeviceDraft d{
       .chain = model::ChainData(read_part(part)), .ranges = {}, .singular = {}, .posture = {}};
   d.n_p = gantry_joints(d.chain.model(), part.urdf.generic_string());
@@ -288,7 +321,12 @@ std::string device_yaml(const ChainPart& part, const std::filesystem::path& fold
   text += fmt::format("handle: {}  # [A] frame that is held, at the force/torque sensor\n",
                       quoted(d.chain.model().frame_names()[d.handle]));
   text += "rate_Hz: 1000\n";
-  return text + joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
+  const std::vector<DrivenJoint> joints = driven_joints(d);
+  if (!has_typical_drives(joints)) drives = Drives::kIdeal;
+  text += drive_lines(joints, drives, simulation_file);
+  text += joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
+  if (drives == Drives::kIdeal) return {text, ""};
+  return {text, simulation_yaml(d.chain.model().name(), joints, drives)};
 }
 
 }  // namespace hg::generator

@@ -13,9 +13,24 @@
 
 namespace hg::generator {
 
-/// Text of a device.yaml that will stand in `folder`. Leading prismatic joints become the gantry;
-/// six or seven joints after them are the manipulator.
-std::string device_yaml(const ChainPart& part, const std::filesystem::path& folder);
+/// How the joints of a manipulator take commands.
+enum class Drives {
+  kPosition,  ///< positions, and their simulation is as such drives are
+  kTorque,    ///< torques, with elastic joints
+  kIdeal,     ///< positions that the simulation follows exactly
+};
+
+/// Texts of a device.yaml and of the simulation.yaml that it names; no simulation: the drives are
+/// ideal, as asked for or because a joint is prismatic.
+struct DeviceFiles {
+  std::string device;
+  std::string simulation;
+};
+
+/// A device.yaml that will stand in `folder`, its simulation beside it in `simulation_file`.
+/// Leading prismatic joints become the gantry; six or seven joints after them are the manipulator.
+DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& folder, Drives drives,
+                         const std::string& simulation_file);
 
 /// Text of a twin.yaml, and what a user should know of its trial on the device; empty: all is well.
 struct TwinDraft {

@@ -195,6 +195,8 @@ void load(const std::filesystem::path& path, SourceReader& reader, const Simulat
     describe_rest(loader, draft, device.gantry, device.manipulator);
     check_filters(loader, draft.simulation);
     if (is_base) return;
+    loader.rule(!device.has_torque_drives || draft.simulation.drives.actuators.empty(), "drives",
+                "the device takes torques: its 'actuators' stand in device.yaml");
     if (draft.urdf.empty()) yield(loader, file, device, draft);
     if (draft.simulation.chain && !device.manipulator.empty() && file.faults.count() == 0) {
       take_plant(loader, device, draft, *draft.simulation.chain);
@@ -220,7 +222,8 @@ SimulationTarget target_of(const DeviceConfig& device) {
   const DeviceModel& model = device.model;
   SimulationTarget target = {.handle = model.chain.frame_names()[model.handle],
                              .chain = device.chain_options,
-                             .urdf = device.urdf};
+                             .urdf = device.urdf,
+                             .has_torque_drives = !device.model.actuators.empty()};
   for (int i = 0; i < model.n_p + model.n_m; ++i) {
     std::vector<std::string>& names = i < model.n_p ? target.gantry : target.manipulator;
     names.push_back(model.chain.joints()[i].name);

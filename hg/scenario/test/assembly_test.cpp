@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hg/core/test/message_of.h"
+#include "hg/scenario/names.h"
 
 namespace hg::scenario {
 namespace {
@@ -48,6 +49,15 @@ TEST(MakeCycle, TheRateMustSuitTheFilterOfTheFeedforward) {
   EXPECT_EQ(scenario.device.model.rate_Hz, 1000.0);
   scenario.device.control.flatness_Hz = 200.0;
   EXPECT_NE(message(scenario).find("it must be below 196.7"), std::string::npos);
+}
+
+TEST(Idealisation, NamesWhatASimulationLeavesOut) {
+  config::SimulatedDeviceConfig device = door().device;
+  EXPECT_EQ(idealisation(device), "");
+  device.simulation.sensors = simulator::ideal_sensors();
+  EXPECT_EQ(idealisation(device), "ideal encoders, ideal force/torque sensor");
+  const auto arm = config::load_simulated_device("models/examples/arm.yaml");
+  EXPECT_EQ(idealisation(arm), "ideal drives, ideal encoders, ideal force/torque sensor");
 }
 
 }  // namespace

@@ -51,6 +51,13 @@ struct SensorsConfig {
 /// Sensors without errors, noise or delays: they report true values.
 SensorsConfig ideal_sensors();
 
+/// Which sensors report true values, without noise, bias or resolution.
+struct PerfectSensors {
+  bool encoders = false;  ///< those of the manipulator, on the side that is controlled
+  bool wrench = false;    ///< force/torque sensor
+};
+PerfectSensors perfect_sensors(const SensorsConfig& config, bool is_motor_side) noexcept;
+
 /// Properties of the device that carries the sensors.
 struct SensedDevice {
   double step = 0.25e-3;  ///< step of the plant, s

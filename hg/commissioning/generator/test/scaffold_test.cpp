@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hg/commissioning/generator/postures.h"
+#include "hg/config/actuator_library.h"
 #include "hg/config/simulation/scenario.h"
 #include "hg/core/open_file.h"
 #include "hg/core/test/message_of.h"
@@ -20,7 +21,8 @@ const ChainPart kGate = {"models/examples/gate.urdf", "", ""};
 
 TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
   const TemporaryFolder folder;
-  const auto file = folder.write("arm.yaml", device_yaml(kArm, folder.path()));
+  const auto file =
+      folder.write("arm.yaml", draft_device(kArm, folder.path(), Drives::kIdeal, "").device);
   const config::DeviceConfig device = config::load_device(file);
   EXPECT_EQ(device.model.n_p, 0);
   EXPECT_EQ(device.model.n_m, 6);
@@ -33,9 +35,42 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
   EXPECT_GT(dexterity(chain, device.model.handle, 0, device.model.posture), 0.05);
 }
 
+// the device that is drafted for the example arm
+config::SimulatedDeviceConfig drafted_arm(Drives drives) {
+  const TemporaryFolder folder;
+  const DeviceFiles files = draft_device(kArm, folder.path(), drives, "simulation.yaml");
+  if (!files.simulation.empty()) folder.write("simulation.yaml", files.simulation);
+  return config::load_simulated_device(folder.write("arm.yaml", files.device));
+}
+
+TEST(Scaffold, ADraftedArmIsSimulatedWithTheDrivesThatAreAskedFor) {
+  EXPECT_EQ(plant_of(drafted_arm(Drives::kIdeal)), config::PlantKind::kIdeal);
+  EXPECT_EQ(plant_of(drafted_arm(Drives::kTorque)), config::PlantKind::kTorqueDrives);
+  const config::SimulatedDeviceConfig arm = drafted_arm(Drives::kPosition);
+  EXPECT_EQ(plant_of(arm), config::PlantKind::kPositionDrives);
+  const auto& actuators = arm.simulation.drives.actuators;
+  ASSERT_EQ(actuators.size(), 6u);
+  for (int i = 0; i < 6; ++i) {
+    const model::Joint& joint = arm.model.chain.joints()[i];
+    EXPECT_NEAR(actuators[i].torque_max, joint.effort_max, 0.05 * joint.effort_max) << joint.name;
+    EXPECT_GT(actuators[i].coulomb_friction, 0.0) << joint.name;
+  }
+}
+
+TEST(Scaffold, TheNearestJointOfTheLibraryIsScaledToTheRating) {
+  const auto library = config::load_actuator_library("models/actuators.yaml");
+  const config::ActuatorType type = config::actuator_for(library, 72.0, 2.0);
+  EXPECT_EQ(type.name, "strain wave 17");
+  EXPECT_EQ(type.model.torque_max, 72.0);
+  EXPECT_NEAR(type.model.stiffness, 10000.0 * 72.0 / 70.0, 1e-6);
+  EXPECT_EQ(type.model.speed_full_torque, 2.0);
+  EXPECT_GT(type.model.speed_no_load, 2.0);
+}
+
 TEST(Scaffold, LeadingPrismaticJointsAreTheGantry) {
   const TemporaryFolder folder;
-  const auto file = folder.write("giant.yaml", device_yaml(kGiant, folder.path()));
+  const auto file =
+      folder.write("giant.yaml", draft_device(kGiant, folder.path(), Drives::kIdeal, "").device);
   const config::DeviceConfig device = config::load_device(file);
   EXPECT_EQ(device.model.n_p, 2);
   ASSERT_EQ(device.model.virtual_joints.size(), 1u);  // q4 + q5, as [HG] VI-C3
@@ -68,7 +103,8 @@ TEST(Scaffold, SingularValuesOfTheGiantAreThoseOfItsDeterminant) {
 
 TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
   const TemporaryFolder folder;
-  const auto device_file = folder.write("arm.yaml", device_yaml(kArm, folder.path()));
+  const auto device_file =
+      folder.write("arm.yaml", draft_device(kArm, folder.path(), Drives::kIdeal, "").device);
   for (const fs::path& device : {device_file, fs::path("models/haptic_giant/device.yaml")}) {
     config::Scenario scenario{
         .title = {},
@@ -127,7 +163,8 @@ TEST(Scaffold, ADraftThatCannotBeTriedIsWrittenWithTheReason) {
 }
 
 TEST(Scaffold, TooFewJointsAreRefusedWithAdvice) {
-  const std::string message = message_of([] { device_yaml(kGate, "."); });
+  const std::string message =
+      message_of([] { draft_device(kGate, ".", Drives::kIdeal, "").device; });
   EXPECT_NE(message.find("six or seven manipulator joints"), std::string::npos) << message;
   EXPECT_NE(message.find("--tip-link"), std::string::npos) << message;
 }

@@ -52,6 +52,37 @@ std::string message(const std::string& yaml, const SimulationTarget& device = kD
   return message_of([&] { load("sensors: {}\n" + yaml, device); });
 }
 
+constexpr const char* kDrives =
+    "drives:\n"
+    "  position_Hz: 8\n"
+    "  latency_s: 0.003\n"
+    "  actuators:\n"
+    "    turn: &drive {rotor_inertia_kg_m2: 1, stiffness_Nm_per_rad: 9000, torque_max_Nm: 50, "
+    "torque_rated_Nm: 20, full_torque_to_rad_per_s: 2, no_load_rad_per_s: 4}\n";
+
+TEST(SimulationFile, DrivesThatFollowPositionsHaveMotors) {
+  const SimulationConfig simulation =
+      load(std::string("sensors: {}\n") + kDrives + "    lift: *drive\n");
+  ASSERT_EQ(simulation.drives.actuators.size(), 2u);
+  EXPECT_EQ(simulation.drives.actuators[1].torque_max, 50.0);
+  EXPECT_EQ(simulation.drives.loop.position_Hz, 8.0);
+  EXPECT_EQ(simulation.drives.latency, 0.003);
+}
+
+TEST(SimulationFile, DrivesNeedAMotorForEveryJointAndLoopsApart) {
+  EXPECT_NE(message(kDrives).find("all joints of the manipulator need one"), std::string::npos);
+  EXPECT_NE(message("drives: {position_Hz: 30, speed_Hz: 50}\n").find("at least twice position_Hz"),
+            std::string::npos);
+}
+
+TEST(SimulationFile, ADeviceThatTakesTorquesHasNoPositionDrives) {
+  SimulationTarget device = kDevice;
+  device.has_torque_drives = true;
+  EXPECT_NE(message(std::string(kDrives) + "    lift: *drive\n", device)
+                .find("its 'actuators' stand in device.yaml"),
+            std::string::npos);
+}
+
 TEST(SimulationFile, AnotherUrdfThanThatOfItsBaseHasItsOwnJoints) {
   const SimulationConfig simulation = load(
       "base: plain.yaml\nurdf: bent.urdf\n"
