@@ -39,7 +39,7 @@ struct SimulatorConfig {
 
 class Simulation {
  public:
-  static constexpr int kMaxLatency = 15;  ///< maximum latency, periods
+  static constexpr int kMaxLatency = 64;  ///< maximum latency, periods
 
   /// `chain` is that of the plant, `handle` its frame H. Throws SetupError when the latency is
   /// longer than kMaxLatency periods.
