@@ -132,9 +132,10 @@ simulator::SimulatorConfig device_simulation(const config::SimulatedDeviceConfig
     const std::size_t in_chain = device.model.n_p + i;
     sensed.is_endless[i] =
         device.model.chain.joints()[in_chain].type == model::JointType::kContinuous;
-    if (!has_joint_sensors) continue;
-    sensed.torque_full_scale[i] = device.model.actuators[i].torque_max;
-    sensed.torque_rated[i] = device.model.actuators[i].torque_rated;
+    if (!has_motors) continue;
+    const ActuatorModel& actuator = std::get<simulator::PlantConfig>(config.plant).actuators[i];
+    sensed.torque_full_scale[i] = actuator.torque_max;
+    if (has_joint_sensors) sensed.torque_rated[i] = actuator.torque_rated;
   }
   return config;
 }

@@ -40,7 +40,9 @@ simulator::PerfectSensors perfect(const config::SimulatedDeviceConfig& device) {
 
 std::string sensor_words(const config::SimulatedDeviceConfig& device) {
   const auto [encoders, wrench] = perfect(device);
-  return fmt::format("encoders {}, force/torque sensor {}", encoders ? "ideal" : "with errors",
+  const bool is_estimated = device.simulation.sensors.torque_estimate.is_used;
+  return fmt::format("encoders {}, {} {}", encoders ? "ideal" : "with errors",
+                     is_estimated ? "wrench estimated from joint torques," : "force/torque sensor",
                      wrench ? "ideal" : "with noise, bias and delay");
 }
 

@@ -38,6 +38,7 @@ enum class RandomEffect : std::uint64_t {
   kLinkGyroscopeErrors = 23,
   kLinkGyroscopeDrift = 24,
   kLinkMounting = 25,
+  kTorqueEstimate = 26,
 };
 
 class RandomStream {

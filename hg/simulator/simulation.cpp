@@ -35,6 +35,8 @@ Simulation::Simulation(const SimulatorConfig& config, const model::ChainModel& c
       plant_(make_plant(config, chain, handle)),
       latency_steps_(static_cast<std::uint64_t>(std::llround(config.latency / config.sensed.step))),
       sensors_(config.sensors, config.sensed),
+      torque_estimate_(config.sensors.torque_estimate, config.sensed.torque_full_scale,
+                       config.sensors.seed),
       safety_plc_(config.safety),
       person_(std::move(person)) {
   if (latency_steps_ > static_cast<std::uint64_t>(kMaxLatency * config_.steps)) {
@@ -123,12 +125,23 @@ void Simulation::look(const HandTarget& target) noexcept {
   const double time_s = static_cast<double>(steps_) * config_.sensed.step;
   w_H_ = person_.wrench(time_s, {truth_.T_B_H, truth_.twist}, target);
   if (std::holds_alternative<IdealPlant>(plant_)) truth_.w_H = w_H_;
-  sensors_.observe(truth_);
+  sensors_.observe(felt());
   for (std::size_t unit = 0; unit < config_.link_units.size(); ++unit) {
     const int frame = config_.link_units[unit];
     sensors_.observe(
         unit, std::visit([&](const auto& plant) noexcept { return plant.motion(frame); }, plant_));
   }
+}
+
+// What the sensors are told: an arm without a force/torque sensor mistakes the user's wrench.
+Truth Simulation::felt() const noexcept {
+  Truth felt = truth_;
+  const auto* plant = std::get_if<Plant>(&plant_);
+  if (plant != nullptr && config_.sensors.torque_estimate.is_used) {
+    felt.w_H +=
+        torque_estimate_.error(plant->handle_jacobian(), truth_.dq_m, plant->carrying_torques());
+  }
+  return felt;
 }
 
 void Simulation::sample() noexcept {

@@ -25,8 +25,9 @@ namespace hg::simulator {
 struct SimulatorConfig {
   /// Joints with motors, or drives that follow positions perfectly.
   std::variant<IdealPlantConfig, PlantConfig> plant;
-  int steps = 1;         ///< steps of the plant per period; 1 for an ideal one
-  double latency = 0.0;  ///< delay of commands to joints with motors, s; rounded to steps of the plant
+  int steps = 1;  ///< steps of the plant per period; 1 for an ideal one
+  double latency =
+      0.0;  ///< delay of commands to joints with motors, s; rounded to steps of the plant
   SensorsConfig sensors = ideal_sensors();
   SensedDevice sensed;          ///< its step and period are those of plant and loop
   std::vector<int> link_units;  ///< frames of the plant's chain that carry an inertial unit
@@ -65,6 +66,7 @@ class Simulation {
   void take_due_command() noexcept;
   void move(const CommandFrame& command) noexcept;
   void look(const HandTarget& target) noexcept;
+  Truth felt() const noexcept;
   void watch_over(const SafetyPanel& panel) noexcept;
   void sample() noexcept;
 
@@ -72,6 +74,7 @@ class Simulation {
   std::variant<IdealPlant, Plant> plant_;
   std::uint64_t latency_steps_;
   Sensors sensors_;
+  TorqueEstimate torque_estimate_;
   SafetyPlc safety_plc_;
   HardwareFaults faults_;  ///< faults in this period
   person::Person person_;

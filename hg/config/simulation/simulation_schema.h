@@ -124,6 +124,15 @@ void describe(V& v, simulator::InertialSensorConfig& sensor, const InertialKeys&
 }
 
 template <class V>
+void describe(V& v, simulator::TorqueEstimateConfig& estimate) {
+  v.number("friction", estimate.friction, kShare,
+           "that the arm does not compensate, share of each joint's peak torque");
+  v.number("offset", estimate.offset, kShare, "standard deviation, share of the peak torque");
+  v.number("weight", estimate.weight, kShare,
+           "share of the torques that carry the arm by which its model is wrong");
+}
+
+template <class V>
 void describe(V& v, simulator::LinkUnitConfig& unit) {
   v.number("place_m", unit.place, kNotNegative,
            "standard deviation of each coordinate of a unit in its link");
@@ -171,6 +180,11 @@ void describe(V& v, simulator::SensorsConfig& sensors) {
   v.group(
       "wrench_sensor", [&](auto& child) { describe(child, sensors.wrench); },
       "force/torque sensor at S");
+  v.group(
+      "torque_estimate", [&](auto& child) { describe(child, sensors.torque_estimate); },
+      "of an arm that estimates the user's wrench from its joint torques instead of measuring it; "
+      "noise, filter and range are those of wrench_sensor");
+  sensors.torque_estimate.is_used = v.is_given("torque_estimate");
   v.group(
       "accelerometer",
       [&](auto& child) { describe(child, sensors.accelerometer, kAccelerometerKeys); },

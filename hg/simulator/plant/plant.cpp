@@ -126,6 +126,18 @@ void Plant::step(const PlantInput& input) noexcept {
   observe();
 }
 
+JacobianM Plant::handle_jacobian() const noexcept {
+  JacobianM J(6, n_m_);
+  for (int i = 0; i < n_m_; ++i) J.col(i) = J_H_.col(links_[i]);
+  return J;
+}
+
+VectorM Plant::carrying_torques() const noexcept {
+  VectorM carrying(n_m_);
+  for (int i = 0; i < n_m_; ++i) carrying[i] = chain_.c()[links_[i]];
+  return carrying;
+}
+
 void Plant::meet_bystander() noexcept {
   const int frame = config_.bystander->frame;
   const Eigen::Vector3d force = bystander_.step(config_.step, chain_.pose(frame).p);

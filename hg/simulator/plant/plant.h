@@ -23,6 +23,7 @@
 #include "hg/simulator/plant/friction.h"
 #include "hg/simulator/plant/plant_config.h"
 #include "hg/simulator/plant/plant_report.h"
+#include "hg/simulator/sensors/torque_estimate.h"
 
 namespace hg::simulator {
 
@@ -48,6 +49,10 @@ class Plant {
   const Truth& truth() const noexcept { return truth_; }
   /// Motion of a link of the chain; accelerations are those of the last step.
   BodyMotion motion(int frame) const noexcept { return motion_of(chain_, frame, ddq_); }
+  /// Jacobian of the handle for the manipulator's joints, at H, in B.
+  JacobianM handle_jacobian() const noexcept;
+  /// Torques that carry the links and keep them moving as they do, Nm; one per manipulator joint.
+  VectorM carrying_torques() const noexcept;
   /// Forces of the last step; zero before the first.
   const PlantForces& forces() const noexcept { return forces_; }
   PlantEnergy energy() const noexcept;

@@ -45,7 +45,8 @@ PerfectSensors perfect_sensors(const SensorsConfig& config, bool is_motor_side) 
   const EncoderConfig& encoder = is_motor_side ? config.motor_encoder : config.link_encoder;
   const WrenchSensorConfig& wrench = config.wrench;
   return {.encoders = encoder.resolution + encoder.offset + encoder.error_1 + encoder.error_2 == 0,
-          .wrench = wrench.force_noise + wrench.torque_noise + wrench.bias == 0};
+          .wrench = !config.torque_estimate.is_used &&
+                    wrench.force_noise + wrench.torque_noise + wrench.bias == 0};
 }
 
 Sensors::Sensors(const SensorsConfig& config, const SensedDevice& device)

@@ -18,6 +18,7 @@
 #include "hg/simulator/sensors/imu.h"
 #include "hg/simulator/sensors/link_unit.h"
 #include "hg/simulator/sensors/temperature.h"
+#include "hg/simulator/sensors/torque_estimate.h"
 #include "hg/simulator/sensors/torque_sensor.h"
 #include "hg/simulator/sensors/wrench_sensor.h"
 
@@ -40,6 +41,7 @@ struct SensorsConfig {
   bool has_differenced_velocity = true;
   TorqueSensorConfig torque;
   WrenchSensorConfig wrench;
+  TorqueEstimateConfig torque_estimate;  ///< instead of a force/torque sensor
   InertialSensorConfig accelerometer = mems_accelerometer();
   InertialSensorConfig gyroscope = mems_gyroscope();
   SensorFilterConfig imu_filter;
@@ -64,7 +66,7 @@ struct SensedDevice {
   double period = 1e-3;   ///< period of the loop, s; a whole number of steps
   std::array<bool, kMaxManipulator> is_endless{};  ///< manipulator joints without limits
   VectorM gear_ratio;                              ///< motor turns per turn of the joint
-  VectorM torque_full_scale;                       ///< full scale of the joint torque sensors, Nm
+  VectorM torque_full_scale;  ///< peak torque of the joints, full scale of their torque sensors, Nm
   /// Drives that follow positions: they report the angles of their motors at the output of the
   /// gear, and neither the other side of the gear nor torques.
   bool has_position_drives = false;
