@@ -184,7 +184,7 @@ void describe(V& v, simulator::SensorsConfig& sensors) {
       "torque_estimate", [&](auto& child) { describe(child, sensors.torque_estimate); },
       "of an arm that estimates the user's wrench from its joint torques instead of measuring it; "
       "noise, filter and range are those of wrench_sensor");
-  sensors.torque_estimate.is_used = v.is_given("torque_estimate");
+  if (v.is_given("torque_estimate")) sensors.torque_estimate.is_used = true;
   v.group(
       "accelerometer",
       [&](auto& child) { describe(child, sensors.accelerometer, kAccelerometerKeys); },
