@@ -1,0 +1,36 @@
+/// The arms of models/arms: each opens its cupboard and its drawer and moves its tool.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hg/config/simulation/scenario.h"
+#include "tests/scenarios/trace.h"
+
+namespace hg {
+namespace {
+
+class ShippedArm : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedArm, OpensShutsAndMoves) {
+  for (const char* scenario : {"open_cupboard", "open_drawer", "move_tool"}) {
+    const std::string file = std::string("models/arms/") + GetParam() + "/" + scenario + ".yaml";
+    SCOPED_TRACE(file);
+    const Trace trace(config::load_scenario(std::filesystem::path(file)));
+    const ScenarioRun& run = trace.run();
+    EXPECT_EQ(run.missing(), std::vector<std::string>{});
+    EXPECT_TRUE(run.summary().limits_held());
+    EXPECT_LT(run.summary().max_sync_error(), 1e-3);  // m
+    EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
+    EXPECT_EQ(run.quality().unsolved, 0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, ShippedArm,
+                         testing::Values("fr3", "ur5e", "ur10e", "xarm7", "gen3", "iiwa14"),
+                         [](const auto& arm) { return std::string(arm.param); });
+
+}  // namespace
+}  // namespace hg
