@@ -150,6 +150,9 @@ class Watch {
       const double q = position(sample.record.twin.q_a, trial_.led[i]);
       reached_[i] = {std::min(reached_[i].lb, q), std::max(reached_[i].ub, q)};
     }
+    if (sample.record.warning.code == FaultCode::kOscillation) {
+      way_.shaken_s += trial_.scenario.device.model.dt();
+    }
     look_at_limits(sample.record);
     look_at_truth(sample.truth);
   }
@@ -218,6 +221,9 @@ std::string trouble_of(const Way& way) {
   if (!way.exceeded.empty()) {
     add(fmt::format("{} of the device leaves its limit by {:.1f} mm or mrad", way.exceeded,
                     1e3 * way.excess));
+  }
+  if (way.shaken_s > 0.0) {
+    add(fmt::format("hand and device oscillate against each other for {:.1f} s", way.shaken_s));
   }
   return text.empty() ? text : "led through its whole range by a hand: " + text;
 }

@@ -20,6 +20,7 @@ struct Way {
   double at_limit_s = 0.0;  ///< Longest time at which one limit of the device stood at its end, s
   std::string limit;        ///< That limit; empty: none stood there for long
   double excess = 0.0;      ///< Largest true excess over a limit of the device, rad or m
+  double shaken_s = 0.0;    ///< Time in which hand and device oscillated against each other, s
   std::string exceeded;     ///< That limit; empty: none by more than kExcessAllowed
 };
 
@@ -34,7 +35,7 @@ std::string trouble_of(const Way& way);
 /// What helps.
 inline constexpr const char* kCuresOfWay =
     "move or turn the placement, start elsewhere (start of the twin's joints, posture of the "
-    "device), or narrow the limits of the twin's joints";
+    "device), or narrow the limits of the twin's joints; against oscillation more mass or damping";
 
 /// Leads `twin` on `device`. Locks, conditional limits, springs, weight, damping and friction of
 /// the twin are left out, since they are no matter of the device. Joints without limits and those

@@ -120,7 +120,8 @@ void leave_singularities(DeviceDraft& d) {
   for (const SingularValue& s : d.singular) {
     if (s.other >= 0) continue;
     Interval& range = d.ranges[s.joint];
-    range = without(range, s.value, d.posture[s.joint]);
+    const Interval rest = without(range, s.value, d.posture[s.joint]);
+    if (rest.contains(d.posture[s.joint])) range = rest;  // else too little would be left
   }
 }
 
@@ -257,9 +258,9 @@ std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   return text;
 }
 
-// the manipulator's joints, with the torque that weight and acceleration need
+// the manipulator's joints, with the torque that weight, acceleration and a person need
 std::vector<DrivenJoint> driven_joints(DeviceDraft& d) {
-  constexpr double kReserve = 1.5;
+  constexpr double kReserve = 1.5, kForce = 50.0, kTorque = 5.0;  // N, Nm: of a person
   std::vector<DrivenJoint> joints;
   for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
     joints.push_back({joint(d, i), speed_of(joint(d, i)), 0.0});
@@ -268,8 +269,10 @@ std::vector<DrivenJoint> driven_joints(DeviceDraft& d) {
   for (int k = 0; k < kPostures; ++k) {
     d.chain.update(sampler.draw(), Eigen::VectorXd::Zero(d.chain.model().nv()));
     for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
-      const double torque =
-          std::abs(d.chain.c()[i]) + d.chain.M()(i, i) * acceleration_of(joint(d, i));
+      const Vector6 J = d.chain.jacobian(d.handle).col(i);
+      const double torque = std::abs(d.chain.c()[i]) +
+                            d.chain.M()(i, i) * acceleration_of(joint(d, i)) +
+                            kForce * J.head<3>().norm() + kTorque * J.tail<3>().norm();
       double& need = joints[i - d.n_p].need;
       need = std::max(need, kReserve * torque);
     }

@@ -34,8 +34,9 @@ std::string actuator_line(const model::Joint& joint, const config::ActuatorType&
       quoted(joint.name), rounded(a.rotor_inertia), rounded(a.stiffness), rounded(a.damping),
       rounded(a.coulomb_friction), rounded(a.viscous_friction), rounded(a.torque_max),
       rounded(a.torque_rated), rounded(a.speed_full_torque), rounded(a.speed_no_load), type.name,
-      std::isfinite(joint.effort_max) ? "the effort of the URDF"
-                                      : "weight and acceleration, no effort is given");
+      std::isfinite(joint.effort_max)
+          ? "the effort of the URDF"
+          : "weight, acceleration and a person: the URDF has no effort");
 }
 
 std::string gear_ratio_line(const std::vector<DrivenJoint>& joints) {

@@ -15,7 +15,7 @@ namespace hg::generator {
 struct DrivenJoint {
   model::Joint joint;
   double dq_max = 0.0;  ///< largest speed, rad/s
-  double need = 0.0;    ///< torque for weight and acceleration, Nm, for a joint without an effort
+  double need = 0.0;    ///< torque for weight, acceleration and a person, Nm: without an effort
 };
 
 /// Whether these joints have drives in the library: all are revolute.
