@@ -44,7 +44,7 @@ struct ExperimentArguments {
   std::string json;  ///< file for all figures; empty = none
   std::string svg;   ///< file for the drawing; empty = none
   /// Files that replace those of the scenario; empty = those of the scenario
-  std::string device, simulation;
+  std::string device, twin, simulation;
 };
 
 struct ContactArguments {
@@ -75,8 +75,14 @@ struct SeedsArguments {
 constexpr std::uint64_t kSeed = haptify::HaptifyOptions{}.seed;
 
 // With another device or simulation where they are given.
-config::Scenario walk_scenario(const std::string& device = "", const std::string& simulation = "") {
-  return scenario::load({.scenario = "walk", .device = device, .simulation = simulation});
+config::Scenario walk_scenario(const std::string& device = "", const std::string& simulation = "",
+                               const std::string& twin = "") {
+  return scenario::load(
+      {.scenario = "walk", .device = device, .twin = twin, .simulation = simulation});
+}
+
+config::Scenario walk_scenario(const ExperimentArguments& arguments) {
+  return walk_scenario(arguments.device, arguments.simulation, arguments.twin);
 }
 
 config::Scenario scripted_scenario(const RunArguments& run) {
@@ -146,7 +152,7 @@ int experiment_free_space(const ExperimentArguments& arguments) {
                     "as in `hapticgiant haptify`\n\n",
                     config.duration_s, kSeed));
   const auto runs =
-      haptify::measure_variants(walk_scenario(), config, kSeed, progress_of("variants"));
+      haptify::measure_variants(walk_scenario(arguments), config, kSeed, progress_of("variants"));
   return report(haptify::to_json(runs), "free-space", arguments.json);
 }
 
@@ -156,8 +162,8 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
   begin(arguments,
         fmt::format("Stability: a kick of {:g} N for {:g} ms on a free body held by a hand\n\n",
                     config.kick.force, 1e3 * config.kick.duration));
-  const studies::StabilityMap map = studies::make_stability_map(
-      walk_scenario(arguments.device, arguments.simulation), config, progress_of("kicks"));
+  const studies::StabilityMap map =
+      studies::make_stability_map(walk_scenario(arguments), config, progress_of("kicks"));
   return report(studies::to_json(map), "stability-map", arguments.json, "", "map.svg",
                 arguments.svg);
 }
@@ -168,7 +174,7 @@ int experiment_impedance(const ExperimentArguments& arguments) {
   begin(arguments, fmt::format("Impedance at the handle, pushed to and fro with {:g} N, as in "
                                "`hapticgiant haptify`\n\n",
                                config.response.force));
-  const config::Scenario scenario = walk_scenario();
+  const config::Scenario scenario = walk_scenario(arguments);
   const studies::FreeTwin twin = studies::free_twin_of(scenario);
   const auto runs = haptify::measure_impedance(scenario, config, kSeed, progress_of("pushes"));
   return report(haptify::to_json(runs, config, twin), "impedance", arguments.json);
@@ -308,6 +314,11 @@ void add_experiment(CLI::App& app, int& exit_code) {
   add_paper_experiments(*command, exit_code);
   const auto add = [&](const char* name, const char* text, int (*run)(const ExperimentArguments&)) {
     CLI::App* what = command->add_subcommand(name, text);
+    what->add_option("--device", arguments->device,
+                     "device.yaml instead of the reference device's");
+    what->add_option("--twin", arguments->twin,
+                     "free body that is held, as a file or a shipped name");
+    what->add_option("--simulation", arguments->simulation, kSimulationHelp);
     what->add_option("--json", arguments->json, "write all figures as JSON to this file");
     what->callback([arguments, &exit_code, run] { exit_code = run(*arguments); });
     return what;
@@ -318,8 +329,6 @@ void add_experiment(CLI::App& app, int& exit_code) {
                       "how stiff a hand may be for how light a body, before contact is unstable",
                       experiment_stability_map);
   map->add_option("--svg", arguments->svg, "draw the map to this file");
-  map->add_option("--device", arguments->device, "device.yaml instead of the reference device's");
-  map->add_option("--simulation", arguments->simulation, kSimulationHelp);
   add("impedance", "how far the handle gives way, by frequency and under a constant push",
       experiment_impedance);
   add_contact(*command, exit_code);

@@ -24,9 +24,7 @@ constexpr double kFastEnough = 0.95;  // share of the requested speed that is fa
 config::Scenario prepared(const config::Scenario& scenario, const ImpactConfig& config,
                           double stiffness, double speed, double way_s, double watched_s,
                           std::uint64_t seed) {
-  const double run_up = config.run_up_s * speed;
-  const double behind = config.press / scenario.script.hand.stiffness[kAhead] +
-                        kDeepestImpact * speed * speed / (2.0 * config.braking);
+  const auto [run_up, behind] = way_of_impact(scenario, config, speed);
   person::Script script;
   script.segments.push_back({.start_s = kRest,
                              .duration_s = way_s,
@@ -64,6 +62,13 @@ double braking_of(const DeviceModel& device, std::span<const Instant> braking) {
 }
 
 }  // namespace
+
+ImpactWay way_of_impact(const config::Scenario& scenario, const ImpactConfig& config,
+                        double speed) {
+  return {.run_up = config.run_up_s * speed,
+          .behind = config.press / scenario.script.hand.stiffness[kAhead] +
+                    kDeepestImpact * speed * speed / (2.0 * config.braking)};
+}
 
 double find_way(const config::Scenario& scenario, const ImpactConfig& config, double speed) {
   constexpr int kTries = 9;  // number of bisection steps
