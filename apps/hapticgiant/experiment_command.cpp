@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/experiments/paper_experiment_command.h"
@@ -33,6 +34,7 @@
 #include "hg/studies/haptify/hand_figures.h"
 #include "hg/studies/haptify/impedance.h"
 #include "hg/studies/inertial.h"
+#include "hg/studies/moved_scenario.h"
 #include "hg/studies/seed_ranges.h"
 #include "hg/studies/stability_map.h"
 #include "hg/studies/workers.h"
@@ -54,19 +56,20 @@ struct ContactArguments {
 };
 
 struct InertialArguments {
-  std::vector<std::string> scenarios = {"walk", "door"};
-  std::string simulation;  ///< simulation, see find_simulation(); empty = that of the device
+  std::vector<std::string> scenarios;  ///< scenarios; empty: see scripted_scenarios()
+  std::string device, twin;  ///< files that replace those of the scenarios; empty = their own
+  std::string simulation;    ///< simulation, see find_simulation(); empty = that of the device
   int seeds = 4;
   bool feels = false;  ///< also measures what a hand feels
   std::string json;    ///< file for all figures; empty = none
 };
 
 struct SeedsArguments {
-  std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
+  std::vector<std::string> scenarios;        ///< scenarios; empty: see scripted_scenarios()
   std::vector<std::string> hands = {"own"};  ///< hands: "own" or presets
   int count = 16;
   std::uint64_t first = 1;
-  scenario::ScenarioOptions world;  ///< law, bounds, gantry and braking of all runs
+  scenario::ScenarioOptions world;  ///< device, twin, law, bounds, gantry and braking of all runs
   std::string json;                 ///< file for all runs; empty = none
   std::string markdown;             ///< file for the table; empty = none
 };
@@ -95,6 +98,32 @@ config::Scenario scripted_scenario(const RunArguments& run) {
 
 std::string name_of(const std::string& scenario) {
   return std::filesystem::path(scenario).stem().string();
+}
+
+struct NamedScenario {
+  std::string name;
+  config::Scenario scenario;
+};
+
+// The scenarios `given`, each with `world`. Without any a hand moves the device and twin of `world`
+// through their ranges; where that has neither, the scenarios are `shipped`.
+std::vector<NamedScenario> scripted_scenarios(std::vector<std::string> given,
+                                              const scenario::ScenarioOptions& world,
+                                              const std::vector<std::string>& shipped) {
+  const bool has_own = !world.device.empty() || !world.twin.empty();
+  if (given.empty() && has_own) {
+    const config::Scenario moved = studies::moved_scenario(world);
+    return {{moved.title, moved}};
+  }
+  if (given.empty()) given = shipped;
+  std::vector<NamedScenario> all;
+  for (const std::string& scenario : given) {
+    RunArguments run;
+    run.world = world;
+    run.world.scenario = scenario;
+    all.push_back({name_of(scenario), scripted_scenario(run)});
+  }
+  return all;
 }
 
 void begin(const ExperimentArguments& arguments, const std::string& what) {
@@ -193,12 +222,11 @@ int experiment_contact(const ContactArguments& arguments) {
 int experiment_inertial(const InertialArguments& arguments) {
   std::vector<config::Scenario> scenarios;
   std::vector<std::string> names;
-  for (const std::string& scenario : arguments.scenarios) {
-    RunArguments run;
-    run.world.scenario = scenario;
-    run.world.simulation = arguments.simulation;
-    scenarios.push_back(scripted_scenario(run));
-    names.push_back(name_of(scenario));
+  const scenario::ScenarioOptions world = {
+      .device = arguments.device, .twin = arguments.twin, .simulation = arguments.simulation};
+  for (NamedScenario& it : scripted_scenarios(arguments.scenarios, world, {"walk", "door"})) {
+    scenarios.push_back(std::move(it.scenario));
+    names.push_back(std::move(it.name));
   }
   check_output(arguments.json);
   print_out(fmt::format(
@@ -208,21 +236,26 @@ int experiment_inertial(const InertialArguments& arguments) {
       studies::measure_inertial(scenarios, names, arguments.seeds, progress_of("runs"));
   nlohmann::ordered_json results = studies::to_json(runs);
   if (arguments.feels) {
-    results["felt"] = felt_with_units(walk_scenario("", arguments.simulation));
+    results["felt"] = felt_with_units(walk_scenario(arguments.device, arguments.simulation));
   }
   return report(results, "inertial", arguments.json);
 }
 
 int experiment_seeds(const SeedsArguments& arguments) {
   std::vector<studies::Trial> trials;
-  for (const std::string& scenario : arguments.scenarios) {
-    for (const std::string& hand : arguments.hands) {
-      RunArguments run;
-      run.world = arguments.world;
-      run.world.scenario = scenario;
-      run.world.hand = hand == "own" ? "" : hand;
-      trials.push_back(
-          {.name = name_of(scenario), .hand = run.world.hand, .scenario = scripted_scenario(run)});
+  std::vector<std::vector<NamedScenario>> by_hand;
+  std::vector<std::string> hands;
+  for (const std::string& hand : arguments.hands) {
+    scenario::ScenarioOptions world = arguments.world;
+    world.hand = hand == "own" ? "" : hand;
+    hands.push_back(world.hand);
+    by_hand.push_back(scripted_scenarios(arguments.scenarios, world,
+                                         {"door", "free_space", "excavator", "walk"}));
+  }
+  for (std::size_t i = 0; i < by_hand.front().size(); ++i) {
+    for (std::size_t k = 0; k < hands.size(); ++k) {
+      const auto& [name, scenario] = by_hand[k][i];
+      trials.push_back({.name = name, .hand = hands[k], .scenario = scenario});
     }
   }
   check_output(arguments.json);
@@ -239,8 +272,13 @@ void add_seeds(CLI::App& experiment, int& exit_code) {
   const auto arguments = std::make_shared<SeedsArguments>();
   CLI::App* command = experiment.add_subcommand(
       "seeds", "what scenarios show over many seeds and hands: limits, faults, events, errors");
-  command->add_option("scenarios", arguments->scenarios, "scenario files or names")
-      ->capture_default_str();
+  command->add_option(
+      "scenarios", arguments->scenarios,
+      "scenario files or names; default: door, free_space, excavator, walk, or with "
+      "--device or --twin a hand that moves it through its ranges");
+  command->add_option("--device", arguments->world.device, "device.yaml instead of the scenarios'");
+  command->add_option("--twin", arguments->world.twin,
+                      "twin.yaml, or the name of a shipped one, instead of the scenarios'");
   std::vector<std::string> hands = names_of(config::kHandPresets);
   hands.insert(hands.begin(), "own");
   command->add_option("--hands", arguments->hands, "own: that of each scenario; or presets")
@@ -278,8 +316,12 @@ void add_inertial(CLI::App& experiment, int& exit_code) {
   const auto arguments = std::make_shared<InertialArguments>();
   CLI::App* command = experiment.add_subcommand(
       "inertial", "what inertial units on the links measure that encoders do not");
-  command->add_option("scenarios", arguments->scenarios, "scenario files or names")
-      ->capture_default_str();
+  command->add_option("scenarios", arguments->scenarios,
+                      "scenario files or names; default: walk, door, or with --device or --twin a "
+                      "hand that moves it through its ranges");
+  command->add_option("--device", arguments->device, "device.yaml instead of the scenarios'");
+  command->add_option("--twin", arguments->twin,
+                      "twin.yaml, or the name of a shipped one, instead of the scenarios'");
   command->add_option("--simulation", arguments->simulation, kSimulationHelp);
   command->add_option("--seeds", arguments->seeds, "seeds per case, from 1 on")
       ->check(whole_number(1.0, 1e3))
