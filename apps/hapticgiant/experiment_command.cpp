@@ -50,8 +50,9 @@ struct ExperimentArguments {
 };
 
 struct ContactArguments {
-  std::string json;  ///< file for all figures; empty = none
-  std::string docs;  ///< folder of documentation to refresh; empty = none
+  std::string json;    ///< file for all figures; empty = none
+  std::string docs;    ///< folder of documentation to refresh; empty = none
+  std::string device;  ///< device.yaml; empty = the reference device's
   int seeds = 4;
 };
 
@@ -212,10 +213,18 @@ int experiment_impedance(const ExperimentArguments& arguments) {
 int experiment_contact(const ContactArguments& arguments) {
   studies::ContactConfig config;
   config.seeds = arguments.seeds;
+  const config::Scenario scenario = walk_scenario(arguments.device);
+  if (!scenario.device.model.has_closed_form) {
+    throw SetupError(fmt::format(
+        "experiment contact: not possible with {}: a person stands in the way of elbow and wrist "
+        "of a HapticGiant; how another device stops show `hapticgiant check` of its file and "
+        "`hapticgiant faults --device FILE`",
+        scenario.device.name));
+  }
   check_output(arguments.json);
   print_out(fmt::format("HapticGiant {}  Contact: the arm hits a person in its way\n\n", kVersion));
   const studies::ContactMeasures measures =
-      studies::measure_contact(walk_scenario(), config, progress_of("cases"));
+      studies::measure_contact(scenario, config, progress_of("cases"));
   return report(studies::to_json(measures), "contact", arguments.json, arguments.docs);
 }
 
@@ -303,6 +312,8 @@ void add_contact(CLI::App& experiment, int& exit_code) {
   CLI::App* command = experiment.add_subcommand(
       "contact",
       "the arm hits a person in its way: force and pressure, with and without giving way");
+  command->add_option("--device", arguments->device,
+                      "device.yaml of a HapticGiant instead of the reference device's");
   command->add_option("--seeds", arguments->seeds, "seeds per case, from 1 on")
       ->check(whole_number(1.0, 1e3))
       ->capture_default_str();
@@ -352,6 +363,7 @@ void add_experiment(CLI::App& app, int& exit_code) {
       "  hapticgiant experiment impedance --json impedance.json\n"
       "  hapticgiant experiment contact           the arm hits a person in its way\n"
       "  hapticgiant experiment inertial --simulation harder\n"
+      "  hapticgiant experiment impedance --device arm.yaml\n"
       "  hapticgiant experiment seeds free_space --hands own,stiff --count 16");
   add_paper_experiments(*command, exit_code);
   const auto add = [&](const char* name, const char* text, int (*run)(const ExperimentArguments&)) {

@@ -101,7 +101,7 @@ Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& conf
   }
   result.speed = all[contact - 1].twist[kAhead];
   if (result.speed < kFastEnough * speed) {
-    result.failure = "the hand did not get as fast";
+    result.failure = kTooSlow;
     return result;
   }
   const double contact_s = all[contact].time_s;

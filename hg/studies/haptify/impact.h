@@ -39,6 +39,9 @@ ImpactWay way_of_impact(const config::Scenario& scenario, const ImpactConfig& co
 /// trials without a wall; the fastest tried if that is not enough.
 double find_way(const config::Scenario& scenario, const ImpactConfig& config, double speed);
 
+/// Failure of an impact whose speed was less than 95 % of the wanted one.
+inline constexpr const char* kTooSlow = "the hand did not get as fast";
+
 /// Largest depth of a good impact over v^2 / (2 a).
 inline constexpr double kDeepestImpact = 1.3;
 

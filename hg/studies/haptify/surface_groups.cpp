@@ -198,6 +198,8 @@ void add_impacts(const Group& group) {
                          const Impact found =
                              measure_impact(bodies[i].scenario, run_up.config, k, bodies[i].speed,
                                             run_up.way_s, group.options.seed);
+                         const bool is_slow = found.failure == kTooSlow && group.place.is_found;
+                         if (is_slow) return impossible(studies::kNotPossible + found.failure);
                          json run = found;
                          run["allowed"] = found.allowed();
                          return run;
