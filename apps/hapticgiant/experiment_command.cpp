@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/experiments/paper_experiment_command.h"
@@ -33,6 +34,7 @@
 #include "hg/studies/haptify/hand_figures.h"
 #include "hg/studies/haptify/impedance.h"
 #include "hg/studies/inertial.h"
+#include "hg/studies/moved_scenario.h"
 #include "hg/studies/seed_ranges.h"
 #include "hg/studies/stability_map.h"
 #include "hg/studies/workers.h"
@@ -44,29 +46,31 @@ struct ExperimentArguments {
   std::string json;  ///< file for all figures; empty = none
   std::string svg;   ///< file for the drawing; empty = none
   /// Files that replace those of the scenario; empty = those of the scenario
-  std::string device, simulation;
+  std::string device, twin, simulation;
 };
 
 struct ContactArguments {
-  std::string json;  ///< file for all figures; empty = none
-  std::string docs;  ///< folder of documentation to refresh; empty = none
+  std::string json;    ///< file for all figures; empty = none
+  std::string docs;    ///< folder of documentation to refresh; empty = none
+  std::string device;  ///< device.yaml; empty = the reference device's
   int seeds = 4;
 };
 
 struct InertialArguments {
-  std::vector<std::string> scenarios = {"walk", "door"};
-  std::string simulation;  ///< simulation, see find_simulation(); empty = that of the device
+  std::vector<std::string> scenarios;  ///< scenarios; empty: see scripted_scenarios()
+  std::string device, twin;  ///< files that replace those of the scenarios; empty = their own
+  std::string simulation;    ///< simulation, see find_simulation(); empty = that of the device
   int seeds = 4;
   bool feels = false;  ///< also measures what a hand feels
   std::string json;    ///< file for all figures; empty = none
 };
 
 struct SeedsArguments {
-  std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
+  std::vector<std::string> scenarios;        ///< scenarios; empty: see scripted_scenarios()
   std::vector<std::string> hands = {"own"};  ///< hands: "own" or presets
   int count = 16;
   std::uint64_t first = 1;
-  scenario::ScenarioOptions world;  ///< law, bounds, gantry and braking of all runs
+  scenario::ScenarioOptions world;  ///< device, twin, law, bounds, gantry and braking of all runs
   std::string json;                 ///< file for all runs; empty = none
   std::string markdown;             ///< file for the table; empty = none
 };
@@ -75,8 +79,14 @@ struct SeedsArguments {
 constexpr std::uint64_t kSeed = haptify::HaptifyOptions{}.seed;
 
 // With another device or simulation where they are given.
-config::Scenario walk_scenario(const std::string& device = "", const std::string& simulation = "") {
-  return scenario::load({.scenario = "walk", .device = device, .simulation = simulation});
+config::Scenario walk_scenario(const std::string& device = "", const std::string& simulation = "",
+                               const std::string& twin = "") {
+  return scenario::load(
+      {.scenario = "walk", .device = device, .twin = twin, .simulation = simulation});
+}
+
+config::Scenario walk_scenario(const ExperimentArguments& arguments) {
+  return walk_scenario(arguments.device, arguments.simulation, arguments.twin);
 }
 
 config::Scenario scripted_scenario(const RunArguments& run) {
@@ -89,6 +99,32 @@ config::Scenario scripted_scenario(const RunArguments& run) {
 
 std::string name_of(const std::string& scenario) {
   return std::filesystem::path(scenario).stem().string();
+}
+
+struct NamedScenario {
+  std::string name;
+  config::Scenario scenario;
+};
+
+// The scenarios `given`, each with `world`. Without any a hand moves the device and twin of `world`
+// through their ranges; where that has neither, the scenarios are `shipped`.
+std::vector<NamedScenario> scripted_scenarios(std::vector<std::string> given,
+                                              const scenario::ScenarioOptions& world,
+                                              const std::vector<std::string>& shipped) {
+  const bool has_own = !world.device.empty() || !world.twin.empty();
+  if (given.empty() && has_own) {
+    const config::Scenario moved = studies::moved_scenario(world);
+    return {{moved.title, moved}};
+  }
+  if (given.empty()) given = shipped;
+  std::vector<NamedScenario> all;
+  for (const std::string& scenario : given) {
+    RunArguments run;
+    run.world = world;
+    run.world.scenario = scenario;
+    all.push_back({name_of(scenario), scripted_scenario(run)});
+  }
+  return all;
 }
 
 void begin(const ExperimentArguments& arguments, const std::string& what) {
@@ -146,7 +182,7 @@ int experiment_free_space(const ExperimentArguments& arguments) {
                     "as in `hapticgiant haptify`\n\n",
                     config.duration_s, kSeed));
   const auto runs =
-      haptify::measure_variants(walk_scenario(), config, kSeed, progress_of("variants"));
+      haptify::measure_variants(walk_scenario(arguments), config, kSeed, progress_of("variants"));
   return report(haptify::to_json(runs), "free-space", arguments.json);
 }
 
@@ -156,8 +192,8 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
   begin(arguments,
         fmt::format("Stability: a kick of {:g} N for {:g} ms on a free body held by a hand\n\n",
                     config.kick.force, 1e3 * config.kick.duration));
-  const studies::StabilityMap map = studies::make_stability_map(
-      walk_scenario(arguments.device, arguments.simulation), config, progress_of("kicks"));
+  const studies::StabilityMap map =
+      studies::make_stability_map(walk_scenario(arguments), config, progress_of("kicks"));
   return report(studies::to_json(map), "stability-map", arguments.json, "", "map.svg",
                 arguments.svg);
 }
@@ -168,7 +204,7 @@ int experiment_impedance(const ExperimentArguments& arguments) {
   begin(arguments, fmt::format("Impedance at the handle, pushed to and fro with {:g} N, as in "
                                "`hapticgiant haptify`\n\n",
                                config.response.force));
-  const config::Scenario scenario = walk_scenario();
+  const config::Scenario scenario = walk_scenario(arguments);
   const studies::FreeTwin twin = studies::free_twin_of(scenario);
   const auto runs = haptify::measure_impedance(scenario, config, kSeed, progress_of("pushes"));
   return report(haptify::to_json(runs, config, twin), "impedance", arguments.json);
@@ -177,22 +213,29 @@ int experiment_impedance(const ExperimentArguments& arguments) {
 int experiment_contact(const ContactArguments& arguments) {
   studies::ContactConfig config;
   config.seeds = arguments.seeds;
+  const config::Scenario scenario = walk_scenario(arguments.device);
+  if (!scenario.device.model.has_closed_form) {
+    throw SetupError(fmt::format(
+        "experiment contact: not possible with {}: a person stands in the way of elbow and wrist "
+        "of a HapticGiant; how another device stops show `hapticgiant check` of its file and "
+        "`hapticgiant faults --device FILE`",
+        scenario.device.name));
+  }
   check_output(arguments.json);
   print_out(fmt::format("HapticGiant {}  Contact: the arm hits a person in its way\n\n", kVersion));
   const studies::ContactMeasures measures =
-      studies::measure_contact(walk_scenario(), config, progress_of("cases"));
+      studies::measure_contact(scenario, config, progress_of("cases"));
   return report(studies::to_json(measures), "contact", arguments.json, arguments.docs);
 }
 
 int experiment_inertial(const InertialArguments& arguments) {
   std::vector<config::Scenario> scenarios;
   std::vector<std::string> names;
-  for (const std::string& scenario : arguments.scenarios) {
-    RunArguments run;
-    run.world.scenario = scenario;
-    run.world.simulation = arguments.simulation;
-    scenarios.push_back(scripted_scenario(run));
-    names.push_back(name_of(scenario));
+  const scenario::ScenarioOptions world = {
+      .device = arguments.device, .twin = arguments.twin, .simulation = arguments.simulation};
+  for (NamedScenario& it : scripted_scenarios(arguments.scenarios, world, {"walk", "door"})) {
+    scenarios.push_back(std::move(it.scenario));
+    names.push_back(std::move(it.name));
   }
   check_output(arguments.json);
   print_out(fmt::format(
@@ -202,21 +245,26 @@ int experiment_inertial(const InertialArguments& arguments) {
       studies::measure_inertial(scenarios, names, arguments.seeds, progress_of("runs"));
   nlohmann::ordered_json results = studies::to_json(runs);
   if (arguments.feels) {
-    results["felt"] = felt_with_units(walk_scenario("", arguments.simulation));
+    results["felt"] = felt_with_units(walk_scenario(arguments.device, arguments.simulation));
   }
   return report(results, "inertial", arguments.json);
 }
 
 int experiment_seeds(const SeedsArguments& arguments) {
   std::vector<studies::Trial> trials;
-  for (const std::string& scenario : arguments.scenarios) {
-    for (const std::string& hand : arguments.hands) {
-      RunArguments run;
-      run.world = arguments.world;
-      run.world.scenario = scenario;
-      run.world.hand = hand == "own" ? "" : hand;
-      trials.push_back(
-          {.name = name_of(scenario), .hand = run.world.hand, .scenario = scripted_scenario(run)});
+  std::vector<std::vector<NamedScenario>> by_hand;
+  std::vector<std::string> hands;
+  for (const std::string& hand : arguments.hands) {
+    scenario::ScenarioOptions world = arguments.world;
+    world.hand = hand == "own" ? "" : hand;
+    hands.push_back(world.hand);
+    by_hand.push_back(scripted_scenarios(arguments.scenarios, world,
+                                         {"door", "free_space", "excavator", "walk"}));
+  }
+  for (std::size_t i = 0; i < by_hand.front().size(); ++i) {
+    for (std::size_t k = 0; k < hands.size(); ++k) {
+      const auto& [name, scenario] = by_hand[k][i];
+      trials.push_back({.name = name, .hand = hands[k], .scenario = scenario});
     }
   }
   check_output(arguments.json);
@@ -233,8 +281,13 @@ void add_seeds(CLI::App& experiment, int& exit_code) {
   const auto arguments = std::make_shared<SeedsArguments>();
   CLI::App* command = experiment.add_subcommand(
       "seeds", "what scenarios show over many seeds and hands: limits, faults, events, errors");
-  command->add_option("scenarios", arguments->scenarios, "scenario files or names")
-      ->capture_default_str();
+  command->add_option(
+      "scenarios", arguments->scenarios,
+      "scenario files or names; default: door, free_space, excavator, walk, or with "
+      "--device or --twin a hand that moves it through its ranges");
+  command->add_option("--device", arguments->world.device, "device.yaml instead of the scenarios'");
+  command->add_option("--twin", arguments->world.twin,
+                      "twin.yaml, or the name of a shipped one, instead of the scenarios'");
   std::vector<std::string> hands = names_of(config::kHandPresets);
   hands.insert(hands.begin(), "own");
   command->add_option("--hands", arguments->hands, "own: that of each scenario; or presets")
@@ -259,6 +312,8 @@ void add_contact(CLI::App& experiment, int& exit_code) {
   CLI::App* command = experiment.add_subcommand(
       "contact",
       "the arm hits a person in its way: force and pressure, with and without giving way");
+  command->add_option("--device", arguments->device,
+                      "device.yaml of a HapticGiant instead of the reference device's");
   command->add_option("--seeds", arguments->seeds, "seeds per case, from 1 on")
       ->check(whole_number(1.0, 1e3))
       ->capture_default_str();
@@ -272,8 +327,12 @@ void add_inertial(CLI::App& experiment, int& exit_code) {
   const auto arguments = std::make_shared<InertialArguments>();
   CLI::App* command = experiment.add_subcommand(
       "inertial", "what inertial units on the links measure that encoders do not");
-  command->add_option("scenarios", arguments->scenarios, "scenario files or names")
-      ->capture_default_str();
+  command->add_option("scenarios", arguments->scenarios,
+                      "scenario files or names; default: walk, door, or with --device or --twin a "
+                      "hand that moves it through its ranges");
+  command->add_option("--device", arguments->device, "device.yaml instead of the scenarios'");
+  command->add_option("--twin", arguments->twin,
+                      "twin.yaml, or the name of a shipped one, instead of the scenarios'");
   command->add_option("--simulation", arguments->simulation, kSimulationHelp);
   command->add_option("--seeds", arguments->seeds, "seeds per case, from 1 on")
       ->check(whole_number(1.0, 1e3))
@@ -304,10 +363,16 @@ void add_experiment(CLI::App& app, int& exit_code) {
       "  hapticgiant experiment impedance --json impedance.json\n"
       "  hapticgiant experiment contact           the arm hits a person in its way\n"
       "  hapticgiant experiment inertial --simulation harder\n"
+      "  hapticgiant experiment impedance --device arm.yaml\n"
       "  hapticgiant experiment seeds free_space --hands own,stiff --count 16");
   add_paper_experiments(*command, exit_code);
   const auto add = [&](const char* name, const char* text, int (*run)(const ExperimentArguments&)) {
     CLI::App* what = command->add_subcommand(name, text);
+    what->add_option("--device", arguments->device,
+                     "device.yaml instead of the reference device's");
+    what->add_option("--twin", arguments->twin,
+                     "free body that is held, as a file or a shipped name");
+    what->add_option("--simulation", arguments->simulation, kSimulationHelp);
     what->add_option("--json", arguments->json, "write all figures as JSON to this file");
     what->callback([arguments, &exit_code, run] { exit_code = run(*arguments); });
     return what;
@@ -318,8 +383,6 @@ void add_experiment(CLI::App& app, int& exit_code) {
                       "how stiff a hand may be for how light a body, before contact is unstable",
                       experiment_stability_map);
   map->add_option("--svg", arguments->svg, "draw the map to this file");
-  map->add_option("--device", arguments->device, "device.yaml instead of the reference device's");
-  map->add_option("--simulation", arguments->simulation, kSimulationHelp);
   add("impedance", "how far the handle gives way, by frequency and under a constant push",
       experiment_impedance);
   add_contact(*command, exit_code);

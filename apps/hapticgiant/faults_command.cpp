@@ -15,11 +15,12 @@
 #include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/scratch_folder.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/options.h"
+#include "hg/studies/moved_scenario.h"
 #include "hg/studies/process_faults.h"
 
 namespace hg::apps {
@@ -41,19 +42,45 @@ int process_faults(const FaultsArguments& arguments) {
   return std::ranges::all_of(cases, &studies::ProcessCase::is_good) ? 0 : 1;
 }
 
+// The scenarios with their options.
+struct Played {
+  std::vector<scenario::ScenarioOptions> options;
+  std::vector<config::Scenario> scenarios;
+};
+
+Played scenarios_of(const FaultsArguments& arguments) {
+  Played played;
+  if (arguments.scenarios.empty()) {
+    const scenario::ScenarioOptions options = {
+        .scenario = "walk", .device = arguments.device, .twin = arguments.twin};
+    return {{options}, {studies::moved_scenario(options)}};
+  }
+  for (const std::string& name : arguments.scenarios) {
+    played.options.push_back(
+        {.scenario = name, .device = arguments.device, .twin = arguments.twin});
+    played.scenarios.push_back(scenario::load(played.options.back()));
+  }
+  return played;
+}
+
+void check_script(const config::Scenario& scenario, const std::string& name) {
+  const Interval times = studies::fault_times(scenario);
+  if (times.lb <= times.ub) return;
+  throw SetupError(name +
+                   ": faults are played in scenarios with a script that continues for two seconds "
+                   "after the grasp");
+}
+
 }  // namespace
 
-int faults(const FaultsArguments& arguments) {
-  std::vector<config::Scenario> scenarios;
-  for (const std::string& name : arguments.scenarios) {
-    scenarios.push_back(config::load_scenario(config::find_scenario(name)));
-    const Interval times = studies::fault_times(scenarios.back());
-    if (times.lb > times.ub) {
-      throw SetupError(
-          name +
-          ": faults are played in scenarios with a script that continues for two seconds "
-          "after the grasp");
-    }
+int faults(FaultsArguments arguments) {
+  if (arguments.scenarios.empty() && arguments.device.empty() && arguments.twin.empty()) {
+    arguments.scenarios = {"door", "free_space", "excavator", "walk"};
+  }
+  const auto [options, scenarios] = scenarios_of(arguments);
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    check_script(scenarios[i],
+                 arguments.scenarios.empty() ? scenarios[i].title : options[i].scenario);
   }
   check_writable(arguments.json, kJson);
   check_writable(arguments.markdown, kMarkdown);
@@ -64,7 +91,7 @@ int faults(const FaultsArguments& arguments) {
   if (recording::recording_available()) {
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
       RunArguments run;
-      run.world.scenario = arguments.scenarios[i];
+      run.world = options[i];
       run.recordings = scratch.path();
       recordings.push_back(recording_info(scenarios[i], run));
     }
@@ -85,18 +112,28 @@ void add_faults(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  hapticgiant faults\n"
-      "  hapticgiant faults --cases 60 --seed 7 --scenario door --json faults.json");
+      "  hapticgiant faults --cases 60 --seed 7 --scenario door --json faults.json\n"
+      "  hapticgiant faults --device arm.yaml --twin gate.yaml");
   command->add_option("--cases", arguments->campaign.cases, "number of runs")
       ->check(whole_number(1.0, 1e9));
   command->add_option("--seed", arguments->campaign.seed, "of scenarios, times and sizes")
       ->check(whole_number(0.0));
   command->add_option("--scenario", arguments->scenarios, "scenarios with a script");
+  CLI::Option* device = command->add_option(
+      "--device", arguments->device,
+      "device.yaml instead of the scenarios'; without --scenario a hand moves it through its "
+      "workspace");
+  CLI::Option* twin =
+      command->add_option("--twin", arguments->twin,
+                          "twin.yaml, or the name of a shipped one, that is moved; without "
+                          "--scenario joint by joint");
   CLI::Option* processes = command->add_flag(
       "--processes", arguments->plays_processes,
       "faults of the controller's process (terminal, disk, memory, ...) instead, in real time");
   command->add_option("--repetitions", arguments->repetitions, "of the faults of processes")
       ->check(whole_number(1.0, 1e6))
       ->needs(processes);
+  processes->excludes(device)->excludes(twin);
   command->add_option("--json", arguments->json, "write all cases as JSON to this file");
   command->add_option("--markdown", arguments->markdown, "write the table as a page to this file")
       ->excludes(processes);

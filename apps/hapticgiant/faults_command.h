@@ -13,7 +13,10 @@ class App;
 namespace hg::apps {
 
 struct FaultsArguments {
-  std::vector<std::string> scenarios = {"door", "free_space", "excavator", "walk"};
+  /// Scenarios; empty: with a device or twin the one of studies::moved_scenario(), otherwise the
+  /// shipped ones
+  std::vector<std::string> scenarios;
+  std::string device, twin;  ///< files that replace those of the scenarios; empty = their own
   studies::CampaignConfig campaign;
   bool plays_processes = false;  ///< plays faults of the controller's process instead, in real time
   int repetitions = 1;           ///< repetitions of the process faults
@@ -23,7 +26,7 @@ struct FaultsArguments {
 
 /// Prints a table. Returns the exit code: 1 when a fault was unnoticed or went beyond the bounds;
 /// bad input is thrown as SetupError.
-int faults(const FaultsArguments& arguments);
+int faults(FaultsArguments arguments);
 
 /// Adds the subcommand to the program; running it sets `exit_code`.
 void add_faults(CLI::App& app, int& exit_code);

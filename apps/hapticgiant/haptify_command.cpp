@@ -40,6 +40,7 @@ std::string command_of(const HaptifyArguments& arguments) {
   if (options.repetitions != haptify::HaptifyOptions{}.repetitions) {
     command += fmt::format(" --repetitions {}", options.repetitions);
   }
+  if (!arguments.device.empty()) command += " --device " + arguments.device;
   if (!arguments.simulation.empty()) command += " --simulation " + arguments.simulation;
   if (!arguments.twin.empty()) command += " --twin " + arguments.twin;
   if (arguments.only_goals) command += " --goals";
@@ -47,32 +48,37 @@ std::string command_of(const HaptifyArguments& arguments) {
 }
 
 haptify::Benchmark measure_goals(const HaptifyArguments& arguments) {
-  const config::Scenario scenario =
-      scenario::load({.scenario = "walk", .simulation = arguments.simulation});
+  const config::Scenario scenario = scenario::load(
+      {.scenario = "walk", .device = arguments.device, .simulation = arguments.simulation});
   const config::Scenario light =
       scenario::load({.scenario = "walk",
+                      .device = arguments.device,
                       .twin = arguments.twin.empty() ? "light" : arguments.twin,
                       .simulation = arguments.simulation});
   return haptify::measure_goals(scenario, light, arguments.options, show_progress);
 }
 
 haptify::Benchmark measure_all(const HaptifyArguments& arguments) {
-  const config::Scenario scenario = scenario::load(
-      {.scenario = "walk", .twin = arguments.twin, .simulation = arguments.simulation});
+  const config::Scenario scenario = scenario::load({.scenario = "walk",
+                                                    .device = arguments.device,
+                                                    .twin = arguments.twin,
+                                                    .simulation = arguments.simulation});
   return haptify::measure(scenario, arguments.options, show_progress);
 }
 
 nlohmann::ordered_json results_json(const HaptifyArguments& arguments,
                                     const haptify::Benchmark& measured) {
   const haptify::HaptifyOptions& options = arguments.options;
-  return {{"kind", arguments.only_goals ? "goals" : "haptify"},
-          {"version", kVersion},
-          {"command", command_of(arguments)},
-          {"device", measured.device},
-          {"seed", options.seed},
-          {"repetitions", options.repetitions},
-          {"is_quick", options.is_quick},
-          {"measurements", measured.measurements}};
+  nlohmann::ordered_json json = {{"kind", arguments.only_goals ? "goals" : "haptify"},
+                                 {"version", kVersion},
+                                 {"command", command_of(arguments)},
+                                 {"device", measured.device},
+                                 {"seed", options.seed},
+                                 {"repetitions", options.repetitions},
+                                 {"is_quick", options.is_quick},
+                                 {"measurements", measured.measurements}};
+  if (!measured.place.empty()) json["place"] = measured.place;
+  return json;
 }
 
 }  // namespace
@@ -105,6 +111,7 @@ void add_haptify(CLI::App& app, int& exit_code) {
       "  hapticgiant haptify --quick              a look, in seconds\n"
       "  hapticgiant haptify --seed 7 --repetitions 10 --out results\n"
       "  hapticgiant haptify --quick --simulation as_published\n"
+      "  hapticgiant haptify --quick --device arm.yaml\n"
       "  hapticgiant haptify --goals --repetitions 16   the worst of seeds, heights and hands");
   command->add_option("--out", arguments->out, "folder of the report")->capture_default_str();
   command->add_option("--seed", arguments->options.seed, "of the first repetition")
@@ -119,6 +126,8 @@ void add_haptify(CLI::App& app, int& exit_code) {
   command->add_option(
       "--twin", arguments->twin,
       "free body that is held (with --goals: the light one), as a file or a shipped name");
+  command->add_option("--device", arguments->device,
+                      "device.yaml instead of the reference device's");
   command->add_option("--simulation", arguments->simulation, kSimulationHelp);
   command->add_option("--docs", arguments->docs,
                       "refresh the page haptify.md of this folder (make experiments)");

@@ -15,6 +15,7 @@ namespace hg::apps {
 struct HaptifyArguments {
   std::string out = "haptify";  ///< output folder
   std::string docs;             ///< folder of documentation to refresh; empty = none
+  std::string device;           ///< device.yaml; empty = the reference device's
   std::string simulation;       ///< simulation, see find_simulation(); empty = that of the device
   std::string twin;             ///< twin.yaml of a free body instead of the shipped one
   bool only_goals = false;      ///< measures only the design goals, over seeds, heights and hands

@@ -105,7 +105,10 @@ class Travel {
   double share_ = 0.0, energy_ = 0.0, most_energy_ = 0.0;
 };
 
-// Peaks of the person's force in a run without faults, one per tenth of a second.
+using Kinds = std::vector<const faults::Kind*>;
+
+// Peaks of the person's force in a run without faults, one per tenth of a second, and what such a
+// device can suffer.
 class CleanRun {
  public:
   explicit CleanRun(config::Scenario scenario) {
@@ -118,6 +121,17 @@ class CleanRun {
       peaks_.resize(std::max(peaks_.size(), slot + 1), 0.0);
       peaks_[slot] = std::max(peaks_[slot], player.truth().w_H.head<3>().norm());
     }
+    sensors_ = player.sensors();
+    command_ = player.command();
+    for (const faults::Kind& kind : faults::kinds()) {
+      if (why_not(kind).empty()) kinds_.push_back(&kind);
+    }
+  }
+
+  // The kinds of faults that the device can have.
+  const Kinds& kinds() const { return kinds_; }
+  std::string why_not(const faults::Kind& kind) const {
+    return why_impossible(kind, sensors_, command_);
   }
 
   double peak(double from_s, double to_s) const {
@@ -132,6 +146,9 @@ class CleanRun {
  private:
   static constexpr double kSlot = 0.1;
   std::vector<double> peaks_;
+  SensorFrame sensors_;   // the last ones
+  CommandFrame command_;  // the last one
+  Kinds kinds_;
 };
 
 // One of `count` indices.
@@ -161,16 +178,16 @@ constexpr std::size_t kPhases = 4;
 constexpr double kStartingWatch = 2.0;  // s longer: the device is to be armed and to run
 constexpr double kFirst = 0.1;  // s: what is wrong from the first sample on is no fault that begins
 
-FaultCase draw_case(std::size_t number, const config::Scenario& scenario, Random& random) {
-  const auto kinds = faults::kinds();
+FaultCase draw_case(std::size_t number, const config::Scenario& scenario, const Kinds& kinds,
+                    Random& random) {
   FaultCase drawn = {.phase = static_cast<Phase>(number / kinds.size() % kPhases),
-                     .injection = draw(kinds[number % kinds.size()], scenario, random)};
+                     .injection = draw(*kinds[number % kinds.size()], scenario, random)};
   double& from_s = drawn.injection.from_s;
   switch (drawn.phase) {
     case Phase::kRunning:
       break;
     case Phase::kPair:
-      drawn.other = draw(kinds[draw_index(kinds.size(), random)], scenario, random);
+      drawn.other = draw(*kinds[draw_index(kinds.size(), random)], scenario, random);
       drawn.other->from_s = from_s + random.between(0.0, 0.5);
       break;
     case Phase::kStopping:
@@ -211,6 +228,27 @@ bool has_all_cycles(const std::filesystem::path& file, std::uint64_t cycles) {
 }
 
 }  // namespace
+
+std::string why_impossible(const faults::Kind& kind, const SensorFrame& sensors,
+                           const CommandFrame& command) {
+  switch (kind.part) {
+    case faults::Part::kMotorEncoder:
+    case faults::Part::kJointEncoders:
+      return sensors.theta_m.size() > 0 ? "" : "the device has no motor encoders";
+    case faults::Part::kTorqueSensor:
+      return sensors.tau_m.size() > 0 ? "" : "the device has no torque sensors";
+    case faults::Part::kTemperature:
+      return sensors.temperature_m.size() > 0 ? "" : "the device does not measure temperatures";
+    case faults::Part::kGantryEncoder:
+    case faults::Part::kGantryDrive:
+    case faults::Part::kGantryCoupling:
+      return sensors.q_p.size() > 0 ? "" : "the device has no gantry";
+    case faults::Part::kMotor:
+      return command.tau_m.size() > 0 ? "" : "the device is given positions, not torques";
+    default:
+      return "";
+  }
+}
 
 bool stands_still(const Truth& truth) {
   constexpr double kStandstill = 0.02;  // rad/s and m/s
@@ -311,13 +349,18 @@ Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const Camp
   do_all(scenarios.size(),
          [&](std::size_t i) { clean[i] = std::make_unique<CleanRun>(scenarios[i]); }, {});
 
+  for (const faults::Kind& kind : faults::kinds()) {
+    const bool is_possible =
+        std::ranges::any_of(clean, [&](const auto& run) { return run->why_not(kind).empty(); });
+    if (!is_possible) campaign.impossible.emplace_back(&kind, clean.front()->why_not(kind));
+  }
   campaign.cases.resize(config.cases);
   do_all(
       campaign.cases.size(),
       [&](std::size_t i) {
         Random random(config.seed * 1'000'003 + i);
         const std::size_t which = draw_index(scenarios.size(), random);
-        FaultCase drawn = draw_case(i, scenarios[which], random);
+        FaultCase drawn = draw_case(i, scenarios[which], clean[which]->kinds(), random);
         drawn.scenario = which;
         const double from_s = drawn.injection.from_s;
         const double until_s =

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hg/config/simulation/scenario.h"
@@ -74,7 +75,13 @@ struct Campaign {
   CampaignConfig config;
   std::vector<std::string> scenarios;
   std::vector<FaultCase> cases;
+  /// Kinds that none of the devices can have, with the reason
+  std::vector<std::pair<const faults::Kind*, std::string>> impossible;
 };
+
+/// Why a device with these sensors and commands cannot have a fault of this kind; empty = it can.
+std::string why_impossible(const faults::Kind& kind, const SensorFrame& sensors,
+                           const CommandFrame& command);
 
 /// Whether the drives stand still; a person who pulls may still bend the springs behind them.
 bool stands_still(const Truth& truth);

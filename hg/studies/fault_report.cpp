@@ -94,6 +94,9 @@ ordered_json to_json(const Campaign& campaign) {
                        {"force_bound_N", config.force_bound},
                        {"energy_bound_J", config.energy_bound}};
   for (const faults::Kind& kind : faults::kinds()) json["kinds"].push_back(json_of(kind));
+  for (const auto& [kind, why] : campaign.impossible) {
+    json["impossible"].push_back({{"fault", kind->name}, {"why", why}});
+  }
   for (const FaultCase& result : campaign.cases) json["cases"].push_back(json_of(campaign, result));
   return json;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hg/studies/changes.h"
+#include "hg/studies/place.h"
 #include "hg/studies/player.h"
 
 namespace hg::studies {
@@ -87,6 +88,18 @@ KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) 
   return outcome;
 }
 
+std::string control_in_words(tracking::Method method) {
+  switch (method) {
+    case tracking::Method::kDrives:
+      return "drives that follow positions";
+    case tracking::Method::kModal:
+      return "modal control";
+    case tracking::Method::kMotorPd:
+      return "motor control";
+  }
+  return "";
+}
+
 }  // namespace
 
 void add_kick(const Kick& kick, double at_s, person::Script& script) {
@@ -140,12 +153,15 @@ KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config
   return outcome;
 }
 
-StabilityMap make_stability_map(const config::Scenario& scenario, const StabilityConfig& config,
+StabilityMap make_stability_map(const config::Scenario& given, const StabilityConfig& how,
                                 const Progress& progress) {
-  const bool is_modal = scenario.device.control.method == tracking::Method::kModal;
+  const Place place = place_of(given.device);
+  const config::Scenario scenario = at_place(given, place);
+  StabilityConfig config = how;
+  if (place.is_found) config.position = place.middle;
   StabilityMap map = {
       .config = config,
-      .device = scenario.device.name + (is_modal ? ", modal control" : ", motor control")};
+      .device = scenario.device.name + ", " + control_in_words(scenario.device.control.method)};
   const std::vector<NamedHand> hands = hands_of(config);
   for (const double damping : config.damping) {
     for (const NamedHand& hand : hands) {

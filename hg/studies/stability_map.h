@@ -83,8 +83,8 @@ config::Scenario kicked(const config::Scenario& scenario, const StabilityConfig&
 KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config,
                  const person::HandImpedance& hand, double mass, double damping);
 
-/// Computes the map on all cores. Throws SetupError when the twin of the scenario is not a free
-/// body.
+/// Computes the map on all cores, at place_of() the device, see place.h. Throws SetupError when the
+/// twin of the scenario is not a free body.
 StabilityMap make_stability_map(const config::Scenario& scenario, const StabilityConfig& config,
                                 const Progress& progress);
 

@@ -66,6 +66,12 @@ int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& a
 // The worst code of all.
 int run_paper_experiments(const PaperExperimentArguments& arguments,
                           const std::vector<PaperExperiment>& experiments) {
+  if (!arguments.device.empty()) {
+    throw SetupError(
+        "--device: the paper's experiments are figures of the HapticGiant; what another device can "
+        "do show `hapticgiant haptify --device FILE` and `hapticgiant experiment seeds --device "
+        "FILE`");
+  }
   print_out(
       fmt::format("HapticGiant {}  the paper's experiments, on a simulated machine\n", kVersion));
   int code = 0;
@@ -113,6 +119,9 @@ void add_paper_experiments(CLI::App& experiment, int& exit_code) {
                        const std::vector<PaperExperiment>& played) {
     CLI::App* command = experiment.add_subcommand(std::string(name), text);
     add_options(*command, *arguments);
+    command->add_option("--device", arguments->device,
+                        "refused: these are figures of the HapticGiant; names what shows another "
+                        "device");
     command->callback(
         [arguments, &exit_code, played] { exit_code = run_paper_experiments(*arguments, played); });
   };
@@ -123,6 +132,11 @@ void add_paper_experiments(CLI::App& experiment, int& exit_code) {
   CLI::App* timing = experiment.add_subcommand(
       "timing", "computing time of a cycle beside the paper's, section VII-A; minutes");
   add_options(*timing, *arguments);
+  timing->add_option("--device", arguments->device,
+                     "device.yaml instead of the reference device's; a hand moves it through its "
+                     "workspace");
+  timing->add_option("--twin", arguments->twin,
+                     "twin.yaml, or the name of a shipped one, that is moved");
   timing->add_option("--rates", arguments->rates_Hz, "control rates, Hz")
       ->delimiter(',')
       ->capture_default_str();

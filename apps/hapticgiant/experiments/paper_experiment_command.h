@@ -23,6 +23,8 @@ struct PaperExperimentArguments {
   std::optional<std::uint64_t> seed;  ///< seed of noise and tremor; unset = the device's
   std::optional<double> duration_s;   ///< duration; unset = until the script has played
   std::string docs;                   ///< folder of documentation to refresh; empty = none
+  /// Device and twin of the timing experiment instead of its own; the others refuse a device
+  std::string device, twin;
   /// Rates of the timing experiment
   std::vector<double> rates_Hz = {1000.0, 2000.0, 5000.0, 10000.0};
 };

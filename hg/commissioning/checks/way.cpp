@@ -98,6 +98,13 @@ person::Script script_through(const rendering::TwinModel& twin, const person::Ha
   return script;
 }
 
+// Whether the coordinates of a script can be those of the twin.
+bool has_script(const rendering::TwinModel& twin) {
+  const bool is_floating =
+      std::ranges::any_of(twin.dofs, [](const rendering::TwinDof& dof) { return dof.q_index < 0; });
+  return !is_floating && std::ssize(twin.dofs) <= person::kPoseChannels;
+}
+
 // A trial: its scenario, and the joints of the twin that are led.
 struct Trial {
   config::Scenario scenario;
@@ -228,11 +235,15 @@ std::string trouble_of(const Way& way) {
   return text.empty() ? text : "led through its whole range by a hand: " + text;
 }
 
+person::Script script_through(const rendering::TwinModel& twin, const person::HandImpedance& hand) {
+  if (!has_script(twin)) return {};
+  model::ChainData chain(twin.chain);
+  chain.update(twin.q_start, VectorA::Zero(twin.chain.nv()));
+  return script_through(twin, hand, led_joints(twin, hand, chain), chain);
+}
+
 Way lead(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {
-  const std::vector<rendering::TwinDof>& dofs = twin.model.dofs;
-  const bool is_floating =
-      std::ranges::any_of(dofs, [](const rendering::TwinDof& dof) { return dof.q_index < 0; });
-  if (is_floating || std::ssize(dofs) > person::kPoseChannels) return {};
+  if (!has_script(twin.model)) return {};
   const Trial trial = make_trial(device, twin);
   scenario::Session session(trial.scenario);
   Watch watch(trial);

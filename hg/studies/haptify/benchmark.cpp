@@ -1,5 +1,6 @@
 #include "hg/studies/haptify/benchmark.h"
 
+#include "hg/core/error.h"
 #include "hg/studies/changes.h"
 #include "hg/studies/haptify/groups.h"
 #include "hg/studies/workers.h"
@@ -25,11 +26,17 @@ void Group::add(const std::string& name, const nlohmann::json& settings,
                 const std::vector<Play>& plays) const {
   std::vector<nlohmann::json> runs(plays.size());
   do_all(name, plays.size(), [&](std::size_t i) {
-    runs[i] = plays[i].measure();
+    try {
+      runs[i] = plays[i].measure();
+    } catch (const SetupError& error) {
+      runs[i] = impossible(std::string(studies::kNotPossible) + error.what());
+    }
     runs[i].update(plays[i].condition);
   });
   for (const nlohmann::json& run : runs) {
-    out.has_failures = out.has_failures || !run.value("failure", "").empty();
+    const std::string failure = run.value("failure", "");
+    const bool is_possible = !failure.starts_with(studies::kNotPossible);
+    out.has_failures = out.has_failures || (!failure.empty() && is_possible);
   }
   out.measurements[name] = {{"settings", settings}, {"runs", runs}};
 }
@@ -50,10 +57,26 @@ nlohmann::json as_json(const studies::FreeTwin& body) {
   return {{"mass", body.mass}, {"damping", body.damping}};
 }
 
+FreeSpaceConfig free_space_at(const studies::Place& place) {
+  FreeSpaceConfig config;
+  config.lower = place.lower;
+  config.upper = place.upper;
+  config.turn_range = place.turn;
+  return config;
+}
+
+SurfaceConfig surface_at(const studies::Place& place) {
+  SurfaceConfig config = placed(SurfaceConfig(), place);
+  if (place.is_found) config.position.head<2>().array() -= 0.5 * config.stroke;
+  return config;
+}
+
 Benchmark measure(const config::Scenario& scenario, const HaptifyOptions& options,
                   const Progress& progress) {
-  Benchmark result = {.device = scenario.device.name};
-  const Group group = {scenario, options, progress, result};
+  const studies::Place place = studies::place_of(scenario.device);
+  const config::Scenario held = studies::at_place(scenario, place);
+  Benchmark result = {.device = scenario.device.name, .place = studies::to_text(place)};
+  const Group group = {held, options, progress, result, place};
   add_workspace(group);
   add_free_space(group);
   add_sources(group);

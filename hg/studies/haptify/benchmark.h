@@ -23,9 +23,12 @@ using Progress = std::function<void(const std::string& what, std::size_t done, s
 
 struct Benchmark {
   std::string device;  ///< name of the device
+  /// Where its handle was held and moved, in words; empty: where that of the HapticGiant is
+  std::string place;
   /// Measurements by name. Each has the list `runs`, with condition and result of every run in SI
   /// units, and `settings`, the values that all its runs share. `failure` of a run says why its
-  /// result is invalid; empty = valid. null stands for infinite and undefined numbers.
+  /// result is invalid; empty = valid. "not possible: ...": the device cannot do it. null stands
+  /// for infinite and undefined numbers.
   nlohmann::json measurements;
   bool has_failures = false;  ///< a run has failed
 };

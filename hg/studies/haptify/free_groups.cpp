@@ -1,5 +1,7 @@
 // Workspace, free space and strokes: what needs no virtual surface and no frequency.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -29,7 +31,16 @@ std::vector<FreeSpaceVariant> changed_ways() {
   return {{.name = "measured wrench not low-passed",
            .change = [](Scenario& s) { s.device.estimation.wrench.low_pass_Hz = 0.0; }},
           {.name = "softest joints four times as stiff",
-           .change = [](Scenario& s) { stiffen_softest(4.0, s.device.model); }}};
+           .change = [](Scenario& s) { stiffen_softest(4.0, s.device.model); },
+           .needs = Needs::kElasticJoints}};
+}
+
+// Why strokes do not fit at the place.
+std::string no_strokes(const studies::Place& place, const DynamicsConfig& config, int axis) {
+  if (axis < 3) return studies::no_room(place, Eigen::Vector3d::Unit(axis), config.stroke);
+  if (config.angle <= 2.0 * place.turn) return "";
+  return fmt::format("{}the handle can turn by {:g} rad only", studies::kNotPossible,
+                     2.0 * place.turn);
 }
 
 std::vector<double> numbers(const Eigen::Vector3d& vector) {
@@ -61,7 +72,7 @@ void add_workspace(const Group& group) {
 }
 
 void add_free_space(const Group& group) {
-  FreeSpaceConfig config;
+  FreeSpaceConfig config = free_space_at(group.place);
   if (group.options.is_quick) config.duration_s = 6.0;
   const config::Scenario light = with_body(group.scenario, kLightBody);
   std::vector<Play> plays;
@@ -82,7 +93,7 @@ void add_free_space(const Group& group) {
 }
 
 void add_sources(const Group& group) {
-  FreeSpaceConfig config;
+  FreeSpaceConfig config = free_space_at(group.place);
   if (group.options.is_quick) config.duration_s = 4.0;
   std::vector<FreeSpaceVariant> variants = free_space_variants();
   std::erase_if(variants, [&](const FreeSpaceVariant& variant) {
@@ -95,6 +106,8 @@ void add_sources(const Group& group) {
   for (std::size_t i = 0; i < variants.size(); ++i) {
     plays.push_back(
         {{{"name", variants[i].name}, {"changes_way", i >= sources}}, [&, i] {
+           const std::string why = no_variant(group.scenario.device, variants[i]);
+           if (!why.empty()) return impossible(why);
            return json(measure_variant(group.scenario, variants[i], config, group.options.seed));
          }});
   }
@@ -103,7 +116,7 @@ void add_sources(const Group& group) {
 }
 
 void add_dynamics(const Group& group) {
-  DynamicsConfig config;
+  DynamicsConfig config = placed(DynamicsConfig(), group.place);
   if (group.options.is_quick) {
     config.duration_s = {0.8};
     config.strokes = 2;
@@ -112,6 +125,8 @@ void add_dynamics(const Group& group) {
   for (int axis = 0; axis < kStrokeAxes; ++axis) {
     for (const std::uint64_t seed : group.seeds()) {
       plays.push_back({{{"axis", axis}, {"seed", seed}}, [&group, &config, axis, seed] {
+                         const std::string why = no_strokes(group.place, config, axis);
+                         if (!why.empty()) return impossible(why);
                          return json(measure_dynamics(group.scenario, config, axis, seed));
                        }});
     }

@@ -27,7 +27,8 @@ person::Script exploration(const FreeSpaceConfig& config, const config::HandPose
     Eigen::Vector3d next;
     for (int axis = 0; axis < 3; ++axis)
       next[axis] = between(config.lower[axis], config.upper[axis]);
-    azimuth += between(-config.turn, config.turn);
+    azimuth = std::clamp(azimuth + between(-config.turn, config.turn),
+                         start.azimuth - config.turn_range, start.azimuth + config.turn_range);
     const double duration =
         std::max(1.0, (next - p).norm() / between(config.slowest, config.fastest));
     for (int axis = 0; axis < 3; ++axis) {

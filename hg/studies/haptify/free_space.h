@@ -23,7 +23,8 @@ struct FreeSpaceConfig {
   double slowest = 0.12, fastest = 0.24;
   /// Box of the stroke ends, m in B: as large as no limit is felt.
   Eigen::Vector3d lower{-1.2, -1.5, -1.05}, upper{1.2, 1.5, -0.55};
-  double turn = 0.6;  ///< largest change of the hand's azimuth per stroke, rad
+  double turn = 0.6;              ///< largest change of the hand's azimuth per stroke, rad
+  double turn_range = kInfinity;  ///< largest turn from the start to either side, rad
 };
 
 /// Script of random strokes from `start`: other places, speeds and azimuths with every seed.

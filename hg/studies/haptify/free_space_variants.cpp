@@ -1,10 +1,13 @@
 #include "hg/studies/haptify/free_space_variants.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "hg/studies/changes.h"
+#include "hg/studies/place.h"
 
 namespace hg::haptify {
 namespace {
@@ -61,7 +64,8 @@ std::vector<FreeSpaceVariant> free_space_variants() {
            .takes_away = true},
           {.name = "no friction",
            .change = [](Scenario& s) { studies::take_friction(s.device.model); },
-           .takes_away = true},
+           .takes_away = true,
+           .needs = Needs::kElasticJoints},
           {.name = "controller knows the plant",
            .change = [](Scenario& s) { s.device.simulation.factors = {}; },
            .takes_away = true},
@@ -69,14 +73,38 @@ std::vector<FreeSpaceVariant> free_space_variants() {
            .change = [](Scenario& s) { s.script.hand.tremor_rms = 0.0; },
            .takes_away = true},
           {.name = "motor PD instead of modal control",
-           .change = [](Scenario& s) { s.device.control.method = tracking::Method::kMotorPd; }},
+           .change = [](Scenario& s) { s.device.control.method = tracking::Method::kMotorPd; },
+           .needs = Needs::kElasticJoints},
           {.name = "no handle compensation (no IMU)",
-           .change = [](Scenario& s) { s.device.estimation.wrench.has_imu = false; }},
+           .change = [](Scenario& s) { s.device.estimation.wrench.has_imu = false; },
+           .needs = Needs::kInertialUnit},
           {.name = "gantry drives twice as slow",
-           .change = [](Scenario& s) { s.device.simulation.factors.gantry_lag = 2.0; }},
+           .change = [](Scenario& s) { s.device.simulation.factors.gantry_lag = 2.0; },
+           .needs = Needs::kGantry},
           {.name = "gantry vibrates, 0.24 m/s^2, 12 Hz",
            .change = {},
-           .vibration = {.acceleration = 0.24}}};
+           .vibration = {.acceleration = 0.24},
+           .needs = Needs::kGantry}};
+}
+
+std::string no_variant(const config::SimulatedDeviceConfig& device,
+                       const FreeSpaceVariant& variant) {
+  const auto without = [](const char* what) {
+    return fmt::format("{}the device has {}", studies::kNotPossible, what);
+  };
+  switch (variant.needs) {
+    case Needs::kNothing:
+      return "";
+    case Needs::kElasticJoints:
+      return device.control.method == tracking::Method::kDrives
+                 ? without("drives that follow positions")
+                 : "";
+    case Needs::kGantry:
+      return device.model.n_p == 0 ? without("no gantry") : "";
+    case Needs::kInertialUnit:
+      return device.estimation.wrench.has_imu ? "" : without("no inertial unit");
+  }
+  return "";
 }
 
 void shake(const GantryVibration& vibration, double lag, double time_s, VectorP& dq_p) noexcept {
@@ -103,17 +131,29 @@ FreeSpace measure_variant(const config::Scenario& scenario, const FreeSpaceVaria
   return measure_free_space(changed, config, seed, disturbance);
 }
 
-std::vector<FreeSpaceRun> measure_variants(const config::Scenario& scenario,
-                                           const FreeSpaceConfig& config, std::uint64_t seed,
+std::vector<FreeSpaceRun> measure_variants(const config::Scenario& given,
+                                           const FreeSpaceConfig& how, std::uint64_t seed,
                                            const studies::Progress& progress) {
+  const studies::Place place = studies::place_of(given.device);
+  const config::Scenario scenario = studies::at_place(given, place);
+  FreeSpaceConfig config = how;
+  if (place.is_found) {
+    config.lower = place.lower;
+    config.upper = place.upper;
+    config.turn_range = place.turn;
+  }
   const std::vector<FreeSpaceVariant> variants = free_space_variants();
   std::vector<FreeSpaceRun> runs(variants.size());
   studies::do_all(
       variants.size(),
       [&](std::size_t i) {
-        runs[i] = {.name = variants[i].name,
-                   .takes_away = variants[i].takes_away,
-                   .measured = measure_variant(scenario, variants[i], config, seed)};
+        runs[i] = {.name = variants[i].name, .takes_away = variants[i].takes_away};
+        const std::string why = no_variant(scenario.device, variants[i]);
+        if (why.empty()) {
+          runs[i].measured = measure_variant(scenario, variants[i], config, seed);
+        } else {
+          runs[i].measured.failure = why;
+        }
       },
       progress);
   return runs;

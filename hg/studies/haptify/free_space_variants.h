@@ -24,12 +24,25 @@ struct GantryVibration {
 /// results.
 void shake(const GantryVibration& vibration, double lag, double time_s, VectorP& dq_p) noexcept;
 
+/// Part of a device without which a variant changes nothing.
+enum class Needs {
+  kNothing,
+  kElasticJoints,  ///< motors behind springs and friction, controlled by their torques
+  kGantry,
+  kInertialUnit,
+};
+
 struct FreeSpaceVariant {
   std::string name;
   std::function<void(config::Scenario&)> change;
   bool takes_away = false;         ///< an imperfection is removed: the improvement is its share
   GantryVibration vibration = {};  ///< added vibration of the gantry
+  Needs needs = Needs::kNothing;
 };
+
+/// Why the device cannot play the variant, with studies::kNotPossible; empty = it can.
+std::string no_variant(const config::SimulatedDeviceConfig& device,
+                       const FreeSpaceVariant& variant);
 
 /// Variants to play; the first one is the unchanged scenario.
 std::vector<FreeSpaceVariant> free_space_variants();
@@ -44,7 +57,7 @@ struct FreeSpaceRun {
   FreeSpace measured;
 };
 
-/// Measures all variants, on all cores.
+/// Measures all variants, on all cores, in the box of place_of() the device; see place.h.
 std::vector<FreeSpaceRun> measure_variants(const config::Scenario& scenario,
                                            const FreeSpaceConfig& config, std::uint64_t seed,
                                            const studies::Progress& progress);

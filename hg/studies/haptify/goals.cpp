@@ -32,8 +32,9 @@ std::vector<Condition> conditions(
     const Group& group, const std::vector<std::pair<std::string, person::HandPreset>>& hands) {
   std::vector<Condition> all;
   for (const std::uint64_t seed : group.seeds()) {
-    for (const double height : {-1.05, -0.775, -0.55}) {
-      if (group.options.is_quick && height != -0.775) continue;
+    const studies::Place& place = group.place;
+    for (const double height : {place.lower.z(), place.middle.z(), place.upper.z()}) {
+      if (group.options.is_quick && height != place.middle.z()) continue;
       for (const auto& [name, preset] : hands) all.push_back({seed, height, name, preset});
     }
   }
@@ -59,8 +60,8 @@ config::Scenario under(const Condition& condition, config::Scenario scenario) {
   return scenario;
 }
 
-ResponseConfig response_at(double height, double force) {
-  ResponseConfig config;
+ResponseConfig response_at(const Group& group, double height, double force) {
+  ResponseConfig config = placed(ResponseConfig(), group.place);
   config.frequency_Hz = {3, 5, 8, 12, 20, 30};
   config.least_s = 1.0;
   config.force = force;
@@ -68,8 +69,8 @@ ResponseConfig response_at(double height, double force) {
   return config;
 }
 
-SurfaceConfig surface_at(double height) {
-  SurfaceConfig config;
+SurfaceConfig surface_at_height(const Group& group, double height) {
+  SurfaceConfig config = surface_at(group.place);
   config.position.z() = height;
   return config;
 }
@@ -96,8 +97,8 @@ const std::vector<double> kOnce = {0};
 
 void add_transparency(const Group& group, double force) {
   add(group, fmt::format("transparency, {:g} N", force), in_normal_hand(group), kEachAxis,
-      [force](const Condition& at, const config::Scenario& scenario, double axis) {
-        const Response found = measure_response(scenario, response_at(at.height, force),
+      [&group, force](const Condition& at, const config::Scenario& scenario, double axis) {
+        const Response found = measure_response(scenario, response_at(group, at.height, force),
                                                 static_cast<int>(axis), at.seed);
         return json{{"transparency_Hz", transparency_Hz(found)}, {"failure", found.failure}};
       });
@@ -105,9 +106,9 @@ void add_transparency(const Group& group, double force) {
 
 void add_latencies(const Group& group) {
   add(group, "latency", in_normal_hand(group), kEachAxis,
-      [](const Condition& at, const config::Scenario& scenario, double axis) {
-        return json(measure_latency(scenario, response_at(at.height, 10.0), static_cast<int>(axis),
-                                    at.seed));
+      [&group](const Condition& at, const config::Scenario& scenario, double axis) {
+        return json(measure_latency(scenario, response_at(group, at.height, 10.0),
+                                    static_cast<int>(axis), at.seed));
       });
 }
 
@@ -115,7 +116,7 @@ void add_latencies(const Group& group) {
 void add_strokes(const Group& group, const std::string& name) {
   add(group, name, in_all_hands(group), kOnce,
       [&group](const Condition& at, const config::Scenario& scenario, double) {
-        FreeSpaceConfig config;
+        FreeSpaceConfig config = free_space_at(group.place);
         config.duration_s = group.options.is_quick ? 6.0 : 22.0;
         config.lower.z() = config.upper.z() = at.height;
         return json(measure_free_space(scenario, config, at.seed));
@@ -125,8 +126,8 @@ void add_strokes(const Group& group, const std::string& name) {
 void add_light_body(const Group& group, const std::vector<Condition>& all, double mass) {
   constexpr double kDamping = 4.0;  // Ns/m
   add(group, fmt::format("kick, {:g} kg", mass), all, kOnce,
-      [mass](const Condition& at, const config::Scenario& scenario, double) {
-        studies::StabilityConfig config;
+      [&group, mass](const Condition& at, const config::Scenario& scenario, double) {
+        studies::StabilityConfig config = placed(studies::StabilityConfig(), group.place);
         config.position.z() = at.height;
         const auto found = kick(scenario, config, person::hand(at.preset), mass, kDamping);
         return json{{"last_speed", found.last_speed}};
@@ -136,8 +137,8 @@ void add_light_body(const Group& group, const std::vector<Condition>& all, doubl
 void add_wall(const Group& group, double mass) {
   constexpr double kStiffness = 20e3, kWallDamping = 20.0, kDamping = 4.0;  // N/m, Ns/m, Ns/m
   add(group, fmt::format("plane of 20 kN/m, {:g} kg", mass), in_all_hands(group), kOnce,
-      [mass](const Condition& at, const config::Scenario& scenario, double) {
-        SurfaceConfig config = surface_at(at.height);
+      [&group, mass](const Condition& at, const config::Scenario& scenario, double) {
+        SurfaceConfig config = surface_at_height(group, at.height);
         config.knock_hand = at.preset;
         const Knock found = knock(with_body(scenario, {.mass = mass, .damping = kDamping}), config,
                                   kStiffness, kWallDamping);
@@ -148,7 +149,10 @@ void add_wall(const Group& group, double mass) {
 void add_slides(const Group& group) {
   add(group, "frictionless surface", in_all_hands(group), kOnce,
       [&group](const Condition& at, const config::Scenario& scenario, double) {
-        SurfaceConfig config = surface_at(at.height);
+        SurfaceConfig config = surface_at_height(group, at.height);
+        const std::string why =
+            studies::no_room(group.place, Eigen::Vector3d::UnitX(), config.stroke);
+        if (!why.empty()) return impossible(why);
         config.strokes = group.options.is_quick ? 1 : 2;
         return json(measure_slide(scenario, config, at.seed));
       });
@@ -157,7 +161,7 @@ void add_slides(const Group& group) {
 void add_presses(const Group& group) {
   add(group, "stiffness", in_stiff_hand(group), {1000.0, 2000.0, 4000.0},  // N/m
       [&group](const Condition& at, const config::Scenario& scenario, double stiffness) {
-        SurfaceConfig config = surface_at(at.height);
+        SurfaceConfig config = surface_at_height(group, at.height);
         if (group.options.is_quick) config.press_s = 1.5;
         return json(measure_press(scenario, config, stiffness, at.seed));
       });
@@ -167,9 +171,12 @@ void add_presses(const Group& group) {
 
 Benchmark measure_goals(const config::Scenario& scenario, const config::Scenario& light,
                         const HaptifyOptions& options, const Progress& progress) {
-  Benchmark result = {.device = scenario.device.name};
-  const Group group = {scenario, options, progress, result};
-  const Group with_light_body = {light, options, progress, result};
+  const studies::Place place = studies::place_of(scenario.device);
+  const config::Scenario held = studies::at_place(scenario, place);
+  const config::Scenario light_held = studies::at_place(light, place);
+  Benchmark result = {.device = scenario.device.name, .place = studies::to_text(place)};
+  const Group group = {held, options, progress, result, place};
+  const Group with_light_body = {light_held, options, progress, result, place};
   add_transparency(group, 10.0);
   add_transparency(group, 40.0);
   add_latencies(group);

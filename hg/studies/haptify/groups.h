@@ -12,6 +12,8 @@
 #include "hg/studies/free_twin.h"
 #include "hg/studies/haptify/benchmark.h"
 #include "hg/studies/haptify/free_space.h"
+#include "hg/studies/haptify/surface.h"
+#include "hg/studies/place.h"
 
 namespace hg::haptify {
 
@@ -29,6 +31,7 @@ struct Group {
   const HaptifyOptions& options;
   const Progress& progress;
   Benchmark& out;
+  const studies::Place& place;  ///< where the handle is held and moved
 
   /// Seeds of the repetitions.
   std::vector<std::uint64_t> seeds() const;
@@ -47,6 +50,21 @@ std::vector<std::pair<std::string, person::HandPreset>> hands(bool is_quick);
 config::Scenario with_body(config::Scenario scenario, const studies::FreeTwin& body);
 
 nlohmann::json as_json(const studies::FreeTwin& body);
+
+/// The configuration of a measurement that has a position, with the middle of the place.
+template <class Config>
+Config placed(Config config, const studies::Place& place) {
+  config.position = place.middle;
+  return config;
+}
+
+/// Strokes through the box of the place.
+FreeSpaceConfig free_space_at(const studies::Place& place);
+/// Strokes on a surface and presses, about the middle of the place.
+SurfaceConfig surface_at(const studies::Place& place);
+
+/// The result of a run that the device cannot do; `why` begins with studies::kNotPossible.
+inline nlohmann::json impossible(const std::string& why) { return {{"failure", why}}; }
 
 void add_workspace(const Group& group);
 void add_free_space(const Group& group);

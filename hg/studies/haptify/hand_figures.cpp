@@ -5,6 +5,7 @@
 #include "hg/simulator/person/hand.h"
 #include "hg/studies/changes.h"
 #include "hg/studies/haptify/free_space.h"
+#include "hg/studies/haptify/groups.h"
 #include "hg/studies/haptify/response.h"
 #include "hg/studies/haptify/surface.h"
 #include "hg/studies/stability_map.h"
@@ -14,38 +15,44 @@ namespace {
 
 constexpr double kDamping = 4.0;  // of the bodies, Ns/m
 
-double transparency(const config::Scenario& scenario, std::uint64_t seed) {
-  ResponseConfig config;
+double transparency(const config::Scenario& scenario, const studies::Place& place,
+                    std::uint64_t seed) {
+  ResponseConfig config = placed(ResponseConfig(), place);
   config.frequency_Hz = {3, 5, 8, 12, 20, 30};
   const Response response = measure_response(scenario, config, 0, seed);
   return response.failure.empty() ? transparency_Hz(response) : 0.0;
 }
 
-double after_kick(const config::Scenario& scenario, person::HandPreset hand, double mass) {
-  return kick(scenario, studies::StabilityConfig{}, person::hand(hand), mass, kDamping).last_speed;
+double after_kick(const config::Scenario& scenario, const studies::Place& place,
+                  person::HandPreset hand, double mass) {
+  return kick(scenario, placed(studies::StabilityConfig(), place), person::hand(hand), mass,
+              kDamping)
+      .last_speed;
 }
 
-studies::DecayClass wall(config::Scenario scenario, double mass) {
+studies::DecayClass wall(config::Scenario scenario, const studies::Place& place, double mass) {
   constexpr double kStiffness = 20e3, kWallDamping = 20.0;  // N/m, Ns/m
   studies::set_free_twin(scenario, {.mass = mass, .damping = kDamping});
-  return knock(scenario, SurfaceConfig{}, kStiffness, kWallDamping).verdict;
+  return knock(scenario, surface_at(place), kStiffness, kWallDamping).verdict;
 }
 
 }  // namespace
 
-HandFigures measure_hand_figures(const config::Scenario& scenario) {
+HandFigures measure_hand_figures(const config::Scenario& given) {
+  const studies::Place place = studies::place_of(given.device);
+  const config::Scenario scenario = studies::at_place(given, place);
   const std::uint64_t seed = scenario.device.simulation.seed;
-  const FreeSpace walk = measure_free_space(scenario, FreeSpaceConfig{}, seed);
-  const Latency latency = measure_latency(scenario, ResponseConfig{}, 0, seed);
-  return {.transparency_Hz = transparency(scenario, seed),
+  const FreeSpace walk = measure_free_space(scenario, free_space_at(place), seed);
+  const Latency latency = measure_latency(scenario, placed(ResponseConfig(), place), 0, seed);
+  return {.transparency_Hz = transparency(scenario, place, seed),
           .latency_s = latency.failure.empty() ? latency.motion_s : 0.0,
           .extra_force = walk.extra,
           .vibration = walk.vibration_rms,
           .centroid_Hz = walk.centroid_Hz,
           .joint_error = walk.joint_error,
-          .light_normal = after_kick(scenario, person::HandPreset::kNormal, 0.3),
-          .light_stiff = after_kick(scenario, person::HandPreset::kStiff, 0.4),
-          .wall = {wall(scenario, 6.0), wall(scenario, 3.0)}};
+          .light_normal = after_kick(scenario, place, person::HandPreset::kNormal, 0.3),
+          .light_stiff = after_kick(scenario, place, person::HandPreset::kStiff, 0.4),
+          .wall = {wall(scenario, place, 6.0), wall(scenario, place, 3.0)}};
 }
 
 nlohmann::ordered_json to_json(const HandFigures& figures) {

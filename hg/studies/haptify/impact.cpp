@@ -24,9 +24,7 @@ constexpr double kFastEnough = 0.95;  // share of the requested speed that is fa
 config::Scenario prepared(const config::Scenario& scenario, const ImpactConfig& config,
                           double stiffness, double speed, double way_s, double watched_s,
                           std::uint64_t seed) {
-  const double run_up = config.run_up_s * speed;
-  const double behind = config.press / scenario.script.hand.stiffness[kAhead] +
-                        kDeepestImpact * speed * speed / (2.0 * config.braking);
+  const auto [run_up, behind] = way_of_impact(scenario, config, speed);
   person::Script script;
   script.segments.push_back({.start_s = kRest,
                              .duration_s = way_s,
@@ -65,6 +63,13 @@ double braking_of(const DeviceModel& device, std::span<const Instant> braking) {
 
 }  // namespace
 
+ImpactWay way_of_impact(const config::Scenario& scenario, const ImpactConfig& config,
+                        double speed) {
+  return {.run_up = config.run_up_s * speed,
+          .behind = config.press / scenario.script.hand.stiffness[kAhead] +
+                    kDeepestImpact * speed * speed / (2.0 * config.braking)};
+}
+
 double find_way(const config::Scenario& scenario, const ImpactConfig& config, double speed) {
   constexpr int kTries = 9;  // number of bisection steps
   double fast = 0.0, slow = config.longest_way_s;
@@ -96,7 +101,7 @@ Impact measure_impact(const config::Scenario& scenario, const ImpactConfig& conf
   }
   result.speed = all[contact - 1].twist[kAhead];
   if (result.speed < kFastEnough * speed) {
-    result.failure = "the hand did not get as fast";
+    result.failure = kTooSlow;
     return result;
   }
   const double contact_s = all[contact].time_s;

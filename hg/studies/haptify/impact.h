@@ -28,9 +28,19 @@ struct ImpactConfig {
   double still_s = 0.5;      ///< time at the end of the run for which rest must hold, s
 };
 
+/// Distances from the wall, m.
+struct ImpactWay {
+  double run_up = 0.0;  ///< distance at which the handle starts
+  double behind = 0.0;  ///< depth at which the goal of the hand stops
+};
+ImpactWay way_of_impact(const config::Scenario& scenario, const ImpactConfig& config, double speed);
+
 /// Duration of the goal's motion for which the handle meets the wall with `speed`, s, found by
 /// trials without a wall; the fastest tried if that is not enough.
 double find_way(const config::Scenario& scenario, const ImpactConfig& config, double speed);
+
+/// Failure of an impact whose speed was less than 95 % of the wanted one.
+inline constexpr const char* kTooSlow = "the hand did not get as fast";
 
 /// Largest depth of a good impact over v^2 / (2 a).
 inline constexpr double kDeepestImpact = 1.3;

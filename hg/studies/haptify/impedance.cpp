@@ -1,12 +1,12 @@
 #include "hg/studies/haptify/impedance.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "hg/studies/changes.h"
 #include "hg/studies/haptify/play.h"
+#include "hg/studies/place.h"
 
 namespace hg::haptify {
 namespace {
@@ -18,7 +18,9 @@ config::Scenario prepared(const config::Scenario& scenario, const ImpedanceConfi
   config::Scenario pushed = scenario;
   if (what.is_rigid) studies::set_free_twin(pushed, config.rigid);
   config::SimulatedDeviceConfig& device = pushed.device;
-  device.control.method = what.is_modal ? tracking::Method::kModal : tracking::Method::kMotorPd;
+  if (device.control.method != tracking::Method::kDrives) {
+    device.control.method = what.is_modal ? tracking::Method::kModal : tracking::Method::kMotorPd;
+  }
   if (!what.has_friction) studies::take_friction(device.model);
   if (what.is_rigid) device.control.error_max = kInfinity;  // the deflection is what is measured
   if (what.is_blind) {
@@ -77,22 +79,34 @@ ImpedanceRun measure_case(const config::Scenario& scenario, const ImpedanceConfi
   return run;
 }
 
-std::vector<ImpedanceRun> measure_impedance(const config::Scenario& scenario,
-                                            const ImpedanceConfig& config, std::uint64_t seed,
+std::vector<ImpedanceCase> cases_of(const config::SimulatedDeviceConfig& device) {
+  if (device.control.method == tracking::Method::kDrives) {
+    return {{.name = "drives", .is_rigid = false},
+            {.name = "drives"},
+            {.name = "drives, blind", .is_blind = true}};
+  }
+  return {{.name = "modal", .is_rigid = false},
+          {.name = "motor PD", .is_modal = false, .is_rigid = false},
+          {.name = "modal"},
+          {.name = "modal, no friction", .has_friction = false},
+          {.name = "modal, blind", .is_blind = true},
+          {.name = "modal, blind, no friction", .has_friction = false, .is_blind = true},
+          {.name = "motor PD", .is_modal = false},
+          {.name = "motor PD, blind, no friction",
+           .is_modal = false,
+           .has_friction = false,
+           .is_blind = true}};
+}
+
+std::vector<ImpedanceRun> measure_impedance(const config::Scenario& given,
+                                            const ImpedanceConfig& how, std::uint64_t seed,
                                             const studies::Progress& progress) {
-  const std::array<ImpedanceCase, 8> cases = {
-      {{.name = "modal", .is_rigid = false},
-       {.name = "motor PD", .is_modal = false, .is_rigid = false},
-       {.name = "modal"},
-       {.name = "modal, no friction", .has_friction = false},
-       {.name = "modal, blind", .is_blind = true},
-       {.name = "modal, blind, no friction", .has_friction = false, .is_blind = true},
-       {.name = "motor PD", .is_modal = false},
-       {.name = "motor PD, blind, no friction",
-        .is_modal = false,
-        .has_friction = false,
-        .is_blind = true}}};
+  const studies::Place place = studies::place_of(given.device);
+  const config::Scenario scenario = studies::at_place(given, place);
   studies::free_twin_of(scenario);
+  ImpedanceConfig config = how;
+  if (place.is_found) config.response.position = place.middle;
+  const std::vector<ImpedanceCase> cases = cases_of(scenario.device);
   std::vector<ImpedanceRun> runs(3 * cases.size());
   studies::do_all(
       runs.size(),

@@ -27,7 +27,7 @@ struct ImpedanceConfig {
 /// Configuration of the device that answers the push.
 struct ImpedanceCase {
   std::string name;
-  bool is_modal = true;  ///< modal control, otherwise motor PD
+  bool is_modal = true;  ///< modal control, otherwise motor PD; drives that follow positions remain
   bool has_friction = true;
   bool is_blind = false;  ///< the force/torque sensor reads zero: no wrench feedforward
   bool is_rigid = true;   ///< rigid twin, otherwise the scenario's
@@ -48,11 +48,15 @@ struct ImpedanceRun {
   Give give;          ///< rigid twin only
 };
 
+/// The cases of a device: of one whose drives follow positions without modes and friction.
+std::vector<ImpedanceCase> cases_of(const config::SimulatedDeviceConfig& device);
+
 /// Measures one case along `axis` 0..2 of H.
 ImpedanceRun measure_case(const config::Scenario& scenario, const ImpedanceConfig& config,
                           const ImpedanceCase& what, int axis, std::uint64_t seed);
 
-/// Measures all cases and axes, on all cores. Throws SetupError when the twin is not a free body.
+/// Measures all cases and axes, on all cores, at place_of() the device. Throws SetupError when the
+/// twin is not a free body.
 std::vector<ImpedanceRun> measure_impedance(const config::Scenario& scenario,
                                             const ImpedanceConfig& config, std::uint64_t seed,
                                             const studies::Progress& progress);

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
+#include "hg/controller/rendering/catalogue.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/changes.h"
+#include "hg/studies/place.h"
 #include "hg/studies/player.h"
 
 namespace hg::haptify {
@@ -30,6 +33,38 @@ double torque_share(const VectorM& of_joints) {
   return of_joints.size() > 0 ? of_joints.maxCoeff() : 0.0;
 }
 
+// Whether a device whose place was found has come to the end of a range: what is felt there is that
+// limit, not what was to be measured.
+class EndOfRange {
+ public:
+  explicit EndOfRange(const config::Scenario& scenario)
+      : is_looking_(!scenario.device.model.has_closed_form),
+        limits_(scenario.limits),
+        limit_positions_(scenario.device.model) {}
+
+  void look(const CycleRecord& record, const Truth& truth) {
+    if (!is_looking_ || !limit_.empty() || record.felt_limit < 0) return;
+    constexpr double kNear = 0.01;  // of a range
+    limit_positions_.find(truth.q_p, truth.q_m, positions_);
+    const auto felt = static_cast<std::size_t>(record.felt_limit);
+    if (felt >= positions_.size()) return;
+    const Interval& range = limits_[felt].range;
+    const double near = kNear * (range.ub - range.lb);
+    if (!std::isfinite(near)) return;
+    const bool is_inside = positions_[felt] > range.lb + near && positions_[felt] < range.ub - near;
+    if (!is_inside) limit_ = limits_[felt].name;
+  }
+
+  const std::string& limit() const { return limit_; }
+
+ private:
+  bool is_looking_;
+  LimitCatalogue limits_;
+  rendering::LimitPositions limit_positions_;
+  std::vector<double> positions_;
+  std::string limit_;
+};
+
 }  // namespace
 
 config::Scenario with_script(config::Scenario scenario, const person::Script& script) {
@@ -43,6 +78,7 @@ Played play(const config::Scenario& scenario, const Disturbance& disturbance) {
   studies::Player player(scenario);
   analysis::Summary summary = scenario::make_summary(scenario);
   const double grasp_s = scenario.script.script.grasp_s;
+  EndOfRange end(scenario);
   Played played;
   for (bool goes_on = true; goes_on; goes_on = player.end()) {
     player.begin();
@@ -55,6 +91,7 @@ Played play(const config::Scenario& scenario, const Disturbance& disturbance) {
     const CycleRecord& record = sample.record;
     if (record.time_s < grasp_s) continue;
     const Truth& truth = sample.truth;
+    end.look(record, truth);
     played.instants.push_back(
         {.time_s = record.time_s - grasp_s,
          .T_B_H = truth.T_B_H,
@@ -81,6 +118,8 @@ Played play(const config::Scenario& scenario, const Disturbance& disturbance) {
     played.failure = "the device did not run";
   } else if (!summary.limits_held()) {
     played.failure = "a limit was exceeded";
+  } else if (!end.limit().empty()) {
+    played.failure = studies::kNotPossible + ("the way ends at a limit, " + end.limit());
   }
   return played;
 }

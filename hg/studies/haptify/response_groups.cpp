@@ -20,10 +20,10 @@ using Values = std::vector<double>;
 
 constexpr int kAxes = 3;
 
-ResponseConfig config_of(const HaptifyOptions& options, const Values& frequency_Hz) {
-  ResponseConfig config;
+ResponseConfig config_of(const Group& group, const Values& frequency_Hz) {
+  ResponseConfig config = placed(ResponseConfig(), group.place);
   config.frequency_Hz = frequency_Hz;
-  if (!options.is_quick) return config;
+  if (!group.options.is_quick) return config;
   config.frequency_Hz = {1, 5, 20};
   config.periods = 3;
   config.least_s = 0.6;
@@ -31,6 +31,20 @@ ResponseConfig config_of(const HaptifyOptions& options, const Values& frequency_
 }
 
 json complex(const std::complex<double>& value) { return {value.real(), value.imag()}; }
+
+// A pull, at a found place along a way whose middle is that of the place.
+json pull(const Group& group, int axis, double force, std::uint64_t seed) {
+  PullConfig config = placed(PullConfig(), group.place);
+  if (group.place.is_found) {
+    const double mass = studies::free_twin_of(group.scenario).mass;
+    const double way = 0.5 * force / mass * config.to_s * config.to_s;
+    const Eigen::Vector3d direction = group.place.R_B_H.col(axis);
+    const std::string why = studies::no_room(group.place, direction, way);
+    if (!why.empty()) return impossible(why);
+    config.position -= 0.5 * way * direction;
+  }
+  return json(measure_pull(group.scenario, config, axis, force, seed));
+}
 
 json as_json(const Response& response) {
   json answers = json::array();
@@ -69,7 +83,7 @@ json as_json(const ForceResponse& response) {
 }  // namespace
 
 void add_transparency(const Group& group) {
-  const ResponseConfig config = config_of(group.options, ResponseConfig{}.frequency_Hz);
+  const ResponseConfig config = config_of(group, ResponseConfig{}.frequency_Hz);
   std::vector<Play> plays;
   plays.reserve(kAxes);
   for (int axis = 0; axis < kAxes; ++axis) {
@@ -82,7 +96,7 @@ void add_transparency(const Group& group) {
 }
 
 void add_force_response(const Group& group) {
-  ResponseConfig config = config_of(group.options, ResponseConfig{}.frequency_Hz);
+  ResponseConfig config = config_of(group, ResponseConfig{}.frequency_Hz);
   std::erase_if(config.frequency_Hz, [](double frequency) { return frequency < 0.5; });
   std::vector<Play> plays;
   plays.reserve(kAxes);
@@ -96,7 +110,7 @@ void add_force_response(const Group& group) {
 }
 
 void add_latency(const Group& group) {
-  const ResponseConfig config;
+  const ResponseConfig config = placed(ResponseConfig(), group.place);
   std::vector<Play> plays;
   for (const std::uint64_t seed : group.seeds()) {
     for (int axis = 0; axis < kAxes; ++axis) {
@@ -112,14 +126,12 @@ void add_felt_mass(const Group& group) {
   const Values forces = group.options.is_quick ? Values{20, 60} : Values{10, 20, 40, 60};
   std::vector<Play> pulls, pushes;
   for (const double force : forces) {
-    ResponseConfig config = config_of(group.options, {0.5, 1, 2, 3, 5, 8, 12, 20});
+    ResponseConfig config = config_of(group, {0.5, 1, 2, 3, 5, 8, 12, 20});
     config.force = force;
     for (int axis = 0; axis < kAxes; ++axis) {
       for (const std::uint64_t seed : group.seeds()) {
-        pulls.push_back({{{"force", force}, {"axis", axis}, {"seed", seed}}, [=, &group] {
-                           return json(
-                               measure_pull(group.scenario, PullConfig(), axis, force, seed));
-                         }});
+        pulls.push_back({{{"force", force}, {"axis", axis}, {"seed", seed}},
+                         [=, &group] { return pull(group, axis, force, seed); }});
       }
       pushes.push_back(
           {{{"force", force}, {"axis", axis}}, [=, &group] {
@@ -138,7 +150,7 @@ void add_rotation(const Group& group) {
   const bool is_quick = group.options.is_quick;
   const Values inertia = is_quick ? Values{0.005, 0.02} : Values{0.001, 0.002, 0.003, 0.005, 0.007,
                                                                  0.01,  0.015, 0.02,  0.03,  0.05};
-  const TwistConfig config;
+  const TwistConfig config = placed(TwistConfig(), group.place);
   std::vector<Play> plays;
   for (const auto& [hand, preset] : hands(is_quick)) {
     for (const double value : inertia) {
@@ -162,7 +174,7 @@ void add_springs(const Group& group) {
   const bool is_quick = group.options.is_quick;
   const Values stiffness = is_quick ? Values{500} : Values{50, 500, 2000};
   const Values deflection = is_quick ? Values{0.002} : Values{0.002, 0.02};  // m, of the handle
-  SwingConfig config;
+  SwingConfig config = placed(SwingConfig(), group.place);
   if (is_quick) config.watched_s = 3.0;
   std::vector<Play> plays;
   for (const double k : stiffness) {

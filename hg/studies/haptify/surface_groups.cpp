@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hg/controller/rendering/surfaces/surface.h"
+#include "hg/core/error.h"
 #include "hg/studies/changes.h"
 #include "hg/studies/haptify/groups.h"
 #include "hg/studies/haptify/impact.h"
@@ -24,10 +25,17 @@ config::Scenario prompt(config::Scenario scenario) {
   return scenario;
 }
 
+// Why the strokes along x and y of B do not fit at the place.
+std::string no_slide(const studies::Place& place, const SurfaceConfig& config) {
+  const std::string along_x = studies::no_room(place, Eigen::Vector3d::UnitX(), config.stroke);
+  if (!along_x.empty()) return along_x;
+  return studies::no_room(place, Eigen::Vector3d::UnitY(), config.stroke);
+}
+
 }  // namespace
 
 void add_sliding(const Group& group) {
-  SurfaceConfig config;
+  SurfaceConfig config = surface_at(group.place);
   if (group.options.is_quick) config.strokes = 1;
   SurfaceConfig slow = config;
   slow.stroke_s *= 2.0;
@@ -36,7 +44,9 @@ void add_sliding(const Group& group) {
   const auto slide = [&](const char* variant, const config::Scenario& scenario,
                          const SurfaceConfig& strokes) {
     for (const std::uint64_t seed : group.seeds()) {
-      plays.push_back({{{"variant", variant}, {"seed", seed}}, [&scenario, &strokes, seed] {
+      plays.push_back({{{"variant", variant}, {"seed", seed}}, [&, seed] {
+                         const std::string why = no_slide(group.place, strokes);
+                         if (!why.empty()) return impossible(why);
                          return json(measure_slide(scenario, strokes, seed));
                        }});
     }
@@ -55,7 +65,7 @@ void add_sliding(const Group& group) {
 
 void add_stiffness(const Group& group) {
   const Values stiffness = group.options.is_quick ? Values{2000} : Values{1000, 2000, 4000};
-  SurfaceConfig config;
+  SurfaceConfig config = surface_at(group.place);
   if (group.options.is_quick) config.press_s = 1.5;
   std::vector<Play> plays;
   for (const double k : stiffness) {
@@ -69,7 +79,7 @@ void add_stiffness(const Group& group) {
 }
 
 void add_peak(const Group& group) {
-  SurfaceConfig config;
+  SurfaceConfig config = surface_at(group.place);
   if (group.options.is_quick) config.peak_s = 3.0;
   std::vector<Play> plays;
   for (const std::uint64_t seed : group.seeds()) {
@@ -93,7 +103,7 @@ void add_z_width(const Group& group) {
   const studies::FreeTwin shipped = studies::free_twin_of(group.scenario);
   std::vector<std::pair<studies::FreeTwin, bool>> bodies = {{shipped, false}, {kLightBody, false}};
   if (!is_quick) bodies.emplace_back(kLightBody, true);
-  const SurfaceConfig config;
+  const SurfaceConfig config = surface_at(group.place);
   std::vector<Play> plays;
   for (const auto& [body, is_prompt] : bodies) {
     for (const double k : stiffness) {
@@ -140,16 +150,39 @@ std::vector<Thrown> thrown(const config::Scenario& scenario, bool is_quick) {
   return all;
 }
 
+// How a body gets its speed: where the wall stands, and how long the goal moves.
+struct RunUp {
+  ImpactConfig config;
+  double way_s = 0.0;
+  std::string why_not;  // why it is not possible; empty = it is
+};
+
+RunUp find_run_up(const studies::Place& place, const config::Scenario& scenario, double speed) {
+  RunUp result;
+  ImpactConfig& config = result.config;
+  if (place.is_found) {
+    const ImpactWay way = way_of_impact(scenario, config, speed);
+    result.why_not = studies::no_room(place, Eigen::Vector3d::UnitY(), way.run_up + way.behind);
+    config.position = place.middle + 0.5 * (way.run_up - way.behind) * Eigen::Vector3d::UnitY();
+  }
+  if (!result.why_not.empty()) return result;
+  try {
+    result.way_s = find_way(scenario, config, speed);
+  } catch (const SetupError& error) {
+    result.why_not = std::string(studies::kNotPossible) + error.what();
+  }
+  return result;
+}
+
 }  // namespace
 
 void add_impacts(const Group& group) {
   const bool is_quick = group.options.is_quick;
   const Values stiffness = is_quick ? Values{2e3, 5e4} : Values{2e3, 1e4, 2e4, 5e4};
-  const ImpactConfig config;
   const std::vector<Thrown> bodies = thrown(group.scenario, is_quick);
-  Values ways(bodies.size());
+  std::vector<RunUp> run_ups(bodies.size());
   group.do_all("run-up", bodies.size(), [&](std::size_t i) {
-    ways[i] = find_way(bodies[i].scenario, config, bodies[i].speed);
+    run_ups[i] = find_run_up(group.place, bodies[i].scenario, bodies[i].speed);
   });
   std::vector<Play> plays;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -160,16 +193,21 @@ void add_impacts(const Group& group) {
                         {"wanted_speed", body.speed},
                         {"stiffness", k}},
                        [&, i, k] {
+                         const RunUp& run_up = run_ups[i];
+                         if (!run_up.why_not.empty()) return impossible(run_up.why_not);
                          const Impact found =
-                             measure_impact(bodies[i].scenario, config, k, bodies[i].speed, ways[i],
-                                            group.options.seed);
+                             measure_impact(bodies[i].scenario, run_up.config, k, bodies[i].speed,
+                                            run_up.way_s, group.options.seed);
+                         const bool is_slow = found.failure == kTooSlow && group.place.is_found;
+                         if (is_slow) return impossible(studies::kNotPossible + found.failure);
                          json run = found;
                          run["allowed"] = found.allowed();
                          return run;
                        }});
     }
   }
-  group.add("impacts", {{"deepest", kDeepestImpact}, {"rest_speed", config.rest_speed}}, plays);
+  group.add("impacts", {{"deepest", kDeepestImpact}, {"rest_speed", ImpactConfig().rest_speed}},
+            plays);
 }
 
 }  // namespace hg::haptify

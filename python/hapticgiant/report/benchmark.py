@@ -14,6 +14,6 @@ def figures(results):
                 responses.add_rotation, responses.add_springs):
         add(it)
     return {**{key: value for key, value in results.items() if key != "measurements"},
-            "real_and_simulated": REAL_AND_SIMULATED, "failures": it.failures, "table": it.table,
+            "real_and_simulated": REAL_AND_SIMULATED, "failures": it.failures, "impossible": it.impossible, "table": it.table,
             "beyond": it.beyond, "tables": it.tables, "curves": it.curves,
             "workspace": it.workspace}

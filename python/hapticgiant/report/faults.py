@@ -84,7 +84,16 @@ def text(results):
     failed = [case_text(number, case) for number, case in enumerate(results["cases"])
               if not case["passed"]]
     return "".join([tables.as_text(table_of(results), left=(0, 7, 12)), "\n", LEGEND, "\n",
-                    *failed, verdict(results), "\n"])
+                    *failed, *(f"{line}\n" for line in impossible(results)), verdict(results),
+                    "\n"])
+
+
+def impossible(results):
+    """A sentence per reason why the device cannot have faults; they are not played."""
+    reasons = {}
+    for it in results.get("impossible", []):
+        reasons.setdefault(it["why"], []).append(it["fault"])
+    return [f"not possible, {why}: {', '.join(names)}" for why, names in reasons.items()]
 
 
 def list_of_kinds(results):
@@ -103,7 +112,9 @@ def page(results):
             "Written by `hapticgiant faults --markdown`; "
             "[safety.md](../concepts/safety.md#injected-faults) explains the columns.\n"
             f"Seed {results['seed']}; {', '.join(results['scenarios'])}: {verdict(results)}.\n\n"
-            f"{tables.markdown(table_of(results))}\n## The faults\n\nFor `faults` of a scenario "
+            f"{tables.markdown(table_of(results))}\n"
+            + "".join(f"{line}.\n\n" for line in impossible(results)) +
+            "## The faults\n\nFor `faults` of a scenario "
             "and the drawn sizes of this campaign; a torque of the force sensor is in Nm and gets "
             f"a\ntenth.\n\n{list_of_kinds(results)}")
 

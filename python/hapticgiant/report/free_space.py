@@ -26,7 +26,7 @@ def add_workspace(it):
     first = runs[0]
     it.main("workspace_volume", column(runs, "volume"),
             why=why_workspace(first, mean(column(runs, "volume"))))
-    it.extra("workspace_nominal", column(runs, "nominal_volume"))
+    it.extra("workspace_nominal", column(runs, "nominal_volume") if first["has_box"] else [])
     rows = [[axis, f"{low:.2f} .. {high:.2f} m", f"{high - low:.2f}"]
             for axis, low, high in zip(AXES, first["lower"], first["upper"])]
     rows.append(["mean edge", "cube of the same volume", f"{math.cbrt(first['volume']):.2f}"])

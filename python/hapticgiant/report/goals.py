@@ -1,6 +1,6 @@
 """Figures of `hapticgiant haptify --goals` from the results of all runs; see measured.py."""
 
-from .measured import REAL_AND_SIMULATED, column, groups, has_worked, table
+from .measured import REAL_AND_SIMULATED, column, groups, has_failed, has_worked, not_possible, table
 from .measures import GOALS, figure, goal_text, mean, within
 
 CONDITION = ("seed", "height", "hand")
@@ -66,10 +66,11 @@ def figures(results):
     measurements = results["measurements"]
     failures = [f"{name}, seed {run['seed']}, {run['height']:g} m, {run['hand']} hand: "
                 f"{run['failure']}"
-                for name, it in measurements.items() for run in it["runs"] if not has_worked(run)]
+                for name, it in measurements.items() for run in it["runs"] if has_failed(run)]
+    impossible = [line for name, it in measurements.items() for line in not_possible(name, it["runs"])]
     measured = [figure(GOALS, key, values(measurements[name]["runs"]),
                        **measurements[name]["settings"]["body"])
                 for key, (name, values) in SOURCES.items()]
     return {**{key: value for key, value in results.items() if key != "measurements"},
-            "real_and_simulated": REAL_AND_SIMULATED, "failures": failures, "table": [],
+            "real_and_simulated": REAL_AND_SIMULATED, "failures": failures, "impossible": impossible, "table": [],
             "beyond": measured, "tables": [goals_table(measured)], "curves": [], "workspace": []}

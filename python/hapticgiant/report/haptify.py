@@ -45,7 +45,12 @@ class Results:
         return self.facts[name]
 
     def command_line(self):
-        return f"`{self['command']}`, version {self['version']}, simulated {self['device']}."
+        line = f"`{self['command']}`, version {self['version']}, simulated {self['device']}."
+        return f"{line} {self.place()}".rstrip()
+
+    def place(self):
+        """Where another device than the reference device was measured; otherwise empty."""
+        return self.facts.get("place", "")
 
     def main_rows(self):
         head = ["", "unit", "ours, simulated", "HapticGiant, paper, real", "Touch, real",
@@ -84,7 +89,8 @@ def rows_of(table):
 
 
 def failures(results):
-    return "".join(f"**Failed: {failure}**\n\n" for failure in results["failures"])
+    return ("".join(f"**Failed: {failure}**\n\n" for failure in results["failures"])
+            + "".join(f"Not possible: {what}.\n\n" for what in results["impossible"]))
 
 
 def markdown(results):
@@ -154,7 +160,9 @@ def html(results):
 
 
 def failures_text(results):
-    return "".join(f"\nFAILED  {failure}\n" for failure in results["failures"])
+    return ("".join(f"\nFAILED  {failure}\n" for failure in results["failures"])
+            + "".join(f"\nNot possible: {what}\n" for what in results["impossible"])
+            + (f"\n{results.place()}\n" if results.place() else ""))
 
 
 def goals_text(results):
@@ -193,13 +201,13 @@ def write(folder, docs=None):
     if name == "goals":
         text = goals_markdown(results)
         save(folder / "report.txt", goals_text(results))
-        save(folder / "goals.md", "# Goals\n\n" + text)
+        save(folder / "goals.md", f"# Goals: {results['device']}\n\n{text}")
         save(folder / "goals_runs.csv", repetitions_csv(results))
     else:
         text = markdown(results)
         save(folder / "report.txt", haptify_text(results))
         save(folder / "report.html", html(results))
-        save(folder / "report.md", "# Haptify\n\n" + text)
+        save(folder / "report.md", f"# Haptify: {results['device']}\n\n{text}")
         save(folder / "table.tex", latex(results))
         save(folder / "haptify.csv", figures_csv(results))
         save(folder / "repetitions.csv", repetitions_csv(results))

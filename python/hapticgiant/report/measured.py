@@ -52,12 +52,31 @@ def name_of_run(measurement, run):
     return RUNS[measurement].format(**run, **more)
 
 
+NOT_POSSIBLE = "not possible: "  # begins the reason why a device cannot do a measurement
+
+
 def has_worked(run):
     return not run.get("failure")
 
 
+def has_failed(run):
+    return not has_worked(run) and not run["failure"].startswith(NOT_POSSIBLE)
+
+
 def verdict(run):
-    return run["verdict"] if has_worked(run) else "failed"
+    if has_worked(run):
+        return run["verdict"]
+    return "failed" if has_failed(run) else "not possible"
+
+
+def not_possible(name, runs):
+    """A sentence per reason why the device cannot do some of the runs of a measurement."""
+    reasons = {}
+    for run in runs:
+        if not has_worked(run) and not has_failed(run):
+            reasons.setdefault(run["failure"].removeprefix(NOT_POSSIBLE), []).append(run)
+    return [f"{name}, {len(found)} of {len(runs)} runs: {reason}"
+            for reason, found in reasons.items()]
 
 
 def column(runs, key):
@@ -86,7 +105,7 @@ class Measured:
     def __init__(self, measurements):
         self.measurements = measurements
         self.table, self.beyond, self.tables, self.curves = [], [], [], []
-        self.workspace, self.failures = [], []
+        self.workspace, self.failures, self.impossible = [], [], []
 
     def settings(self, name):
         return self.measurements[name]["settings"]
@@ -97,7 +116,8 @@ class Measured:
     def working(self, name):
         """The runs that have worked; the others are listed as failures."""
         self.failures += [f"{name_of_run(name, run)}: {run['failure']}" for run in self.runs(name)
-                          if not has_worked(run)]
+                          if has_failed(run)]
+        self.impossible += not_possible(name, self.runs(name))
         return [run for run in self.runs(name) if has_worked(run)]
 
     def main(self, key, values, **fields):

@@ -3,7 +3,7 @@
 import cmath
 import math
 
-from .measured import AXES, column, curve, groups, has_worked, table, verdict
+from .measured import AXES, column, curve, groups, has_failed, has_worked, table, verdict
 from .measures import mean
 
 
@@ -80,7 +80,7 @@ def add_latency(it):
 
 def transparent_to(pushes):
     """Along the worst axis; what ended a run that was pushed too hard is a result."""
-    ends = [run["end"] for run in pushes if run["end"]]
+    ends = [end for run in pushes if (end := run.get("end") or run.get("failure"))]
     return ends[0] if ends else f"{min(column(pushes, 'transparency_Hz')):.1f}"
 
 
@@ -91,11 +91,12 @@ def add_felt_mass(it):
     rows = []
     for (force,), pulls in groups(it.runs("felt mass"), "force").items():
         has_all = all(map(has_worked, pulls))
-        worst = [max(column(axes, "mass")) for axes in groups(pulls, "seed").values()] * has_all
-        felt = [mean(column(axis, "mass")) for axis in groups(pulls, "axis").values()]
-        cells = [f"{value:.2f}" for value in (*felt, mean(worst) / mass)]
-        rows.append([f"{force:g}", *(cells if has_all else ["failed"] * 4),
-                     transparent_to(pushes[force,])])
+        worst, cells = [], ["failed" if any(map(has_failed, pulls)) else "not possible"] * 4
+        if has_all:
+            worst = [max(column(axes, "mass")) for axes in groups(pulls, "seed").values()]
+            felt = [mean(column(axis, "mass")) for axis in groups(pulls, "axis").values()]
+            cells = [f"{value:.2f}" for value in (*felt, mean(worst) / mass)]
+        rows.append([f"{force:g}", *cells, transparent_to(pushes[force,])])
         it.extra("felt_mass", worst, f"felt_mass_{force:g}", force=force, mass=mass)
     it.tables.append(table(
         "felt_mass", "Felt mass",

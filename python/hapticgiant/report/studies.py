@@ -9,6 +9,7 @@ import numpy as np
 
 from ..figures import SETTINGS
 from . import pages, pictures, tables
+from .measured import NOT_POSSIBLE
 
 
 def middle(values):
@@ -159,7 +160,8 @@ FREE_SPACE = (("force_N", 2), ("own_share_N", 2), ("extra_N", 2), ("vibration_m_
 
 
 def failure_of(run):
-    return f"failed: {run['failure']}" if "failure" in run else ""
+    why = run.get("failure", "")
+    return f"failed: {why}" if why and not why.startswith(NOT_POSSIBLE) else why
 
 
 def free_space_row(variant):

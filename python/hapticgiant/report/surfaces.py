@@ -88,10 +88,17 @@ def rest_of(run):
     return math.inf if math.isnan(run["rest_s"]) else run["rest_s"]
 
 
+def over(value, other):
+    return value / other if other > 0.0 else math.nan
+
+
 def ratios(run):
     """What has a bound, by the figure whose goal it is."""
-    return {"impact_depth": run["depth"] / run["allowed"], "impact_rebound": run["rebound"],
-            "impact_rest": rest_of(run), "impact_energy": run["energy_out"] / run["energy_in"]}
+    known = {"impact_rebound": run["rebound"], "impact_rest": rest_of(run),
+             "impact_energy": over(run["energy_out"], run["energy_in"])}
+    if run["bound"] > 0.0:
+        known = {"impact_depth": run["depth"] / run["allowed"], **known}
+    return known
 
 
 def missed(run):
@@ -108,10 +115,13 @@ def impact_row(run):
         return f"{1e3 * run[key]:.1f}"
 
     it = ratios(run)
+    motors = depths = ["-", "-"]  # the torques of the motors are not known
+    if "impact_depth" in it:
+        motors = [f"{run['braking']:.1f}", mm("bound")]
+        depths = [f"{run['depth'] / run['bound']:.2f}", f"{it['impact_depth']:.2f}"]
     rest = f"{it['impact_rest']:.2f}" if math.isfinite(it["impact_rest"]) else "never"
     return [run["hand"], f"{run['mass']:g}", f"{run['stiffness']:g}", f"{run['speed']:.2f}",
-            mm("depth"), f"{run['braking']:.1f}", mm("bound"), mm("onset"), mm("spring"),
-            f"{run['depth'] / run['bound']:.2f}", f"{it['impact_depth']:.2f}",
+            mm("depth"), *motors, mm("onset"), mm("spring"), *depths,
             f"{run['rebound']:.2f}", rest, f"{100.0 * it['impact_energy']:.0f}",
             f"{run['peak_force']:.0f}", f"{run['felt_force']:.0f}", ", ".join(missed(run))]
 
@@ -137,7 +147,7 @@ def add_impacts(it):
          "wall N", "person N", "missed"], [impact_row(run) for run in runs]))
     has_all = len(runs) == len(it.runs("impacts"))
     for key in ("impact_depth", "impact_rebound", "impact_rest", "impact_energy"):
-        worst = max([0.0] + [ratios(run)[key] for run in runs])
-        it.extra(key, [worst] if has_all else [], **settings)
+        values = [ratios(run)[key] for run in runs if key in ratios(run)]
+        it.extra(key, [max([0.0] + values)] if has_all and values else [], **settings)
     it.extra("impact_misses", [float(sum(bool(missed(run)) for run in runs))] if has_all else [],
              count=len(it.runs("impacts")))

@@ -1,0 +1,58 @@
+#include "hg/studies/moved_scenario.h"
+
+#include <fmt/format.h>
+
+#include "hg/commissioning/checks/way.h"
+#include "hg/core/error.h"
+#include "hg/scenario/start_posture.h"
+#include "hg/studies/changes.h"
+#include "hg/studies/haptify/free_space.h"
+#include "hg/studies/place.h"
+
+namespace hg::studies {
+namespace {
+
+constexpr double kDuration = 15.0;  // s, of strokes of a free body
+
+bool is_free_body(const rendering::TwinModel& twin) {
+  return twin.chain.joints().size() == 1 &&
+         twin.chain.joints().front().type == model::JointType::kFloating;
+}
+
+person::Script strokes(const config::Scenario& scenario, const Place& place) {
+  haptify::FreeSpaceConfig config;
+  config.duration_s = kDuration;
+  config.lower = place.lower;
+  config.upper = place.upper;
+  config.turn_range = place.turn;
+  const Pose start = scenario::handle_start(scenario.twin.model);
+  return haptify::exploration(config, config::hand_of(start), 1);
+}
+
+}  // namespace
+
+config::Scenario moved_scenario(scenario::ScenarioOptions options) {
+  options.scenario = "walk";
+  config::Scenario scenario = scenario::load(options);
+  person::Script script;
+  if (is_free_body(scenario.twin.model)) {
+    const Place place = place_of(scenario.device);
+    scenario = at_place(scenario, place);
+    script = strokes(scenario, place);
+  } else {
+    script = checks::script_through(scenario.twin.model, scenario.script.hand);
+    if (script.segments.empty()) {
+      throw SetupError(fmt::format(
+          "twin {}: no joint has limits through which a hand can lead it within a minute; give a "
+          "scenario with a script instead",
+          scenario.twin.name));
+    }
+  }
+  play_script(scenario, script);
+  scenario.script.script.start[person::kGripChannel] = 1.0;
+  scenario.events.clear();
+  scenario.title = fmt::format("{} on {}", scenario.twin.name, scenario.device.name);
+  return scenario;
+}
+
+}  // namespace hg::studies
