@@ -35,5 +35,16 @@ TEST(Twin, DampingAndFrictionAreThoseOfTheUrdfUnlessTheFileHasItsOwn) {
   EXPECT_EQ(none.friction, 0.0);
 }
 
+TEST(Twin, AProfileIsReadWithItsRepeatAndItsFriction) {
+  const rendering::TwinDof dof =
+      gate("", R"(, profile: {repeat_rad: 0.4, points: [{at_rad: 0, torque_Nm: 0},
+{at_rad: 0.1, torque_Nm: 2, friction_Nm: 0.5}, {at_rad: 0.3, torque_Nm: -2}]})")
+          .model.dofs[0];
+  EXPECT_NEAR(dof.profile.torque(0.1), 2.0, 1e-12);
+  EXPECT_NEAR(dof.profile.torque(0.7), -2.0, 1e-12);
+  EXPECT_NEAR(dof.profile.friction(0.5), 0.5, 1e-12);
+  EXPECT_TRUE(gate("", "").model.dofs[0].profile.empty());
+}
+
 }  // namespace
 }  // namespace hg::config

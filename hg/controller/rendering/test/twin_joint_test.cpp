@@ -93,6 +93,73 @@ TEST(TwinJoint, ALatchBringsTheJointToRestAtALockInMidRange) {
   EXPECT_EQ(door.result.limits[6].cause, LimitCause::kLock);
 }
 
+// A hinge with a tooth every 0.1 rad, the first one at 0.02 rad.
+TwinModel door_with_ratchet(Way free) {
+  TwinModel twin = door();
+  twin.dofs[0].limits = {-1.75, 1.75, 2.0, 20.0};
+  twin.locks = {{.name = "pawl", .dof = 0, .position = 0.02, .teeth = 0.1, .free = free}};
+  twin.locks[0].engaged_while = {{.dof = 1, .range = {-kInfinity, 0.5}}};
+  return twin;
+}
+
+TEST(TwinJoint, ARatchetIsFreeOneWayAndHoldsAtTheLastToothTheOtherWay) {
+  for (const Way free : {Way::kUpper, Way::kLower}) {
+    const double side = free == Way::kUpper ? 1.0 : -1.0;
+    Playing door(door_with_ratchet(free));
+    double most = 0.0;  // reaction on the free way, Nm
+    for (int k = 0; k < 1300; ++k) {
+      door.run(kDt, 0, 1.0 * side);
+      most = std::max(most, std::abs(door.limit(0).reaction));
+    }
+    EXPECT_EQ(most, 0.0);
+    const double turned = door.q(0);
+    ASSERT_GT(side * turned, 0.15);  // past some teeth
+    const double teeth = (turned - 0.02) / 0.1;
+    const double tooth = 0.02 + 0.1 * (side > 0.0 ? std::floor(teeth) : std::ceil(teeth));
+
+    double furthest = 0.0;  // behind the tooth, rad
+    for (int k = 0; k < 3000; ++k) {
+      door.run(kDt, 0, -15.0 * side);
+      furthest = std::max(furthest, side * (tooth - door.q(0)));
+    }
+    EXPECT_LT(furthest, 1e-6);
+    EXPECT_NEAR(door.q(0), tooth, 1e-4);
+    EXPECT_EQ(door.limit(0).cause, LimitCause::kLatch);
+    EXPECT_NEAR(door.limit(0).reaction, 15.0 * side, 0.1);
+    door.changes = 0;
+    door.run(0.5, 0, -15.0 * side);
+    EXPECT_EQ(door.changes, 0);
+  }
+}
+
+TEST(TwinJoint, ARatchetHoldsWithTheLawAndTheBoundsOfThePaper) {
+  TwinModel twin = door_with_ratchet(Way::kUpper);
+  twin.q_start[0] = 0.35;
+  RenderingOptions options = without_synchronisation();
+  options.law = Law::kPaper;
+  options.bounds = Bounds::kPaper;
+  Playing door(twin, options);
+  door.run(2.0, 0, -5.0);
+  EXPECT_NEAR(door.q(0), 0.32, 2e-3);
+}
+
+TEST(TwinJoint, ARatchetLetsGoWhileItsPawlIsLifted) {
+  TwinModel twin = door_with_ratchet(Way::kUpper);
+  twin.q_start[0] = 0.35;
+  Playing door(twin);
+  door.run(1.0, 0, -5.0);
+  EXPECT_NEAR(door.q(0), 0.32, 1e-4);
+  door.state.twin.q_a[1] = 0.6;
+  door.run(0.5, 0, -5.0);
+  EXPECT_LT(door.q(0), 0.2);
+  door.state.twin.q_a[1] = 0.0;
+  door.state.twin.dq_a[1] = 0.0;
+  const double engaged = door.q(0);
+  door.run(1.0, 0, -5.0);
+  EXPECT_GT(door.q(0), engaged - 0.1 - 0.2);  // caught after braking from its speed
+  EXPECT_EQ(door.limit(0).cause, LimitCause::kLatch);
+}
+
 TEST(TwinJoint, BrakingStopsATwinWithASpring) {
   Playing door(door_with_closer());
   door.state.twin.q_a[0] = 1.0;
