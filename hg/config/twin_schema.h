@@ -44,6 +44,7 @@ struct TwinDraft {
   bool gravity = false;
   bool floating_root = false;
   ChainPart part;
+  std::vector<model::Coupling> couplings;
   Eigen::Vector3d force_ref = Eigen::Vector3d::Zero(), torque_ref = Eigen::Vector3d::Zero();
   double mass_scale = 1.0;
   std::vector<std::string> joint_names, frame_names;
@@ -81,6 +82,42 @@ void describe_chain(V& v, TwinDraft& d) {
   v.flag(facts_of(Parameter::kGravity).key, d.gravity, facts_of(Parameter::kGravity).help);
   v.flag("floating_root", d.floating_root,
          "whether the root link of the URDF moves freely, by a joint 'root'");
+}
+
+/// Joints of the URDF, for the couplings between them.
+struct UrdfJointNames {
+  std::vector<std::string> names;
+  std::vector<bool> are_slides;
+};
+
+template <class V>
+void describe(V& v, model::Coupling& coupling, const UrdfJointNames& joints) {
+  int joint = -1, leader = -1;
+  v.name("joint", joint, joints.names, "a joint of the URDF", "the joint that follows",
+         Need::kRequired);
+  v.name("follows", leader, joints.names, "a joint of the URDF", "the joint that leads",
+         Need::kRequired);
+  JointUnit unit = JointUnit::kEither;
+  if (joint >= 0) unit = joints.are_slides[joint] ? JointUnit::kLength : JointUnit::kAngle;
+  v.number("ratio", coupling.ratio, kRatio,
+           "its speed over that of the joint that leads, in their own units, not 0");
+  v.joint_number({"offset_rad", "offset_m"}, unit, coupling.offset, kAnyNumber,
+                 "its position where the joint that leads is at 0");
+  v.rule(coupling.ratio != 0.0, "ratio", "must not be 0");
+  v.rule(joint < 0 || joint != leader, "follows", "a joint cannot follow itself");
+  if (joint >= 0) coupling.joint = joints.names[joint];
+  if (leader >= 0) coupling.leader = joints.names[leader];
+}
+
+template <class V>
+void describe_couplings(V& v, std::vector<model::Coupling>& couplings,
+                        const UrdfJointNames& joints) {
+  v.list(
+      "couplings", [&](auto& child) { describe(child, couplings.emplace_back(), joints); },
+      "joints that move with others, as by 'mimic' of the URDF: gears, racks; they may be beside "
+      "the "
+      "chain. Such a joint is none of 'joints': limits and forces are given at the joint that "
+      "leads");
 }
 
 /// Range of a parameter in the terms of the descriptions.

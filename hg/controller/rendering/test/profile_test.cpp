@@ -100,6 +100,31 @@ TEST(Profile, ASlowHandFeelsTheTable) {
   }
 }
 
+// A stiff hand that moves slowly: what it gives, less what the curve says, at most.
+double difference_on_a_slow_path(Playing& door, const Profile& profile, double from, double to,
+                                 double friction) {
+  constexpr double kSpeed = 0.05, kStiffness = 1000.0, kDamping = 100.0;  // rad/s, Nm/rad, Nms/rad
+  const double side = to > from ? 1.0 : -1.0;
+  double hand = from, worst = 0.0;
+  while (side * (to - hand) > 0.0) {
+    hand += side * kSpeed * kDt;
+    const double torque = kStiffness * (hand - door.q(0)) + kDamping * (side * kSpeed - door.dq(0));
+    door.step(door.wrench_for(0, torque));
+    if (std::abs(hand - from) < 0.05) continue;  // it has yet to begin to move
+    worst = std::max(worst, std::abs(torque - profile.torque(door.q(0)) - side * friction));
+  }
+  return worst;
+}
+
+TEST(Profile, AHandOnASlowPathFeelsTheTableAndTheFrictionAgainstItsWay) {
+  for (const double friction : {0.0, 0.5}) {
+    const Profile profile = detents(friction);
+    Playing door(door_with(profile, 0.0));
+    EXPECT_LT(difference_on_a_slow_path(door, profile, 0.0, 0.4, friction), 0.05);
+    EXPECT_LT(difference_on_a_slow_path(door, profile, 0.4, 0.0, friction), 0.05);
+  }
+}
+
 TEST(Profile, ASwingInADetentKeepsItsEnergyForAMinute) {
   const Profile profile = detents();
   Playing door(door_with(profile, 0.1));

@@ -160,6 +160,30 @@ TEST(TwinJoint, ARatchetLetsGoWhileItsPawlIsLifted) {
   EXPECT_EQ(door.limit(0).cause, LimitCause::kLatch);
 }
 
+TEST(TwinJoint, AGearIsFeltByItsInertiaAndKeepsItsRatio) {
+  const model::ChainModel chain = model::ChainModel::from_urdf_file(
+      "models/examples/flywheel.urdf", {.gravity = false,
+                                        .couplings = {{"wheel_joint", "lever_joint", -3.0, 0.5}},
+                                        .tip_link = "handle"});
+  constexpr double kInertia = 0.06 + 3.0 * 0.25 * 0.25 + 3.0 * 3.0 * 0.02;  // J1 + n^2 J2
+  for (const Law law : {Law::kGauss, Law::kPaper}) {
+    RenderingOptions options = without_synchronisation();
+    options.law = law;
+    Playing gear(unlimited_twin(chain, "handle"), options);
+    gear.run(0.5, 0, 2.0);
+    EXPECT_NEAR(gear.dq(0), 2.0 * 0.5 / kInertia, 1e-9);
+    gear.run(10.0, 0, 0.0);
+    EXPECT_NEAR(gear.dq(0), 2.0 * 0.5 / kInertia, 1e-9);
+    const model::ChainData& now = gear.rendering.twin_chain();
+    const auto angle = [&](const char* link) {
+      const Eigen::Matrix3d& R = now.pose(chain.frame(link)).R;
+      return std::atan2(R(1, 0), R(0, 0));
+    };
+    const double expected = 0.5 - 3.0 * angle("lever");
+    EXPECT_NEAR(std::remainder(angle("wheel") - expected, 2.0 * M_PI), 0.0, 1e-9);
+  }
+}
+
 TEST(TwinJoint, BrakingStopsATwinWithASpring) {
   Playing door(door_with_closer());
   door.state.twin.q_a[0] = 1.0;
