@@ -160,6 +160,23 @@ TEST(TwinJoint, ARatchetLetsGoWhileItsPawlIsLifted) {
   EXPECT_EQ(door.limit(0).cause, LimitCause::kLatch);
 }
 
+TEST(TwinJoint, WithinItsPlayTheHandMovesItsOwnSideOnly) {
+  const model::ChainModel chain =
+      model::ChainModel::from_urdf_file("models/examples/loose_gate.urdf", {.gravity = false});
+  TwinModel twin = unlimited_twin(chain, "handle");
+  twin.dofs[1].limits = {-0.03, 0.03, kInfinity, 50.0};
+  Playing gate(twin);
+  constexpr double kBar = 0.05 + 2.0 * 0.4 * 0.4, kPanel = 0.25 + 8.0 * 0.25 * 0.25;
+  Vector6 turn = Vector6::Zero();
+  turn[5] = 1.0;  // Nm about the hinge
+  for (int k = 0; k < 50; ++k) gate.step(turn);
+  EXPECT_NEAR(gate.dq(1), 0.05 / kBar, 1e-3);
+  EXPECT_NEAR(gate.q(0), 0.0, 1e-6);
+  for (int k = 0; k < 950; ++k) gate.step(turn);
+  EXPECT_NEAR(gate.q(1), 0.03, 1e-4);
+  EXPECT_NEAR(gate.result.ddq_a[0], 1.0 / (kBar + kPanel), 1e-3);
+}
+
 TEST(TwinJoint, AGearIsFeltByItsInertiaAndKeepsItsRatio) {
   const model::ChainModel chain = model::ChainModel::from_urdf_file(
       "models/examples/flywheel.urdf", {.gravity = false,
