@@ -43,6 +43,13 @@ std::optional<Tool> read_tool(LoaderFile& file, const DeviceDraft& draft) {
   }
 }
 
+void refuse_couplings(Loader& loader, const model::ChainModel& chain) {
+  for (const model::Coupling& coupling : chain.couplings()) {
+    loader.rule(false, "urdf", "a device has no joints that mimic others",
+                "'" + coupling.joint + "'");
+  }
+}
+
 void take_joints(const model::ChainModel& chain, DeviceDraft& draft) {
   draft.frame_names = chain.frame_names();
   for (const model::Joint& joint : chain.joints()) {
@@ -257,6 +264,7 @@ DeviceConfig load_device(const std::filesystem::path& path, SourceReader& reader
     tool = read_tool(file, draft);
     device.chain_options = chain_options(draft, tool);
     chain = make_chain(file, draft, urdf, device.chain_options);
+    if (chain) refuse_couplings(loader, *chain);
     if (chain) take_joints(*chain, draft);
     describe_structure(loader, draft);
     if (chain && tool && draft.flange >= 0) device.model.handle = chain->frame(tool->body.handle);

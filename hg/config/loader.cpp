@@ -461,10 +461,13 @@ std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path&
   file.knows_names = false;
   if (urdf.empty()) return {};
   try {
-    UrdfText result = {urdf, file.sources.read(urdf), {}};
-    for (const model::UrdfLink& link :
-         model::read_urdf_text(result.text, urdf.generic_string()).links) {
-      result.link_names.push_back(link.name);
+    UrdfText result = {urdf, file.sources.read(urdf), {}, {}, {}};
+    const model::Urdf parts = model::read_urdf_text(result.text, urdf.generic_string());
+    for (const model::UrdfLink& link : parts.links) result.link_names.push_back(link.name);
+    for (const model::UrdfJoint& joint : parts.joints) {
+      if (joint.type == model::UrdfJointType::kFixed) continue;
+      result.joint_names.push_back(joint.name);
+      result.are_slides.push_back(joint.type == model::UrdfJointType::kPrismatic);
     }
     file.knows_names = true;
     return result;

@@ -161,6 +161,8 @@ struct UrdfText {
   std::filesystem::path file;
   std::string text;
   std::vector<std::string> link_names;
+  std::vector<std::string> joint_names;  ///< of joints that move
+  std::vector<bool> are_slides;          ///< by joint: its positions are in m
 };
 
 /// Reads a URDF. Empty, with a fault reported, if it cannot be read; an empty path was reported

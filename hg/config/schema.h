@@ -56,6 +56,7 @@ inline constexpr Range kTolerance = {.lb = 1e-6, .ub = 1e6};  ///< share or mult
 inline constexpr Range kFromOne = {.lb = 1.0, .ub = 1e6};     ///< multiple of a rating
 inline constexpr Range kShare = {.lb = 0.0, .ub = 1e3};       ///< share of a full scale or a load
 inline constexpr Range kShareOrNone = {.lb = 1e-6, .ub = 1e3, .allows_infinity = true};
+inline constexpr Range kRatio = {.lb = -1e3, .ub = 1e3};  ///< of the speeds of two joints
 inline constexpr Range kCount = {.lb = 0.0, .ub = 1e6};
 /// Position of a joint in rad or m, under a key that is its name.
 inline constexpr Range kJointPosition = {.lb = -1e3, .ub = 1e3};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -26,6 +27,12 @@ std::optional<model::ChainModel> make_free_body(LoaderFile& file, TwinDraft& dra
   }
 }
 
+// false: what is wrong has been reported
+bool is_whole(const model::Coupling& coupling) {
+  return !coupling.joint.empty() && !coupling.leader.empty() && coupling.ratio != 0.0 &&
+         coupling.joint != coupling.leader;
+}
+
 std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, TwinDraft& draft) {
   // the URDF of a free body is only drawn, but a recording needs it, too
   const bool has_urdf = !draft.is_free_body || !draft.urdf.empty();
@@ -34,6 +41,9 @@ std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, Tw
   std::vector<std::string> links;
   if (urdf && !draft.is_free_body) links = urdf->link_names;
   describe(loader, draft.part, links);
+  UrdfJointNames joints;
+  if (urdf && !draft.is_free_body) joints = {urdf->joint_names, urdf->are_slides};
+  describe_couplings(loader, draft.couplings, joints);
   model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
                                  .gravity = draft.gravity,
                                  .floating_root = draft.floating_root};
@@ -41,6 +51,7 @@ std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, Tw
   if (!urdf || !draft.part.is_usable) return no_chain(file);
   options.root_link = name_of(links, draft.part.root_link);
   options.tip_link = name_of(links, draft.part.tip_link);
+  std::ranges::copy_if(draft.couplings, std::back_inserter(options.couplings), is_whole);
   return read_chain(file, *urdf, options);
 }
 

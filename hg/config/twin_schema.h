@@ -44,6 +44,7 @@ struct TwinDraft {
   bool gravity = false;
   bool floating_root = false;
   ChainPart part;
+  std::vector<model::Coupling> couplings;
   Eigen::Vector3d force_ref = Eigen::Vector3d::Zero(), torque_ref = Eigen::Vector3d::Zero();
   double mass_scale = 1.0;
   std::vector<std::string> joint_names, frame_names;
@@ -81,6 +82,42 @@ void describe_chain(V& v, TwinDraft& d) {
   v.flag(facts_of(Parameter::kGravity).key, d.gravity, facts_of(Parameter::kGravity).help);
   v.flag("floating_root", d.floating_root,
          "whether the root link of the URDF moves freely, by a joint 'root'");
+}
+
+/// Joints of the URDF, for the couplings between them.
+struct UrdfJointNames {
+  std::vector<std::string> names;
+  std::vector<bool> are_slides;
+};
+
+template <class V>
+void describe(V& v, model::Coupling& coupling, const UrdfJointNames& joints) {
+  int joint = -1, leader = -1;
+  v.name("joint", joint, joints.names, "a joint of the URDF", "the joint that follows",
+         Need::kRequired);
+  v.name("follows", leader, joints.names, "a joint of the URDF", "the joint that leads",
+         Need::kRequired);
+  JointUnit unit = JointUnit::kEither;
+  if (joint >= 0) unit = joints.are_slides[joint] ? JointUnit::kLength : JointUnit::kAngle;
+  v.number("ratio", coupling.ratio, kRatio,
+           "its speed over that of the joint that leads, in their own units, not 0");
+  v.joint_number({"offset_rad", "offset_m"}, unit, coupling.offset, kAnyNumber,
+                 "its position where the joint that leads is at 0");
+  v.rule(coupling.ratio != 0.0, "ratio", "must not be 0");
+  v.rule(joint < 0 || joint != leader, "follows", "a joint cannot follow itself");
+  if (joint >= 0) coupling.joint = joints.names[joint];
+  if (leader >= 0) coupling.leader = joints.names[leader];
+}
+
+template <class V>
+void describe_couplings(V& v, std::vector<model::Coupling>& couplings,
+                        const UrdfJointNames& joints) {
+  v.list(
+      "couplings", [&](auto& child) { describe(child, couplings.emplace_back(), joints); },
+      "joints that move with others, as by 'mimic' of the URDF: gears, racks; they may be beside "
+      "the "
+      "chain. Such a joint is none of 'joints': limits and forces are given at the joint that "
+      "leads");
 }
 
 /// Range of a parameter in the terms of the descriptions.
@@ -123,6 +160,7 @@ void describe_mass_scale(V& v, double& mass_scale) {
 // ---- conditional limits and locks ----
 
 inline constexpr JointKey kLockPosition = {"position_rad", "position_m"};
+inline constexpr auto kWay = choices_of<rendering::Way>();
 
 /// Ranges of joints that must all hold.
 template <class V>
@@ -158,10 +196,18 @@ template <class V>
 void describe(V& v, rendering::Lock& lock, const TwinDraft& d) {
   const TwinJoint& joint =
       describe_head(v, lock, d, "shown while it holds", "the joint that is held");
-  v.joint_number(kLockPosition, joint.unit, lock.position, kAnyNumber, "where it is held");
+  v.joint_number(kLockPosition, joint.unit, lock.position, kAnyNumber,
+                 "where it is held; of a ratchet where one tooth is");
   v.rule(joint.dof.limits.q_min <= lock.position && lock.position <= joint.dof.limits.q_max,
          kLockPosition.of(joint.unit), "must be within the limits of the joint",
          model::to_text(lock.position));
+  v.joint_number(
+      {"teeth_rad", "teeth_m"}, joint.unit, lock.teeth, kPositive,
+      "makes it a ratchet with teeth at this distance: the joint moves one way, and back "
+      "to the last tooth that it has passed");
+  v.choice("free", lock.free, kWay, "the way in which a ratchet lets the joint move");
+  v.rule(lock.teeth > 0.0 || !v.is_given("free"), "free",
+         "is about a ratchet, which needs 'teeth'");
   describe_conditions(v, "engaged_while", d, lock.engaged_while,
                       "the lock holds while each of these joints is in its range; without it, "
                       "always");
@@ -214,6 +260,32 @@ void describe(V& v, rendering::Closer& closer, const limits::JointLimits& limits
   v.rule(std::isfinite(limits.q_min), "", "a closer needs a joint with a lower limit");
 }
 
+/// Torque and friction over position.
+template <class V>
+void describe(V& v, rendering::Profile& profile, JointUnit unit) {
+  std::vector<rendering::ProfilePoint> points;
+  double repeat = kInfinity;
+  v.joint_number({"repeat_rad", "repeat_m"}, unit, repeat, kPositiveOrNone,
+                 "the points begin again after this distance; without it the torque beyond them is "
+                 "that of the nearest one");
+  v.list(
+      "points",
+      [&](auto& child) {
+        rendering::ProfilePoint& point = points.emplace_back();
+        child.joint_number({"at_rad", "at_m"}, unit, point.q, kAnyNumber, "position",
+                           Need::kRequired);
+        child.joint_number({"torque_Nm", "force_N"}, unit, point.torque, kAnyNumber,
+                           "pull towards smaller positions there");
+        child.joint_number({"friction_Nm", "friction_N"}, unit, point.friction, kNotNegative,
+                           "Coulomb friction there, besides that of the joint");
+      },
+      "2 .. 100, by position; between them smooth, and never beyond the two neighbours",
+      Need::kRequired);
+  const std::string fault = rendering::profile_fault(points, repeat);
+  v.rule(fault.empty(), "points", fault);
+  if (fault.empty()) profile = rendering::Profile(points, repeat);
+}
+
 /// Damping and friction of a floating joint.
 template <class V>
 void describe_forces(V& v, FloatingPart& part) {
@@ -251,6 +323,10 @@ void describe(V& v, TwinJoint& joint) {
     v.group(
         "closer", [&](auto& child) { describe(child, dof.closer, dof.limits, joint.unit); },
         "pulls the joint towards its lower limit, and lets it close slowly");
+    v.group(
+        "profile", [&](auto& child) { describe(child, dof.profile, joint.unit); },
+        "torque and friction over the position of the joint, besides the others: detents, gas "
+        "springs, latches");
     v.joint_number(kStart, joint.unit, joint.start, kAnyNumber,
                    "position at the start; without it the allowed one nearest to 0");
     v.rule(std::isnan(joint.start) ||

@@ -133,7 +133,50 @@ struct ChainData::Impl {
         results(parts.frames.size()),
         data(parts.model),
         scratch(parts.model),
-        zero(Eigen::VectorXd::Zero(parts.model.nv)) {}
+        zero(Eigen::VectorXd::Zero(parts.model.nv)),
+        all_q(parts.model.nq),
+        all_dq(parts.model.nv),
+        all_ddq(parts.model.nv),
+        own_M(parts.nv, parts.nv),
+        own_c(parts.nv),
+        own_g(parts.nv) {}
+
+  bool is_coupled() const noexcept { return !parts.couplings.empty(); }
+  // whether the passes above do not know such a chain
+  bool needs_library() const noexcept { return parts.has_floating || parts.has_branch; }
+
+  // Values of the rigid-body model from those of the chain; `all` gives room.
+  VectorIn expanded(const VectorIn& own, const std::vector<ChainParts::Source>& from,
+                    Eigen::VectorXd& all) const noexcept {
+    if (!is_coupled()) return own;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      all[static_cast<Eigen::Index>(i)] = from[i].ratio * own[from[i].index] + from[i].offset;
+    }
+    return all;
+  }
+
+  // Torques of the chain from those of the rigid-body model: power is the same.
+  template <typename Own>
+  void reduce(const Eigen::VectorXd& all, Own& own) const noexcept {
+    own.setZero();
+    for (std::size_t i = 0; i < parts.v_from.size(); ++i) {
+      const ChainParts::Source& from = parts.v_from[i];
+      own[from.index] += from.ratio * all[static_cast<Eigen::Index>(i)];
+    }
+  }
+
+  void reduce_dynamics() noexcept {
+    reduce(data.nle, own_c);
+    reduce(data.g, own_g);
+    own_M.setZero();
+    for (Eigen::Index i = 0; i < data.M.rows(); ++i) {
+      const ChainParts::Source& row = parts.v_from[i];
+      for (Eigen::Index k = 0; k < data.M.cols(); ++k) {
+        const ChainParts::Source& column = parts.v_from[k];
+        own_M(row.index, column.index) += row.ratio * column.ratio * data.M(i, k);
+      }
+    }
+  }
 
   Passes passes() noexcept { return {parts, data}; }
 
@@ -157,7 +200,11 @@ struct ChainData::Impl {
   std::vector<Results> results;  // by frame
   pinocchio::Data data;          // results of update()
   pinocchio::Data scratch;       // workspace of inverse_dynamics()
-  Eigen::VectorXd zero;          // (nv)
+  Eigen::VectorXd zero;          // (nv of the rigid-body model)
+  // with couplings only: values of the rigid-body model, and results of the chain
+  Eigen::VectorXd all_q, all_dq, all_ddq;
+  Eigen::MatrixXd own_M;
+  Eigen::VectorXd own_c, own_g;
 };
 
 ChainData::ChainData(ChainModel model) : impl_(std::make_unique<Impl>(std::move(model))) {}
@@ -172,17 +219,20 @@ ChainData::~ChainData() = default;
 
 const ChainModel& ChainData::model() const noexcept { return impl_->model; }
 
-void ChainData::update_poses(const VectorIn& q) noexcept {
-  assert(q.size() == model().nq());
+void ChainData::update_poses(const VectorIn& own_q) noexcept {
+  assert(own_q.size() == model().nq());
   ++impl_->updates;
-  if (!impl_->parts.has_floating) return impl_->passes().poses(q);
+  const VectorIn q = impl_->expanded(own_q, impl_->parts.q_from, impl_->all_q);
+  if (!impl_->needs_library()) return impl_->passes().poses(q);
   pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q);
 }
 
-void ChainData::update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept {
-  assert(q.size() == model().nq() && dq.size() == model().nv());
+void ChainData::update_kinematics(const VectorIn& own_q, const VectorIn& own_dq) noexcept {
+  assert(own_q.size() == model().nq() && own_dq.size() == model().nv());
   ++impl_->updates;
-  if (!impl_->parts.has_floating) return impl_->passes().kinematics(q, dq);
+  const VectorIn q = impl_->expanded(own_q, impl_->parts.q_from, impl_->all_q);
+  const VectorIn dq = impl_->expanded(own_dq, impl_->parts.v_from, impl_->all_dq);
+  if (!impl_->needs_library()) return impl_->passes().kinematics(q, dq);
   const VectorIn ddq(impl_->zero);
   pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q, dq, ddq);
   pinocchio::computeJointJacobians(impl_->parts.model, impl_->data);
@@ -192,15 +242,17 @@ void ChainData::update(const VectorIn& q, const VectorIn& dq) noexcept {
   update(q, dq, impl_->model.default_loads());
 }
 
-void ChainData::update(const VectorIn& q, const VectorIn& dq, const Loads& loads) noexcept {
-  assert(q.size() == model().nq() && dq.size() == model().nv());
+void ChainData::update(const VectorIn& own_q, const VectorIn& own_dq, const Loads& loads) noexcept {
+  assert(own_q.size() == model().nq() && own_dq.size() == model().nv());
   ++impl_->updates;
+  const VectorIn q = impl_->expanded(own_q, impl_->parts.q_from, impl_->all_q);
+  const VectorIn dq = impl_->expanded(own_dq, impl_->parts.v_from, impl_->all_dq);
   const pinocchio::Model& model = impl_->parts.model;
   pinocchio::Data& data = impl_->data;
 
   // poses, Jacobians, M; velocities, c, and accelerations at ddq = 0 in a frame that falls with
   // gravity
-  if (impl_->parts.has_floating) {
+  if (impl_->needs_library()) {
     pinocchio::crba(model, data, q, pinocchio::Convention::WORLD);
     pinocchio::nonLinearEffects(model, data, q, dq);
   } else {
@@ -229,6 +281,7 @@ void ChainData::update(const VectorIn& q, const VectorIn& dq, const Loads& loads
   data.nle *= loads.mass;
   data.M *= loads.mass;
   data.g *= loads.mass * loads.gravity;
+  if (impl_->is_coupled()) impl_->reduce_dynamics();
 }
 
 const Pose& ChainData::pose(int frame) const noexcept {
@@ -259,16 +312,31 @@ const Jacobian& ChainData::jacobian(int frame) const noexcept {
   const ChainParts::Frame& f = impl_->frame(frame);
   const Eigen::Vector3d p_B_frame = impl_->data.oMi[f.joint].act(f.T_joint_frame.translation());
 
+  const auto column = [&](Eigen::Index i) {
+    // columns of data.J are twists at the origin of B
+    const Eigen::Vector3d v = impl_->data.J.col(i).head<3>();
+    const Eigen::Vector3d omega = impl_->data.J.col(i).tail<3>();
+    Vector6 twist;
+    twist << v + omega.cross(p_B_frame), omega;
+    return twist;
+  };
+  if (impl_->is_coupled()) {
+    J.setZero(6, impl_->parts.nv);
+    for (const pinocchio::JointIndex joint : impl_->parts.model.supports[f.joint]) {
+      const int first = impl_->parts.model.idx_vs[joint];
+      for (int i = first; i < first + impl_->parts.model.nvs[joint]; ++i) {
+        const ChainParts::Source& from = impl_->parts.v_from[i];
+        J.col(from.index) += from.ratio * column(i);
+      }
+    }
+    return J;
+  }
+
   // joints beyond the frame do not move it
   const int columns = impl_->parts.model.idx_vs[f.joint] + impl_->parts.model.nvs[f.joint];
   const int n = impl_->parts.model.nv;
   J.resize(6, n);
-  for (int i = 0; i < columns; ++i) {
-    // columns of data.J are twists at the origin of B
-    const Eigen::Vector3d v = impl_->data.J.col(i).head<3>();
-    const Eigen::Vector3d omega = impl_->data.J.col(i).tail<3>();
-    J.col(i) << v + omega.cross(p_B_frame), omega;
-  }
+  for (int i = 0; i < columns; ++i) J.col(i) = column(i);
   J.rightCols(n - columns).setZero();
   return J;
 }
@@ -289,9 +357,15 @@ const Vector6& ChainData::bias_acceleration(int frame) const noexcept {
   return results.bias;
 }
 
-const Eigen::MatrixXd& ChainData::M() const noexcept { return impl_->data.M; }
-const Eigen::VectorXd& ChainData::c() const noexcept { return impl_->data.nle; }
-const Eigen::VectorXd& ChainData::gravity() const noexcept { return impl_->data.g; }
+const Eigen::MatrixXd& ChainData::M() const noexcept {
+  return impl_->is_coupled() ? impl_->own_M : impl_->data.M;
+}
+const Eigen::VectorXd& ChainData::c() const noexcept {
+  return impl_->is_coupled() ? impl_->own_c : impl_->data.nle;
+}
+const Eigen::VectorXd& ChainData::gravity() const noexcept {
+  return impl_->is_coupled() ? impl_->own_g : impl_->data.g;
+}
 
 double ChainData::potential_energy() const noexcept {
   const pinocchio::Model& model = impl_->parts.model;
@@ -303,10 +377,18 @@ double ChainData::potential_energy() const noexcept {
   return energy;
 }
 
-VectorA ChainData::inverse_dynamics(const VectorIn& q, const VectorIn& dq,
-                                    const VectorIn& ddq) noexcept {
-  assert(q.size() == model().nq() && dq.size() == model().nv() && ddq.size() == model().nv());
-  return pinocchio::rnea(impl_->parts.model, impl_->scratch, q, dq, ddq);
+VectorA ChainData::inverse_dynamics(const VectorIn& own_q, const VectorIn& own_dq,
+                                    const VectorIn& own_ddq) noexcept {
+  assert(own_q.size() == model().nq() && own_dq.size() == model().nv() &&
+         own_ddq.size() == model().nv());
+  const VectorIn q = impl_->expanded(own_q, impl_->parts.q_from, impl_->all_q);
+  const VectorIn dq = impl_->expanded(own_dq, impl_->parts.v_from, impl_->all_dq);
+  const VectorIn ddq = impl_->expanded(own_ddq, impl_->parts.v_from, impl_->all_ddq);
+  const Eigen::VectorXd& all = pinocchio::rnea(impl_->parts.model, impl_->scratch, q, dq, ddq);
+  if (!impl_->is_coupled()) return all;
+  VectorA torque(impl_->parts.nv);
+  impl_->reduce(all, torque);
+  return torque;
 }
 
 }  // namespace hg::model

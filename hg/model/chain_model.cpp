@@ -122,14 +122,12 @@ class Builder {
 
     merge_fixed(chain, joint, root, placement);
     refuse_massless(joint, link(root), options_.floating_root ? "root" : "");
-    std::size_t visited = merged_.size();
+    add_branches(chain, joint);
     while (const UrdfJoint* next = moving_joint()) {
-      joint = add(chain, joint, *next);
-      merge_fixed(chain, joint, next->child, pinocchio::SE3::Identity());
-      refuse_massless(joint, link(next->child), next->name);
-      visited += merged_.size();
+      joint = add_body(chain, joint, *next);
+      add_branches(chain, joint);
     }
-    if (visited != urdf_.links.size()) fail_for_loop();
+    if (chain.frames.size() != urdf_.links.size()) fail_for_loop();
     if (chain.joints.empty()) throw SetupError(urdf_.source + ": robot has no moving joint");
     return chain;
   }
@@ -197,12 +195,35 @@ class Builder {
     }
   }
 
+  pinocchio::JointIndex add_body(ChainParts& chain, pinocchio::JointIndex parent,
+                                 const UrdfJoint& j) {
+    const pinocchio::JointIndex joint = add(chain, parent, j);
+    merge_fixed(chain, joint, j.child, pinocchio::SE3::Identity());
+    refuse_massless(joint, link(j.child), j.name);
+    return joint;
+  }
+
+  // The bodies beside the chain that move with it, before those that the chain goes on with: the
+  // library numbers joints depth first. Keeps the links of the current body.
+  void add_branches(ChainParts& chain, pinocchio::JointIndex joint) {
+    const std::vector<Merged> body = merged_;
+    for (const Merged& at : body) {
+      for (const UrdfJoint& j : urdf_.joints) {
+        if (j.parent != at.link || !j.is_branch) continue;
+        T_joint_next_ = at.T_joint_link * to_placement(j.T_parent_joint);
+        add_branches(chain, add_body(chain, joint, j));
+        chain.has_branch = true;
+      }
+    }
+    merged_ = body;
+  }
+
   // The joint that carries the rest of the chain; nullptr at the tip.
   const UrdfJoint* moving_joint() {
     const UrdfJoint* found = nullptr;
     for (const Merged& at : merged_) {
       for (const UrdfJoint& j : urdf_.joints) {
-        if (j.parent != at.link || j.type == UrdfJointType::kFixed) continue;
+        if (j.parent != at.link || j.type == UrdfJointType::kFixed || j.is_branch) continue;
         if (found != nullptr) {
           fail(j.line, "link " + link(at.link).name + ": branches into the joints " + found->name +
                            " and " + j.name +
@@ -218,8 +239,10 @@ class Builder {
 
   pinocchio::JointIndex add(ChainParts& chain, pinocchio::JointIndex parent,
                             const UrdfJoint& j) const {
-    if (j.mimic_line > 0)
-      fail(j.mimic_line, "joint " + j.name + ": mimic joints are not supported");
+    const bool is_scalar = j.type != UrdfJointType::kPlanar && j.type != UrdfJointType::kFloating;
+    if (j.mimic && !is_scalar) {
+      fail(j.line, "joint " + j.name + ": only joints with one coordinate can follow another one");
+    }
     if (j.type != UrdfJointType::kPlanar) return add(chain, parent, j, T_joint_next_, "");
     pinocchio::SE3 placement = T_joint_next_;
     for (const UrdfJoint& part : planar_parts(j)) {
@@ -265,7 +288,103 @@ class Builder {
   pinocchio::SE3 T_joint_next_ = pinocchio::SE3::Identity();
 };
 
-ChainParts build(const Urdf& urdf, const ChainOptions& options) {
+// Takes the coordinates of joints that follow others out of a chain.
+class Coupler {
+ public:
+  Coupler(const Urdf& urdf, ChainParts& chain) : urdf_(urdf), chain_(chain) {}
+
+  void couple() {
+    std::vector<const UrdfMimic*> mimics;
+    for (const Joint& joint : chain_.joints) mimics.push_back(mimic_of(joint));
+    if (std::ranges::all_of(mimics, [](const UrdfMimic* mimic) { return mimic == nullptr; }))
+      return;
+    const std::vector<Joint> all = std::exchange(chain_.joints, {});
+    chain_.joint_names.clear();
+    chain_.nq = chain_.nv = 0;
+    chain_.q_from.resize(chain_.model.nq);
+    chain_.v_from.resize(chain_.model.nv);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (mimics[i] == nullptr) keep(all[i]);
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (mimics[i] != nullptr) follow(all[i], *mimics[i]);
+    }
+  }
+
+ private:
+  const UrdfMimic* mimic_of(const Joint& joint) const {
+    const auto found = std::ranges::find(urdf_.joints, joint.name, &UrdfJoint::name);
+    return found != urdf_.joints.end() && found->mimic ? &*found->mimic : nullptr;
+  }
+
+  void keep(Joint joint) {
+    for (int k = 0; k < joint.nq; ++k) chain_.q_from[joint.q_index + k] = {chain_.nq + k};
+    for (int k = 0; k < joint.nv; ++k) chain_.v_from[joint.v_index + k] = {chain_.nv + k};
+    joint.q_index = std::exchange(chain_.nq, chain_.nq + joint.nq);
+    joint.v_index = std::exchange(chain_.nv, chain_.nv + joint.nv);
+    chain_.joint_names.push_back(joint.name);
+    chain_.joints.push_back(std::move(joint));
+  }
+
+  [[noreturn]] void fail(const UrdfMimic& mimic, const std::string& joint,
+                         const std::string& what) const {
+    const std::string line = mimic.line > 0 ? ":" + std::to_string(mimic.line) : "";
+    throw SetupError(urdf_.source + line + ": joint " + joint + ": " + what);
+  }
+
+  std::string nearest_text(const std::string& name) const {
+    const std::string nearest = nearest_name(name, chain_.joint_names);
+    return nearest.empty() ? "" : ", nearest is '" + nearest + "'";
+  }
+
+  // The leader's share of what the joint has: limits, damping, friction.
+  void follow(const Joint& joint, const UrdfMimic& mimic) {
+    const auto leader = std::ranges::find(chain_.joints, mimic.joint, &Joint::name);
+    if (leader == chain_.joints.end()) {
+      fail(mimic, joint.name,
+           "must follow a joint that moves on its own between root and tip, got '" + mimic.joint +
+               "'" + nearest_text(mimic.joint));
+    }
+    if (leader->nv != 1) {
+      fail(mimic, joint.name, "cannot follow the floating joint " + leader->name);
+    }
+    const double ratio = mimic.multiplier;
+    if (ratio == 0.0) fail(mimic, joint.name, "multiplier must not be 0");
+    const double a = (joint.position.lb - mimic.offset) / ratio;
+    const double b = (joint.position.ub - mimic.offset) / ratio;
+    leader->position = intersect(leader->position, {std::min(a, b), std::max(a, b)});
+    if (!(leader->position.lb < leader->position.ub)) {
+      fail(mimic, joint.name, "its limits leave no range to joint " + leader->name);
+    }
+    leader->velocity_max = std::min(leader->velocity_max, joint.velocity_max / std::abs(ratio));
+    leader->damping += ratio * ratio * joint.damping;
+    leader->friction += std::abs(ratio) * joint.friction;
+    chain_.q_from[joint.q_index] = {leader->q_index, ratio, mimic.offset};
+    chain_.v_from[joint.v_index] = {leader->v_index, ratio, 0.0};
+    chain_.couplings.push_back({joint.name, leader->name, ratio, mimic.offset});
+  }
+
+  const Urdf& urdf_;
+  ChainParts& chain_;
+};
+
+void add_couplings(const std::vector<Coupling>& couplings, Urdf& urdf) {
+  for (const Coupling& coupling : couplings) {
+    std::vector<std::string> names;
+    for (const UrdfJoint& joint : urdf.joints) names.push_back(joint.name);
+    const int index = find(coupling.joint, names, urdf.source, "coupled joint");
+    urdf.joints[index].mimic = {coupling.leader, coupling.ratio, coupling.offset};
+  }
+}
+
+void finish(const ChainOptions& options, ChainParts& chain) {
+  chain.nq = chain.model.nq;
+  chain.nv = chain.model.nv;
+  if (!options.gravity) chain.model.gravity.setZero();
+}
+
+ChainParts build(Urdf urdf, const ChainOptions& options) {
+  add_couplings(options.couplings, urdf);
   Urdf part = serial_part(urdf, options.root_link, options.tip_link);
   if (options.tool) attach(*options.tool, part);
   for (const PassiveJoint& joint : options.passive)
@@ -275,7 +394,8 @@ ChainParts build(const Urdf& urdf, const ChainOptions& options) {
     throw SetupError(urdf.source + ": a chain has at most " + std::to_string(kMaxTwin) +
                      " degrees of freedom, got " + std::to_string(chain.model.nv));
   }
-  if (!options.gravity) chain.model.gravity.setZero();
+  finish(options, chain);
+  Coupler(part, chain).couple();
   return chain;
 }
 
@@ -287,7 +407,7 @@ ChainParts build(const FreeBody& body, const ChainOptions& options) {
   const pinocchio::JointIndex root = chain.add_floating_root(options.T_B_root);
   chain.model.appendBodyToJoint(root, to_inertia(inertial), pinocchio::SE3::Identity());
   chain.add_frame("handle", root, pinocchio::SE3::Identity());
-  if (!options.gravity) chain.model.gravity.setZero();
+  finish(options, chain);
   return chain;
 }
 
@@ -325,9 +445,10 @@ ChainModel ChainModel::free_body(const FreeBody& body, const ChainOptions& optio
 }
 
 const std::string& ChainModel::name() const noexcept { return parts_->name; }
-int ChainModel::nq() const noexcept { return parts_->model.nq; }
-int ChainModel::nv() const noexcept { return parts_->model.nv; }
+int ChainModel::nq() const noexcept { return parts_->nq; }
+int ChainModel::nv() const noexcept { return parts_->nv; }
 const std::vector<Joint>& ChainModel::joints() const noexcept { return parts_->joints; }
+const std::vector<Coupling>& ChainModel::couplings() const noexcept { return parts_->couplings; }
 const std::vector<std::string>& ChainModel::frame_names() const noexcept {
   return parts_->frame_names;
 }

@@ -1,9 +1,11 @@
 /// The constant part of a serial kinematic chain: joints, frames, masses; of devices and twins.
 ///
 /// Joints are revolute, continuous, prismatic or floating; fixed joints merge their links, planar
-/// ones become three scalar joints. A continuous joint has one unwrapped coordinate. A floating
-/// joint has seven coordinates (x y z qx qy qz qw: pose of the child in its parent) and six
-/// velocities (twist of the child, resolved in the child). SI units.
+/// ones become three scalar joints. A joint that is coupled to another one (<mimic>, a gear) moves
+/// with it and has no coordinate of its own: M, c, Jacobians and limits are those of the joint that
+/// leads. Coupled joints may be in branches. A continuous joint has one unwrapped coordinate. A
+/// floating joint has seven coordinates (x y z qx qy qz qw: pose of the child in its parent) and
+/// six velocities (twist of the child, resolved in the child). SI units.
 ///
 /// Set-up throws SetupError, `file:line: item: rule, got value`. A model never changes after
 /// set-up: one model serves any number of chain_data.h, in any thread.
@@ -44,6 +46,14 @@ struct Joint {
   bool is_slide() const noexcept { return type == JointType::kPrismatic; }
 };
 
+/// A joint that follows another joint of the chain: q = ratio q_leader + offset.
+struct Coupling {
+  std::string joint;
+  std::string leader;   ///< A joint with a coordinate of its own
+  double ratio = 1.0;   ///< Not 0; rad, m, rad/m or m/rad
+  double offset = 0.0;  ///< rad or m
+};
+
 /// Tool fixed to a link of a chain, for example a handle with its force/torque sensor.
 struct Tool {
   std::string link;                                   ///< Link of the URDF that carries the tool
@@ -68,6 +78,7 @@ struct ChainOptions {
   std::optional<Tool> tool;
   std::vector<PassiveJoint> passive;  ///< Passive joints added to the URDF: a compliant structure
   bool floating_root = false;         ///< true: the root link floats in B by a joint "root"
+  std::vector<Coupling> couplings;    ///< In addition to those of the URDF, or in their place
   /// First and last link of the serial part of a branched URDF, see serial_part() in urdf_parts.h;
   /// empty = all of it.
   std::string root_link, tip_link;
@@ -105,10 +116,11 @@ class ChainModel {
   /// implied.
   static ChainModel free_body(const FreeBody& body, const ChainOptions& options = {});
 
-  const std::string& name() const noexcept;  ///< Name of the robot, from the URDF
-  int nq() const noexcept;                   ///< Number of coordinates
-  int nv() const noexcept;                   ///< Number of velocities, <= nq
-  const std::vector<Joint>& joints() const noexcept;
+  const std::string& name() const noexcept;                 ///< Name of the robot, from the URDF
+  int nq() const noexcept;                                  ///< Number of coordinates
+  int nv() const noexcept;                                  ///< Number of velocities, <= nq
+  const std::vector<Joint>& joints() const noexcept;        ///< Joints with coordinates
+  const std::vector<Coupling>& couplings() const noexcept;  ///< Joints without coordinates
   const std::vector<std::string>& frame_names() const noexcept;  ///< Frames: links of the part
 
   /// Index of a frame for the accessors of ChainData; throws SetupError with the nearest valid

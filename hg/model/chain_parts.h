@@ -28,10 +28,22 @@ struct ChainParts {
     Eigen::Index k = -1, i = -1, j = -1;
   };
 
+  /// Where a coordinate or velocity of the rigid-body model comes from: ratio x[index] + offset,
+  /// with x of the chain.
+  struct Source {
+    Eigen::Index index = 0;
+    double ratio = 1.0, offset = 0.0;
+  };
+
   std::string name;
   std::vector<Joint> joints;
-  std::vector<Axis> axes;  ///< Axis per joint; meaningless for floating ones
-  bool has_floating = false;
+  std::vector<Coupling> couplings;
+  /// By coordinate and by velocity of the rigid-body model; empty without couplings.
+  std::vector<Source> q_from, v_from;
+  int nq = 0, nv = 0;  ///< Numbers of coordinates and velocities of the chain
+  std::vector<Axis>
+      axes;  ///< Axis per joint of the rigid-body model; meaningless for floating ones
+  bool has_floating = false, has_branch = false;
   std::vector<std::string> joint_names;
   std::vector<std::string> frame_names;
   std::vector<Frame> frames;

@@ -31,6 +31,7 @@ constexpr std::array<std::pair<std::string_view, UrdfJointType>, 6> kJointTypes 
 // Plausible ranges of values: m, rad, kg, kg m^2, and a joint's own units.
 constexpr Interval kPosition = {-1e3, 1e3};
 constexpr Interval kAngle = {-1e3, 1e3};
+constexpr Interval kRatio = {-1e3, 1e3};
 constexpr Interval kLength = {0.0, 1e3};
 constexpr Interval kMass = {-1e6, 1e6};  // negative for fixed links only
 constexpr Interval kInertia = {-1e9, 1e9};
@@ -404,6 +405,13 @@ class Reader {
     }
   }
 
+  UrdfMimic read_mimic(const XMLElement& e, const std::string& item) const {
+    UrdfMimic mimic = {.joint = attribute(e, "joint", item), .line = e.GetLineNum()};
+    if (e.Attribute("multiplier")) mimic.multiplier = number(e, "multiplier", kRatio, item);
+    if (e.Attribute("offset")) mimic.offset = number(e, "offset", kPosition, item);
+    return mimic;
+  }
+
   UrdfJoint joint(const XMLElement& e) {
     UrdfJoint result;
     result.name = attribute(e, "name", "joint");
@@ -425,7 +433,7 @@ class Reader {
       ignore_ratings(e);
     }
     if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
-      result.mimic_line = mimic->GetLineNum();
+      result.mimic = read_mimic(*mimic, item);
     }
     return result;
   }

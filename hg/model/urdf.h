@@ -44,6 +44,14 @@ struct UrdfLink {
 
 enum class UrdfJointType { kFixed, kRevolute, kContinuous, kPrismatic, kFloating, kPlanar };
 
+/// The joint follows another one: q = multiplier q_joint + offset.
+struct UrdfMimic {
+  std::string joint;
+  double multiplier = 1.0;
+  double offset = 0.0;  ///< rad or m
+  int line = 0;         ///< Line of <mimic>; 0 = not from the URDF
+};
+
 struct UrdfJoint {
   std::string name;
   int line = 0;
@@ -58,7 +66,9 @@ struct UrdfJoint {
   double effort_max = kInfinity;    ///< Largest effort, Nm or N
   double damping = 0.0;             ///< Viscous friction, Nms/rad or Ns/m
   double friction = 0.0;            ///< Coulomb friction, Nm or N
-  int mimic_line = 0;               ///< Line of <mimic>; 0 = none
+  std::optional<UrdfMimic> mimic;
+  /// Moves although it is not between root and tip: it follows a joint that is, see serial_part()
+  bool is_branch = false;
 };
 
 /// A kind of element or attribute that is not read, or a rating of 0, which stands for an unknown

@@ -1,5 +1,6 @@
 #include "hg/model/urdf_parts.h"
 
+#include <tinyxml2.h>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -81,9 +82,13 @@ Urdf serial_part(const Urdf& urdf, const std::string& root, const std::string& t
   Urdf part = urdf;
   if (!tip.empty()) {
     const std::vector<int> path = path_between(urdf, root_index, find_link(urdf, tip, "tip_link"));
-    for (int i = 0; i < static_cast<int>(part.joints.size()); ++i) {
-      if (std::ranges::find(path, i) != path.end()) continue;
-      part.joints[i].type = UrdfJointType::kFixed;
+    const auto is_between = [&](const std::string& joint) {
+      return std::ranges::any_of(path, [&](int i) { return urdf.joints[i].name == joint; });
+    };
+    for (UrdfJoint& joint : part.joints) {
+      if (is_between(joint.name)) continue;
+      joint.is_branch = joint.mimic && is_between(joint.mimic->joint);
+      if (!joint.is_branch) joint.type = UrdfJointType::kFixed;
     }
   }
   return root_index < 0 ? part : hanging_on(part, root_index);
@@ -132,6 +137,7 @@ void insert_behind(const std::string& behind, const std::string& name,
   joint.position = {};
   joint.velocity_max = joint.effort_max = kInfinity;
   joint.damping = joint.friction = 0.0;
+  joint.mimic.reset();
   if (joint.type == UrdfJointType::kRevolute) joint.type = UrdfJointType::kContinuous;
   if (axis) joint.axis = axis->normalized();
   found->child = joint.parent;
@@ -142,6 +148,26 @@ void insert_behind(const std::string& behind, const std::string& name,
        .inertial_fault = {},
        .collisions = {}});
   urdf.joints.push_back(std::move(joint));
+}
+
+std::string with_mimics(const std::string& urdf, const std::vector<Coupling>& couplings) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(urdf.data(), urdf.size()) != tinyxml2::XML_SUCCESS) return urdf;
+  for (const Coupling& coupling : couplings) {
+    tinyxml2::XMLElement* joint = document.RootElement()->FirstChildElement("joint");
+    while (joint != nullptr && !joint->Attribute("name", coupling.joint.c_str())) {
+      joint = joint->NextSiblingElement("joint");
+    }
+    if (joint == nullptr) continue;
+    tinyxml2::XMLElement* mimic = joint->FirstChildElement("mimic");
+    if (mimic == nullptr) mimic = joint->InsertNewChildElement("mimic");
+    mimic->SetAttribute("joint", coupling.leader.c_str());
+    mimic->SetAttribute("multiplier", coupling.ratio);
+    mimic->SetAttribute("offset", coupling.offset);
+  }
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
 }
 
 }  // namespace hg::model

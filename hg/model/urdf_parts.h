@@ -5,14 +5,17 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "hg/model/chain_model.h"
 #include "hg/model/urdf.h"
 
 namespace hg::model {
 
 /// Subtree of link `root` in which only the joints up to link `tip` move. Empty names: the root of
 /// the URDF, and no tip. Joints not between the two are fixed at position 0, so that their links
-/// belong to the bodies that carry them; everything above `root` is left out.
+/// belong to the bodies that carry them; those that follow a joint between the two move with it and
+/// are marked as branches. Everything above `root` is left out.
 ///
 /// Throws SetupError if a name is no link (with the nearest one) or `root` does not carry `tip`.
 Urdf serial_part(const Urdf& urdf, const std::string& root, const std::string& tip);
@@ -32,5 +35,9 @@ std::array<UrdfJoint, 3> planar_parts(const UrdfJoint& planar);
 /// Throws SetupError if there is no scalar joint `behind` or `name` is taken.
 void insert_behind(const std::string& behind, const std::string& name,
                    const std::optional<Eigen::Vector3d>& axis, Urdf& urdf);
+
+/// The text of a URDF with a <mimic> for each coupling, for programs that draw it: in place of one
+/// that is there already. Joints that the text lacks are left out.
+std::string with_mimics(const std::string& urdf, const std::vector<Coupling>& couplings);
 
 }  // namespace hg::model

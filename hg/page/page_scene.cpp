@@ -12,6 +12,7 @@
 #include "hg/config/law_names.h"
 #include "hg/config/shipped_files.h"
 #include "hg/controller/safety/rules.h"
+#include "hg/model/urdf_parts.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::page {
@@ -62,9 +63,19 @@ viewer_server::SceneChain device_chain(const config::DeviceConfig& device) {
   return chain;
 }
 
+// The URDF of a twin with joints that are coupled by its YAML file; empty: as it is.
+std::string drawn_urdf(const config::Twin& twin) {
+  if (twin.model.chain.couplings().empty()) return "";
+  const auto source =
+      std::ranges::find(twin.sources, twin.urdf.string(), &config::SourceText::name);
+  if (source == twin.sources.end()) return "";
+  return model::with_mimics(source->content, twin.model.chain.couplings());
+}
+
 viewer_server::SceneChain twin_chain(const config::Twin& twin) {
   viewer_server::SceneChain chain;
   chain.urdf = twin.urdf;
+  chain.urdf_text = drawn_urdf(twin);
   chain.T_B_root = twin.T_B_root;
   for (const model::Joint& joint : twin.model.chain.joints()) {
     chain.joints.push_back(scene_joint(joint));

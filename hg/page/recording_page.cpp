@@ -54,7 +54,7 @@ viewer_server::Scene RecordingPage::scene() const {
                     CommandName::kSpeed, CommandName::kRestart, CommandName::kSeek};
   scene.refusal = kRefusal;
   scene.device.urdf_text = text_of(scene.device.urdf);
-  scene.twin.urdf_text = text_of(scene.twin.urdf);
+  if (scene.twin.urdf_text.empty()) scene.twin.urdf_text = text_of(scene.twin.urdf);
   return scene;
 }
 

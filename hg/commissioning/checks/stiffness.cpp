@@ -79,8 +79,13 @@ std::string acceleration_text(const StiffnessLimits& limits) {
 struct Spring {
   const rendering::TwinDof* dof = nullptr;
   double inertia = 0.0;    // moving inertia, kg m^2 or kg
-  double stiffness = 0.0;  // Nm/rad or N/m
+  double stiffness = 0.0;  // Nm/rad or N/m; with a profile where it is steepest
 };
+
+std::string key_of(const rendering::TwinDof& dof) {
+  if (!dof.profile.empty()) return fmt::format("joints.{}.profile", dof.name);
+  return fmt::format("joints.{}.stiffness_{}", dof.name, dof.is_angle ? "Nm_per_rad" : "N_per_m");
+}
 
 // Those of which `worth` is below `least`, one finding about the worst.
 template <typename Worth, typename Text>
@@ -94,8 +99,7 @@ void warn_of(const std::vector<Spring>& springs, double least, const Worth& wort
   const rendering::TwinDof& dof = *worst->dof;
   const double share = worth(*worst) / least;
   out.add(
-      Severity::kWarning,
-      fmt::format("joints.{}.stiffness_{}", dof.name, dof.is_angle ? "Nm_per_rad" : "N_per_m"),
+      Severity::kWarning, key_of(dof),
       fmt::format("{:g} {} on {:.2g} {} {}{}", worst->stiffness, dof.is_angle ? "Nm/rad" : "N/m",
                   worst->inertia, dof.is_angle ? "kg m^2" : "kg", text(*worst),
                   others > 0 ? fmt::format("; so do {} other joints", others) : ""),
@@ -110,7 +114,7 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const rendering::TwinDof& dof = twin.model.dofs[i];
     const auto k = static_cast<Eigen::Index>(i);
-    const double stiffness = dof.stiffness + dof.closer.stiffness;
+    const double stiffness = dof.stiffness + dof.closer.stiffness + dof.profile.steepest();
     if (stiffness > 0.0) springs.push_back({&dof, 1.0 / mobility(k, k), stiffness});
   }
   const double fastest = limits.frequency_Hz();

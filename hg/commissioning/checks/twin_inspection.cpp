@@ -117,6 +117,20 @@ void inspect_spring(const rendering::TwinDof& dof, double inertia, double dt, Co
   }
 }
 
+// The torque of a profile is taken in the middle of a period, which gains no energy and is stable
+// for a slope of K dt^2 / m < 4.
+void inspect_profile(const rendering::TwinDof& dof, double inertia, double dt, Collector& out) {
+  const double k = dof.profile.steepest() * dt * dt / inertia;
+  if (k < 1.0) return;
+  const char* unit = dof.is_angle ? "Nm/rad" : "N/m";
+  out.add(
+      k < 4.0 ? Severity::kWarning : Severity::kFault, fmt::format("joints.{}.profile", dof.name),
+      fmt::format("its steepest part has {:.3g} {}, expected less than inertia / dt^2 = {:.3g}: "
+                  "it is too steep for the rate",
+                  dof.profile.steepest(), unit, inertia / (dt * dt)),
+      "move its points apart, or give the links more inertia");
+}
+
 }  // namespace
 
 std::vector<ConfigurationA> twin_postures(const config::Twin& twin, int count, std::uint64_t seed) {
@@ -172,6 +186,7 @@ Findings inspect(const config::Twin& twin, double dt) {
     const rendering::TwinDof& dof = twin.model.dofs[i];
     if (dof.q_index >= 0) inspect_limits(dof, twin.model.q_start[dof.q_index], out);
     inspect_spring(dof, figures.smallest_inertia[i], dt, out);
+    inspect_profile(dof, figures.smallest_inertia[i], dt, out);
   }
   return std::move(out.findings);
 }

@@ -40,6 +40,7 @@ void strip(rendering::TwinModel& twin, model::ChainData& chain) {
     dof.stiffness = dof.preload = dof.friction = dof.quadratic_damping = 0.0;
     dof.damping = M(i, i) / kCoasting;
     dof.closer = {};
+    dof.profile = {};
   }
 }
 

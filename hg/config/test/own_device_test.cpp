@@ -227,6 +227,16 @@ TEST(OwnDevice, TheEndsOfTheChainAreNamedAtTheirKeys) {
             "device.yaml:6:10: rate_Hz: must be 100 .. 20000, got 1");
 }
 
+TEST(OwnDevice, JointsThatMimicOthersAreRefused) {
+  std::string urdf = arm_urdf("revolute");
+  const std::string child = "<child link='l4'/>";
+  ASSERT_NE(urdf.find(child), std::string::npos);
+  urdf.replace(urdf.find(child), child.size(), child + "<mimic joint='j2'/>");
+  const std::string all = message("handle: l7\n", urdf);
+  EXPECT_NE(all.find("urdf: a device has no joints that mimic others, got 'j4'"), std::string::npos)
+      << all;
+}
+
 std::string message_of_list(const std::string& manipulator) {
   const std::string text = "name: test\nurdf: arm.urdf\nmanipulator: " + manipulator +
                            "\nhandle: l7\nposture: {j7: 0.1}\nvirtual_joints: [{name: sum, "

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "hg/core/error.h"
+
 namespace hg::config {
 namespace {
 
@@ -33,6 +35,59 @@ TEST(Twin, DampingAndFrictionAreThoseOfTheUrdfUnlessTheFileHasItsOwn) {
   const rendering::TwinDof none = gate("", "").model.dofs[0];
   EXPECT_EQ(none.damping, 0.0);
   EXPECT_EQ(none.friction, 0.0);
+}
+
+TEST(Twin, AProfileIsReadWithItsRepeatAndItsFriction) {
+  const rendering::TwinDof dof =
+      gate("", R"(, profile: {repeat_rad: 0.4, points: [{at_rad: 0, torque_Nm: 0},
+{at_rad: 0.1, torque_Nm: 2, friction_Nm: 0.5}, {at_rad: 0.3, torque_Nm: -2}]})")
+          .model.dofs[0];
+  EXPECT_NEAR(dof.profile.torque(0.1), 2.0, 1e-12);
+  EXPECT_NEAR(dof.profile.torque(0.7), -2.0, 1e-12);
+  EXPECT_NEAR(dof.profile.friction(0.5), 0.5, 1e-12);
+  EXPECT_TRUE(gate("", "").model.dofs[0].profile.empty());
+}
+
+Twin flywheel(const std::string& more) {
+  SourceReader disk;
+  SourceReader reader(
+      {{"twin.yaml", "name: f\nurdf: f.urdf\ntip_link: handle\nend_effector: handle\n" + more},
+       {"f.urdf", disk.read("models/examples/flywheel.urdf")}});
+  return load_twin("twin.yaml", reader);
+}
+
+std::string fault_of(const std::string& more) {
+  try {
+    flywheel(more);
+  } catch (const SetupError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Twin, CouplingsAreThoseOfTheUrdfUnlessTheFileHasItsOwn) {
+  const auto& by_urdf = flywheel("").model.chain.couplings();
+  ASSERT_EQ(by_urdf.size(), 1u);
+  EXPECT_EQ(by_urdf[0].ratio, -5.0);
+  const auto own = flywheel("couplings: [{joint: wheel_joint, follows: lever_joint, ratio: 3}]\n")
+                       .model.chain.couplings();
+  ASSERT_EQ(own.size(), 1u);
+  EXPECT_EQ(own[0].joint, "wheel_joint");
+  EXPECT_EQ(own[0].leader, "lever_joint");
+  EXPECT_EQ(own[0].ratio, 3.0);
+}
+
+TEST(Twin, CouplingsThatCannotBeAreRefusedAtTheirPlace) {
+  EXPECT_EQ(
+      fault_of("couplings: [{joint: wheel_joint, follows: lever}]\n"),
+      "twin.yaml:5:43: couplings[0].follows: must be a joint of the URDF, got 'lever', did you "
+      "mean 'lever_joint'?");
+  EXPECT_EQ(fault_of("couplings: [{joint: wheel_joint, follows: lever_joint, ratio: 0}]\n"),
+            "twin.yaml:5:63: couplings[0].ratio: must not be 0");
+  EXPECT_EQ(
+      fault_of("joints: {wheel_joint: {damping_Nms_per_rad: 1}}\n"),
+      "twin.yaml:5:10: joints.wheel_joint: must be a joint of the twin, got 'wheel_joint', did "
+      "you mean 'lever_joint'?");
 }
 
 }  // namespace

@@ -47,10 +47,11 @@ int smaller_budget(int a, int b) noexcept {
 }
 
 // torque of Coulomb friction while slipping, as part of tau_dis
-VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
+VectorA slip_torque(const TwinModel& twin, const TwinState& state, TwinInnerState& inner) noexcept {
+  const VectorA& dq_a = state.dq_a;
   VectorA torque = VectorA::Zero(dq_a.size());
   for (int i = 0; i < dq_a.size(); ++i) {
-    const double friction = inner.parameters.now.dofs[i].friction;
+    const double friction = friction_of(twin, i, state.q_a, inner.parameters);
     bool& sticks = inner.sticks[i];
     if (friction <= 0.0) continue;
     if (std::abs(dq_a[i]) <= kStandstill) sticks = true;
@@ -60,9 +61,10 @@ VectorA slip_torque(const VectorA& dq_a, TwinInnerState& inner) noexcept {
 }
 
 // a slipping joint that would turn round within the sample sticks from the next one on
-void catch_reversals(const TwinState& state, double dt, TwinInnerState& inner) noexcept {
+void catch_reversals(const TwinModel& twin, const TwinState& state, double dt,
+                     TwinInnerState& inner) noexcept {
   for (int i = 0; i < state.dq_a.size(); ++i) {
-    if (inner.parameters.now.dofs[i].friction <= 0.0) continue;
+    if (friction_of(twin, i, state.q_a, inner.parameters) <= 0.0) continue;
     if (state.dq_a[i] * (state.dq_a[i] + dt * state.ddq_a[i]) < 0.0) {
       inner.sticks[i] = true;
     }
@@ -205,7 +207,7 @@ SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
   solve(input, state, result);
   result.active_set_changes = changed_rows(previous, state.active_set.state,
                                            tasks_.first_limit_row(), tasks_.limit_row_count());
-  if (!is_released) catch_reversals(state.twin, dt_, state.inner);
+  if (!is_released) catch_reversals(twin_, state.twin, dt_, state.inner);
   give_way(result.contact, state);
   if (environment_.has_stops()) add_stops(result.contact);
   find_kinematics(state, result);
@@ -230,14 +232,14 @@ void Rendering::add_torques(const LawInput& input, bool is_released, RenderingSt
     budget.surface = VectorA::Zero(n_a);
   } else {
     result.tau_a = J_a_.transpose() * (share * input.robot.w_H);
-    budget.spring = share * spring_torque(twin_, state.twin.q_a, state.inner.parameters);
+    budget.spring = share * spring_torque(twin_, state.twin, dt_, state.inner.parameters);
     if (share < 1.0) budget.spring -= (1.0 - share) * twin_now_.gravity();
     budget.damping = damping_torque(L_, state.twin.dq_a, dt_, values);
     if (state.added.damping > 0.0) {
       const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
       budget.damping.noalias() += J_a_.topRows<3>().transpose() * (state.added.damping * v_E);
     }
-    budget.friction = slip_torque(state.twin.dq_a, state.inner);
+    budget.friction = slip_torque(twin_, state.twin, state.inner);
     budget.surface = J_a_.transpose() * (share * values.w_ref);
   }
   if (input.braking_rate > 0.0) {
@@ -408,7 +410,7 @@ void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& r
       bool& sticks = state.inner.sticks[i];
       const std::size_t limit = first_twin_limit + i;
       const double holding = reactions_.of(first_twin_limit + i);
-      const double most = state.inner.parameters.now.dofs[i].friction;
+      const double most = friction_of(twin_, i, state.twin.q_a, state.inner.parameters);
       if (!sticks || std::abs(holding) <= most) continue;
       sticks = false;
       budget.friction[i] = -std::copysign(most, holding);

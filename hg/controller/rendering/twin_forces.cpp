@@ -7,6 +7,19 @@
 namespace hg::rendering {
 namespace {
 
+// the last tooth of a ratchet that a joint at q has passed
+double tooth_behind(const Lock& lock, double q) noexcept {
+  const double teeth = (q - lock.position) / lock.teeth;
+  const double passed = lock.free == Way::kUpper ? std::floor(teeth) : std::ceil(teeth);
+  return lock.position + passed * lock.teeth;
+}
+
+void advance_ratchet(const Lock& lock, double q, LockState& state) noexcept {
+  const double tooth = tooth_behind(lock, q);
+  if (!state.is_engaged) state = {.is_engaged = true, .is_locked = false, .edge = tooth};
+  state.edge = lock.free == Way::kUpper ? std::max(state.edge, tooth) : std::min(state.edge, tooth);
+}
+
 // without locks
 limits::JointLimits free_limits(const TwinModel& twin, int dof, double dq,
                                 const TwinParameters& parameters) noexcept {
@@ -24,6 +37,20 @@ limits::JointLimits free_limits(const TwinModel& twin, int dof, double dq,
     if (is_towards) limits.dq_max = std::min(limits.dq_max, limit.limits.dq_max);
   }
   return limits;
+}
+
+// whether the latch is at the upper end of the way that it leaves
+bool is_latched_above(const Lock& lock, const LockState& state) noexcept {
+  return lock.teeth > 0.0 ? lock.free == Way::kLower : state.edge >= lock.position;
+}
+
+// between the latch, which follows, and the lock, where the joint comes to rest; of a ratchet
+// without an end
+Interval way_of(const Lock& lock, const LockState& state) noexcept {
+  if (lock.teeth > 0.0) {
+    return lock.free == Way::kUpper ? Interval{.lb = state.edge} : Interval{.ub = state.edge};
+  }
+  return {std::min(state.edge, lock.position), std::max(state.edge, lock.position)};
 }
 
 // Not less than |B|^2 (Frobenius) with L B = diag(d): forward substitution for the sums of |B_ij|
@@ -49,6 +76,10 @@ void advance_locks(const TwinModel& twin, Bounds bounds, const ConfigurationA& q
       continue;
     }
     const double q = position_of(twin, lock.dof, q_a);
+    if (lock.teeth > 0.0) {
+      advance_ratchet(lock, q, state);
+      continue;
+    }
     if (!state.is_engaged) state = {.is_engaged = true, .is_locked = false, .edge = q};
 
     // the latch follows the joint towards the lock only
@@ -75,10 +106,8 @@ EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
       result.held_by = {LimitCause::kLock, LimitCause::kLock};
       return result;
     }
-    // between the latch, which follows, and the lock, where the joint comes to rest
-    const bool is_above = state.edge >= lock.position;
-    const Interval way =
-        is_above ? Interval{lock.position, state.edge} : Interval{state.edge, lock.position};
+    const bool is_above = is_latched_above(lock, state);
+    const Interval way = way_of(lock, state);
     const Interval range = {result.limits.q_min, result.limits.q_max};
     const Interval merged = moved_into(range, way);
     result.limits.q_min = merged.lb;
@@ -89,20 +118,28 @@ EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
   return result;
 }
 
-VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
+VectorA spring_torque(const TwinModel& twin, const TwinState& state, double dt,
                       const TwinParameters& parameters) noexcept {
   VectorA torque = VectorA::Zero(twin.chain.nv());
   for (int i = 0; i < twin.chain.nv(); ++i) {
     const TwinDof& dof = twin.dofs[i];
     if (dof.q_index < 0) continue;
     const DofValues& spring = parameters.now.dofs[i];
-    const double q = q_a[dof.q_index];
+    const double q = state.q_a[dof.q_index];
     torque[i] = spring.preload + spring.stiffness * (q - spring.rest) + dof.closer.torque;
     if (dof.closer.stiffness > 0.0) {
       torque[i] += dof.closer.stiffness * (q - parameters.moving[i].q.lb);
     }
+    if (!dof.profile.empty()) torque[i] += dof.profile.torque(q + 0.5 * dt * state.dq_a[i]);
   }
   return torque;
+}
+
+double friction_of(const TwinModel& twin, int dof, const ConfigurationA& q_a,
+                   const TwinParameters& parameters) noexcept {
+  const double friction = parameters.now.dofs[dof].friction;
+  const Profile& profile = twin.dofs[dof].profile;
+  return profile.empty() ? friction : friction + profile.friction(position_of(twin, dof, q_a));
 }
 
 void factor_mass(const Eigen::MatrixXd& M, MatrixA& L) noexcept {

@@ -1,4 +1,4 @@
-/// Internal forces of the twin: springs, closers, dampers, friction, locks.
+/// Internal forces of the twin: springs, profiles, closers, dampers, friction, locks.
 ///
 /// Dampers enter the law with the velocity at the begin of a sample. A damper that is stiff for its
 /// inertia and the period would make that ring or diverge. damping_torque() therefore takes
@@ -6,6 +6,10 @@
 /// the damper D in series with one that stops the inertia M within s^-1 samples: exactly D while
 /// the trace is at most 1, and with all eigenvalues of dt M^-1 D' in [0, 1], so that damping alone
 /// never reverses a velocity. One joint: d' = min(d, M / dt).
+///
+/// The torque of a profile is taken where the joint is in the middle of the sample at its present
+/// speed. With the integration of the twin that is the leapfrog method (position Verlet): energy
+/// swings to and fro between profile and motion, and none is gained over time.
 ///
 /// No allocation, noexcept.
 #pragma once
@@ -25,7 +29,7 @@ struct LockState {
   bool is_engaged = false;  ///< All conditions hold
   /// Engaged, and the joint has reached the lock's position; with bounds paper as soon as engaged.
   bool is_locked = false;
-  double edge = 0.0;  ///< While latched: position that the joint may not pass
+  double edge = 0.0;  ///< While latched, or the tooth of a ratchet: the joint may not pass it
 };
 
 /// Words of the state hash, in its order.
@@ -52,8 +56,8 @@ void hashed(auto& hash, const TwinInnerState& inner, int dofs) {
 /// A joint counts as being at its lock within this distance, rad or m.
 inline constexpr double kLockReached = 1e-4;
 
-/// Engages, latches, locks and releases according to the joint positions. With bounds paper a lock
-/// that engages locks at once, wherever its joint is, [HG] VII-C.
+/// Engages, latches, passes teeth, locks and releases according to the joint positions. With bounds
+/// paper a lock that engages locks at once, wherever its joint is, [HG] VII-C.
 void advance_locks(const TwinModel& twin, Bounds bounds, const ConfigurationA& q_a,
                    TwinInnerState& inner) noexcept;
 
@@ -74,10 +78,13 @@ struct EffectiveLimits {
 EffectiveLimits effective_limits(const TwinModel& twin, int dof, double dq,
                                  const TwinInnerState& inner) noexcept;
 
-/// Torques of springs and closers (n_a), of closers from the lower limit that holds now; sign as in
-/// the budget.
-VectorA spring_torque(const TwinModel& twin, const ConfigurationA& q_a,
+/// Torques of springs, profiles and closers (n_a), of closers from the lower limit that holds now;
+/// sign as in the budget.
+VectorA spring_torque(const TwinModel& twin, const TwinState& state, double dt,
                       const TwinParameters& parameters) noexcept;
+/// Coulomb friction of a degree of freedom where it is now, with that of its profile, Nm or N.
+double friction_of(const TwinModel& twin, int dof, const ConfigurationA& q_a,
+                   const TwinParameters& parameters) noexcept;
 /// Writes the Cholesky factor of the mass matrix M into the lower triangle of `L` (n_a x n_a): M =
 /// L L^T.
 void factor_mass(const Eigen::MatrixXd& M, MatrixA& L) noexcept;

@@ -1,4 +1,5 @@
-/// The digital twin: a serial chain with limits, springs, dampers, friction, closers and locks.
+/// The digital twin: a serial chain with limits, springs, profiles, dampers, friction, closers and
+/// locks.
 ///
 /// Set-up data: filled by config, checked once, constant afterwards. What may change while the twin
 /// runs starts with the values here and is kept in TwinParameters. SI units.
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/controller/rendering/profile.h"
 #include "hg/core/types.h"
 #include "hg/limits/acceleration_bounds.h"
 #include "hg/model/chain_model.h"
@@ -35,6 +37,7 @@ struct TwinDof {
   double friction = 0.0;           ///< Coulomb friction, Nm or N
   double quadratic_damping = 0.0;  ///< torque = this |dq| dq, Nms^2/rad^2 or Ns^2/m^2
   Closer closer;
+  Profile profile;  ///< torque and friction over position, besides the others
 };
 
 /// Matrix of chain a (n_a x n_a), for example its mass matrix or the factor of it.
@@ -49,12 +52,19 @@ inline constexpr int kMaxLocks = 4;
 inline constexpr int kMaxConditionalLimits = 4;
 inline constexpr Interval kMassScale = {0.1, 10.0};  ///< Range of TwinModel::mass_scale
 
+enum class Way { kUpper, kLower };
+
 /// Holds one joint at `position` while all conditions are true. A joint that is not there yet when
 /// the conditions become true is latched: it may move towards `position` but not away from it.
+///
+/// With `teeth` it is a ratchet instead: the joint moves freely one way, and back to the last tooth
+/// that it has passed.
 struct Lock {
   std::string name;
   int dof = 0;
-  double position = 0.0;
+  double position = 0.0;   ///< rad or m; of a ratchet that of one tooth
+  double teeth = 0.0;      ///< Distance of the teeth, rad or m; 0 = no ratchet
+  Way free = Way::kUpper;  ///< The way in which a ratchet is free
   std::vector<JointCondition> engaged_while;
 };
 

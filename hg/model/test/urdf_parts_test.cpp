@@ -82,7 +82,8 @@ TEST(SerialPart, BelowARootTheRestOfTheRobotIsLeftOut) {
 
 TEST(SerialPart, ARootAloneTakesWhatHangsOnIt) {
   EXPECT_EQ(message_of(kTree, {.root_link = "lower"}),
-            "tree.urdf:1: joint grip: mimic joints are not supported");
+            "tree.urdf:1: joint grip: must follow a joint that moves on its own between root and "
+            "tip, got 'elbow'");
   EXPECT_EQ(joint_names(part_of_tree("torso", "right")), (std::vector<std::string>{"other"}));
 }
 

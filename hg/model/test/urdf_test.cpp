@@ -330,7 +330,8 @@ std::vector<Fault> faults_of_elements() {
       [](Text& t) {
         t.joint = joint_with("revolute", "<limit lower='0' upper='1'/><mimic joint='fix'/>");
       },
-      "arm.urdf:5: joint turn: mimic joints are not supported");
+      "arm.urdf:5: joint turn: must follow a joint that moves on its own between root and tip, got "
+      "'fix'");
   return faults;
 }
 

@@ -88,6 +88,15 @@ TEST(Stiffness, WarnsOfSpringsThatAreTooStiff) {
   EXPECT_NE(findings[2].what.find("their swings may grow"), std::string::npos);
 }
 
+TEST(Stiffness, WarnsOfProfilesThatAreTooSteep) {
+  config::Scenario door = config::load_scenario("models/scenarios/door.yaml");
+  door.twin.model.dofs[0].profile = rendering::Profile({{0.0, 0.0}, {0.01, 200.0}});
+  const Findings findings = found(door);
+  ASSERT_EQ(findings.size(), 3u);
+  EXPECT_EQ(findings[1].item, "joints.hinge.profile");
+  EXPECT_NE(findings[1].what.find("20004 Nm/rad"), std::string::npos);
+}
+
 TEST(Stiffness, WarnsOfSurfacesThatAreTooStiff) {
   EXPECT_TRUE(inspect_surfaces(config::load_scenario("models/scenarios/surfaces.yaml")).empty());
   config::Scenario wall = config::load_scenario("models/stress/wall.yaml");

@@ -141,6 +141,18 @@ INSTANTIATE_TEST_SUITE_P(
              "  - {name: c, joint: hinge}\n  - {name: d, joint: hinge}\n"
              "  - {name: e, joint: hinge}\n",
              "door.yaml:5:3: locks: at most 4 are possible"},
+        Case{"RatchetWithoutTeeth", "locks:\n  - {name: pawl, joint: hinge, free: upper}\n",
+             "door.yaml:5:38: locks[0].free: is about a ratchet, which needs 'teeth'"},
+        Case{"ProfileWithoutPoints", "joints:\n  hinge: {profile: {repeat_rad: 0.2}}\n",
+             "door.yaml:5:20: joints.hinge.profile: key 'points' is missing"},
+        Case{"ProfileOfOnePoint",
+             "joints:\n  hinge:\n    profile: {points: [{at_rad: 0, torque_Nm: 1}]}\n",
+             "door.yaml:6:23: joints.hinge.profile.points: a profile needs 2 .. 100 points, got 1"},
+        Case{"ProfileInTheUnitOfASlide",
+             "joints:\n  hinge:\n    profile: {points: [{at_m: 0}, {at_rad: 1}]}\n",
+             "door.yaml:6:24: joints.hinge.profile.points[0]: key 'at_rad' is missing\n"
+             "door.yaml:6:25: joints.hinge.profile.points[0].at_m: unknown key, did you mean "
+             "'at_rad'?"},
         Case{"FreeBodyWithoutMass", "free_body: {mass_kg: 0}\n",
              "door.yaml:4:22: free_body.mass_kg: must be 1e-09 .. 1e+06, got 0"},
         Case{"VectorTooShort", "free_body: {inertia_kg_m2: [1, 2]}\n",
