@@ -8,6 +8,8 @@
 #   make experiments
 #                runs the paper's experiments with both laws and its Table III (haptify) into
 #                build/experiments and refreshes the pages of docs/experiments; minutes
+#   make arms    measures the arms of models/arms (Haptify, cupboard, drawer, tool) into build/arms and
+#                refreshes docs/reports/arms.md; minutes
 #   make bench-instructions
 #                counts their instructions (callgrind), into the same folder
 #   make sanitize
@@ -57,7 +59,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
+.PHONY: demo arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -88,6 +90,9 @@ experiments: build  # each one refreshes its page, also after one that is not as
 	run haptify --goals --repetitions 16 --out build/experiments/goals; \
 	run experiment contact; \
 	[ -z "$$failed" ] || { echo "make experiments: not as expected$$failed" >&2; exit 1; }
+
+arms: build
+	@.venv/bin/python tools/compare_arms.py $(BUILD)/hapticgiant docs/reports/arms.md
 
 bench-instructions:
 	@tools/setup.sh count

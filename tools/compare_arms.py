@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""What would this feel like on my arm: Haptify and the shipped scenarios on every arm of models/arms, beside the HapticGiant.
+
+Usage: compare_arms.py PROGRAM PAGE [FOLDER]   (minutes; refreshes the tables of PAGE; the results stay in FOLDER, build/arms)
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tools/pages"))
+from pages import replace_marked  # noqa: E402
+
+REFERENCE = "models/haptic_giant/device.yaml"
+FIGURES = ("workspace_volume", "free_space_extra", "free_space_vibration", "latency", "force_bandwidth", "felt_mass_20",
+           "stiffness_accuracy", "stiffness_peak_force", "z_width", "smallest_inertia", "spring_frequency")
+SCENARIOS = {"open_cupboard": "cupboard", "open_drawer": "drawer", "move_tool": "tool"}
+
+
+def call(*arguments):
+    result = subprocess.run([*map(str, arguments)], cwd=ROOT, text=True, capture_output=True, check=False)
+    if result.returncode not in (0, 1):  # 1: not all that was hoped for
+        sys.exit(f"{' '.join(map(str, arguments))}: exit code {result.returncode}\n{result.stderr}")
+
+
+def haptify(program, device, folder):
+    call(program, "haptify", "--quick", "--device", device, "--out", folder)
+    return json.loads((folder / "figures.json").read_text())
+
+
+def play(program, scenario, folder):
+    summary = folder / f"{scenario.stem}.json"
+    call(program, "run", scenario, "--fast", "--no-viewer", "--no-recording", "--summary", summary)
+    return json.loads(summary.read_text())
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "| --- |" + " --- |" * (len(head) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+
+
+def haptify_table(figures):
+    rows = []
+    found = {name: {entry["id"]: entry for entry in data["table"] + data["beyond"]} for name, data in figures.items()}
+    for key in FIGURES:
+        first = next(iter(found.values()))[key]
+        rows.append([first["name"], first["unit"], *(entries[key]["measured"].strip() for entries in found.values())])
+    return table(["", "unit", *figures], rows)
+
+
+def is_played(summary):
+    return not summary["missing_events"] and summary["fault"]["code"] == 0
+
+
+def scenario_table(name, runs):
+    rows = []
+    for arm, summaries in runs.items():
+        summary = summaries[name]
+        reality = summary["reality"]
+        excess = max((limit["worst_violation"] for limit in reality["limits"].values()), default=0.0)
+        rows.append([arm, "yes" if is_played(summary) else "no", f"{summary['force']['mean_N']:.1f}",
+                     f"{reality['vibration_above_5_Hz_m_per_s2']:.2f}", f"{1e3 * reality['max_handle_to_twin_m']:.1f}",
+                     f"{1e3 * excess:.1f}", summary["plant"]])
+    return table(["arm", "opens and shuts", "mean force N", "vibration m/s^2", "handle off the twin mm",
+                  "beyond a limit, mm or mrad", "drives"], rows)
+
+
+def failures_list(figures):
+    lines = []
+    for name, data in figures.items():
+        for text in [*data["impossible"], *data["failures"]]:
+            lines.append(f"- {name}: {text.strip()}")
+    return "\n".join(lines) + "\n"
+
+
+def refresh(page, figures, runs):
+    parts = {"haptify": haptify_table(figures), "failures": failures_list(figures)}
+    for scenario, word in SCENARIOS.items():
+        parts[word] = scenario_table(scenario, runs)
+    text = page.read_text()
+    for mark, part in parts.items():
+        text = replace_marked(text, mark, part)
+    page.write_text(text)
+
+
+def main():
+    program, page = map(pathlib.Path, sys.argv[1:3])
+    folder = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else ROOT / "build/arms"
+    arms = {path.parent.name: path for path in sorted((ROOT / "models/arms").glob("*/device.yaml"))}
+    figures, runs = {}, {}
+    for name, device in {"haptic_giant": ROOT / REFERENCE, **arms}.items():
+        own = folder.resolve() / name
+        own.mkdir(parents=True, exist_ok=True)
+        figures[name] = haptify(program.resolve(), device.relative_to(ROOT), own)
+        if name in arms:
+            runs[name] = {scenario: play(program.resolve(), device.parent / f"{scenario}.yaml", own)
+                          for scenario in SCENARIOS}
+    refresh(page, figures, runs)
+    print(f"arms: {page}")
+
+
+if __name__ == "__main__":
+    main()
