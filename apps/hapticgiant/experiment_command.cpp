@@ -35,6 +35,7 @@
 #include "hg/studies/haptify/impedance.h"
 #include "hg/studies/inertial.h"
 #include "hg/studies/moved_scenario.h"
+#include "hg/studies/place.h"
 #include "hg/studies/seed_ranges.h"
 #include "hg/studies/stability_map.h"
 #include "hg/studies/workers.h"
@@ -133,6 +134,12 @@ void begin(const ExperimentArguments& arguments, const std::string& what) {
   print_out(fmt::format("HapticGiant {}  {}\n", kVersion, what));
 }
 
+// Says which device is measured and where, if it is not the reference device.
+void tell_place(const config::Scenario& scenario) {
+  const std::string place = studies::to_text(studies::place_of(scenario.device));
+  if (!place.empty()) print_out(fmt::format("{}. {}\n\n", scenario.device.name, place));
+}
+
 // Refuses at once what would be measured for nothing: no report can be made, and nothing is kept.
 void check_output(const std::string& json) {
   check_writable(json, kJson);
@@ -181,8 +188,9 @@ int experiment_free_space(const ExperimentArguments& arguments) {
         fmt::format("Free space: a hand leads a free body on random strokes for {:g} s, seed {}, "
                     "as in `hapticgiant haptify`\n\n",
                     config.duration_s, kSeed));
-  const auto runs =
-      haptify::measure_variants(walk_scenario(arguments), config, kSeed, progress_of("variants"));
+  const config::Scenario scenario = walk_scenario(arguments);
+  tell_place(scenario);
+  const auto runs = haptify::measure_variants(scenario, config, kSeed, progress_of("variants"));
   return report(haptify::to_json(runs), "free-space", arguments.json);
 }
 
@@ -192,8 +200,10 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
   begin(arguments,
         fmt::format("Stability: a kick of {:g} N for {:g} ms on a free body held by a hand\n\n",
                     config.kick.force, 1e3 * config.kick.duration));
+  const config::Scenario scenario = walk_scenario(arguments);
+  tell_place(scenario);
   const studies::StabilityMap map =
-      studies::make_stability_map(walk_scenario(arguments), config, progress_of("kicks"));
+      studies::make_stability_map(scenario, config, progress_of("kicks"));
   return report(studies::to_json(map), "stability-map", arguments.json, "", "map.svg",
                 arguments.svg);
 }
@@ -205,6 +215,7 @@ int experiment_impedance(const ExperimentArguments& arguments) {
                                "`hapticgiant haptify`\n\n",
                                config.response.force));
   const config::Scenario scenario = walk_scenario(arguments);
+  tell_place(scenario);
   const studies::FreeTwin twin = studies::free_twin_of(scenario);
   const auto runs = haptify::measure_impedance(scenario, config, kSeed, progress_of("pushes"));
   return report(haptify::to_json(runs, config, twin), "impedance", arguments.json);

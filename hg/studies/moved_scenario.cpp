@@ -40,13 +40,15 @@ config::Scenario moved_scenario(scenario::ScenarioOptions options) {
     scenario = at_place(scenario, place);
     script = strokes(scenario, place);
   } else {
-    script = checks::script_through(scenario.twin.model, scenario.script.hand);
-    if (script.segments.empty()) {
+    const double grasp_s = scenario.script.script.grasp_s;
+    if (!checks::take_script_through_ranges(scenario)) {
       throw SetupError(fmt::format(
           "twin {}: no joint has limits through which a hand can lead it within a minute; give a "
           "scenario with a script instead",
           scenario.twin.name));
     }
+    script = scenario.script.script;
+    scenario.script.script.grasp_s = grasp_s;
   }
   play_script(scenario, script);
   scenario.script.script.start[person::kGripChannel] = 1.0;

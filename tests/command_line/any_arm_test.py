@@ -39,7 +39,8 @@ class AnyArm(TemporaryFolder):
 
     def test_impedance_has_the_cases_of_its_drives(self):
         file = self.folder / "impedance.json"
-        self.ok("experiment", "impedance", "--device", ARM, "--json", file)
+        out = self.ok("experiment", "impedance", "--device", ARM, "--json", file)
+        self.assertIn("example arm. Measured around", out)
         names = {run_["name"] for run_ in json.loads(file.read_text())["runs"]}
         self.assertEqual(names, {"drives", "drives, blind"})
 

@@ -42,6 +42,7 @@ Json measure(const PaperExperimentArguments& arguments, const std::string& law, 
   if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("law {}, {:.0f} Hz ...", law, rate_Hz));
   const bench::CycleTimes times =
       bench::measure_cycle(scenario.title, scenario, kPasses, std::size_t{1} << 40U);
+  if (!is_own) print_out(fmt::format("{}, law {}, {:g} Hz\n", scenario.title, law, rate_Hz));
   Json row = bench::json_of(times);
   row["law"] = law;
   row["rate_Hz"] = rate_Hz;

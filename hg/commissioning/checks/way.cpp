@@ -236,11 +236,16 @@ std::string trouble_of(const Way& way) {
   return text.empty() ? text : "led through its whole range by a hand: " + text;
 }
 
-person::Script script_through(const rendering::TwinModel& twin, const person::HandImpedance& hand) {
-  if (!has_script(twin)) return {};
+bool take_script_through_ranges(config::Scenario& scenario) {
+  const rendering::TwinModel& twin = scenario.twin.model;
+  if (!has_script(twin)) return false;
+  const person::HandImpedance& hand = scenario.script.hand;
   model::ChainData chain(twin.chain);
   chain.update(twin.q_start, VectorA::Zero(twin.chain.nv()));
-  return script_through(twin, hand, led_joints(twin, hand, chain), chain);
+  const std::vector<int> led = led_joints(twin, hand, chain);
+  if (led.empty()) return false;
+  scenario.script.script = script_through(twin, hand, led, chain);
+  return true;
 }
 
 Way lead(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {

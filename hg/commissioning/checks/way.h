@@ -7,10 +7,9 @@
 
 #include <string>
 
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/simulation/simulation.h"
 #include "hg/config/twin.h"
-#include "hg/simulator/person/hand.h"
-#include "hg/simulator/person/script.h"
 
 namespace hg::checks {
 
@@ -31,10 +30,11 @@ inline constexpr double kWholeWay = 0.95;
 /// Largest excess of a limit that counts as none, rad or m.
 inline constexpr double kExcessAllowed = 1e-3;
 
-/// A script that leads each joint of the twin that has a range from its start to both ends and
-/// back, one after the other, at speeds that twin and hand allow. Empty (no segments) for a twin
-/// with a floating joint, with more joints than a script can move, or without a range.
-person::Script script_through(const rendering::TwinModel& twin, const person::HandImpedance& hand);
+/// Gives the scenario a script that leads each joint of its twin that has a range from its start to
+/// both ends and back, one after the other, at speeds that twin and hand allow. False, without a
+/// change, for a twin with a floating joint, with more joints than a script can move, or without a
+/// range.
+bool take_script_through_ranges(config::Scenario& scenario);
 
 /// What a user should know of a trial, in one line; empty where nothing was in the way.
 std::string trouble_of(const Way& way);

@@ -165,6 +165,9 @@ def failure_of(run):
 
 
 def free_space_row(variant):
+    why = failure_of(variant)
+    if why.startswith(NOT_POSSIBLE):
+        return [variant["name"], *["-"] * (len(FREE_SPACE) + 2), why]
     return [variant["name"],
             *(f"{variant['measured'][key]:.{digits}f}" for key, digits in FREE_SPACE),
             f"{1e3 * variant['joint_error_rad']:.2f}", f"{variant['torque_share']:.2f}",
