@@ -1,4 +1,4 @@
-"""Arms of other people: every shipped scenario of models/arms, and a trial with mechanisms that nobody made for them.
+"""Arms of labs with mechanisms that nobody made for them.
 
 The trial does what a stranger does: `new twin` places a mechanism for an arm, and a hand that the generator does not know
 opens every joint 10 % beyond both of its ends. It must get there with all limits held, or `new twin` must have warned.
@@ -67,16 +67,6 @@ class Arms(unittest.TestCase):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         self.folder = pathlib.Path(scratch.name)
-
-    def test_shipped_scenarios_play_on_an_honest_machine(self):
-        scenarios = [path for path in sorted((ROOT / "models/arms").glob("*/*.yaml"))
-                     if "\nperson:" in "\n" + path.read_text()]
-        self.assertGreaterEqual(len(scenarios), 3 * len(ARMS))
-        for scenario in scenarios:
-            with self.subTest(scenario=scenario.relative_to(ROOT)):
-                result, summary = run(self.folder, scenario)
-                self.assertTrue(is_fine(result, summary), result.stdout[-2000:] + result.stderr)
-                self.assertNotIn("ideal", summary["plant"] + summary["sensors"])
 
     def open_and_shut(self, device, name):
         """Whether a mechanism opens and shuts, whether `new twin` warned, and what was printed."""

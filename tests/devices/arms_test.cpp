@@ -1,4 +1,5 @@
-/// The arms of models/arms: each opens its cupboard and its drawer and moves its tool.
+/// The arms of models/arms: each opens its cupboard and its drawer and moves its tool, on a machine
+/// in which nothing is ideal.
 
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "hg/config/simulation/scenario.h"
+#include "hg/scenario/names.h"
 #include "tests/scenarios/trace.h"
 
 namespace hg {
@@ -18,10 +20,12 @@ TEST_P(ShippedArm, OpensShutsAndMoves) {
   for (const char* scenario : {"open_cupboard", "open_drawer", "move_tool"}) {
     const std::string file = std::string("models/arms/") + GetParam() + "/" + scenario + ".yaml";
     SCOPED_TRACE(file);
-    const Trace trace(config::load_scenario(std::filesystem::path(file)));
+    const config::Scenario scenario = config::load_scenario(std::filesystem::path(file));
+    EXPECT_EQ(scenario::idealisation(scenario.device), "");
+    const Trace trace(scenario);
     const ScenarioRun& run = trace.run();
     EXPECT_EQ(run.missing(), std::vector<std::string>{});
-    EXPECT_TRUE(run.summary().limits_held());
+    EXPECT_TRUE(run.summary().limits_held());         // in truth, too
     EXPECT_LT(run.summary().max_sync_error(), 1e-3);  // m
     EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
     EXPECT_EQ(run.quality().unsolved, 0);
