@@ -62,6 +62,11 @@ class Travel {
       from_p_ = plan_p_ = truth.q_p;
       plan_from_m_ = sample.record.reference.q_m;
       speed_p_ = truth.dq_p;
+      // a fault noticed in its first period stops the device where it is
+      at_stop_m_ = truth.q_m;
+      at_stop_p_ = truth.q_p;
+      off_m_.setZero(truth.q_m.size());
+      off_p_.setZero(truth.q_p.size());
     }
     if (!has_reacted) {
       plan_m_ = sample.record.reference.q_m - plan_from_m_;
