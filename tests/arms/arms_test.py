@@ -17,14 +17,14 @@ import xml.etree.ElementTree as ET
 import mechanisms
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PROGRAM = sys.argv.pop(1)
+PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 TRIES_ALL = "--all" in sys.argv and not sys.argv.remove("--all")
 PER_ARM = 2  # mechanisms per arm, others for every arm
 ARMS = {path.parent.name: path for path in sorted((ROOT / "models/arms").glob("*/device.yaml"))}
 
 
 def call(folder, *arguments):
-    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=folder, text=True, capture_output=True, timeout=300,
+    return subprocess.run([str(PROGRAM), *map(str, arguments)], cwd=folder, text=True, capture_output=True, timeout=300,
                           check=False)
 
 

@@ -17,6 +17,7 @@ namespace {
 constexpr double kFirst = 1.0;       // s, from the grasp to the first motion
 constexpr double kBeyond = 0.1;      // of a range, how far beyond its ends the hand pulls
 constexpr double kRest = 1.0;        // s, at each end
+constexpr double kSlow = 4.0;        // times the shortest duration, back to the start
 constexpr double kShortest = 0.5;    // s, of one motion
 constexpr double kLongest = 60.0;    // s, of one motion: a joint that takes longer is not led
 constexpr double kCoasting = 1.5;    // s, time constant of a twin that is let go
@@ -76,8 +77,8 @@ std::vector<int> led_joints(const rendering::TwinModel& twin, const person::Hand
   return led;
 }
 
-// Each joint from its start to its upper end, to its lower end, and back to the start. As people
-// do, the hand pulls on at an end.
+// Each joint from its start to its upper end, to its lower end, and slowly back to the start, where
+// drives stick and slip. As people do, the hand pulls on at an end.
 person::Script script_through(const rendering::TwinModel& twin, const person::HandImpedance& hand,
                               const std::vector<int>& led, model::ChainData& chain) {
   person::Script script = {.frame = person::ScriptFrame::kTwinJoints};
@@ -89,7 +90,8 @@ person::Script script_through(const rendering::TwinModel& twin, const person::Ha
     const double beyond = kBeyond * (limits.q_max - limits.q_min);
     double at = start;
     for (const double to : {limits.q_max + beyond, limits.q_min - beyond, start}) {
-      const double duration = duration_of(twin, hand, chain, dof, std::abs(to - at));
+      const double fastest = duration_of(twin, hand, chain, dof, std::abs(to - at));
+      const double duration = to == start ? kSlow * fastest : fastest;
       script.segments.push_back({t, duration, dof, person::Blend::kTo, to});
       t += duration + kRest;
       at = to;
@@ -132,8 +134,7 @@ Trial make_trial(const config::SimulatedDeviceConfig& device, const config::Twin
   strip(model, chain);
   scenario.limits = rendering::make_catalogue(device.model, model);
   scenario.changes.push_back({0.0, {Parameter::kGravity, -1, 0.0}});
-  person::HandImpedance& hand = scenario.script.hand;
-  hand.tremor_rms = 0.0;
+  const person::HandImpedance& hand = scenario.script.hand;
   trial.led = led_joints(model, hand, chain);
   scenario.script.script = script_through(model, hand, trial.led, chain);
   return trial;

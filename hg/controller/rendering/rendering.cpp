@@ -379,7 +379,8 @@ void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& r
                  .directions = reactions_.directions(),
                  .stops = stops_,
                  .tau = tau,
-                 .handle_speed = input.handle_speed_max});
+                 .handle_speed = input.handle_speed_max,
+                 .is_braked = input.braking_rate > 0.0});
     ended_(Stage::kRenderingSetUp);
     copy(state.active_set.state, tasks_.problem().rows(), guess_.state);
     copy(state.active_set.before, tasks_.problem().rows(), guess_.before);

@@ -203,7 +203,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
     fill_ranges(input);
   } else {
     fill_dynamics(input.L, tau);
-    if (n_m_ > 6) fill_posture(device, input.reference);
+    if (n_m_ > 6) fill_posture(device, input);
   }
 }
 
@@ -461,10 +461,13 @@ void Tasks::fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept {
   }
 }
 
-// A joint to spare moves towards its goal like a damped spring; without a goal it comes to rest.
-void Tasks::fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept {
+// A joint to spare moves towards its goal like a damped spring; without a goal, and while the twin
+// is braked, it comes to rest.
+void Tasks::fill_posture(const DeviceModel& device, const TaskInput& input) noexcept {
+  const ReferenceState& reference = input.reference;
+  const bool has_goals = device.posture.size() > 0 && !input.is_braked;
   for (int i = 0; i < n_m_; ++i) {
-    const bool has_goal = device.posture.size() > 0 && std::isfinite(device.posture[i]);
+    const bool has_goal = has_goals && std::isfinite(device.posture[i]);
     const double error = has_goal ? device.posture[i] - reference.q_m[i] : 0.0;
     const double ddq = options_.kP_posture * error - options_.kD_posture * reference.dq_m[i];
     problem_.set_bounds(posture_row_ + i, {ddq, ddq});

@@ -80,6 +80,7 @@ struct TaskInput {
   VectorA tau;  ///< Sum of all torques on the twin that are not constraints, without c_a
   /// Largest speed of H along each axis of B, where the device limits H, m/s.
   double handle_speed = kInfinity;
+  bool is_braked = false;  ///< The twin is brought to rest, and so is a joint to spare
 };
 
 /// Acceleration with which the handle brakes before a virtual surface that is a stop: the least of
@@ -161,7 +162,7 @@ class Tasks {
   void fill_gantry(const TaskInput& input) noexcept;
   void fill_stops(const TaskInput& input, const Vector6& bias) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
-  void fill_posture(const DeviceModel& device, const ReferenceState& reference) noexcept;
+  void fill_posture(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_ranges(const TaskInput& input) noexcept;
   void set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
                  double known_acceleration) noexcept;

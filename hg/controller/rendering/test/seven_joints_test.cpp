@@ -160,13 +160,15 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
 }
 
 // Plays one second without a wrench; the handle has to stay.
-void play_at_rest(Rendering& rendering, RenderingState& state, double seconds) {
+void play_at_rest(Rendering& rendering, RenderingState& state, double seconds,
+                  double braking_rate = 0.0) {
   const Pose start = pose_of(rendering.device(), state.reference.q_m);
   state.twin.q_a = floating_at(start);
   for (int k = 0; k < static_cast<int>(1000 * seconds); ++k) {
     const RobotState robot = robot_at(state.reference.q_m, Vector6::Zero());
     LawResult result;
-    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    const LawInput input{.robot = robot, .braking_rate = braking_rate};
+    ASSERT_EQ(rendering.step(input, state, result), SolverStatus::kSolved);
     rendering.integrate(state);
   }
   EXPECT_LT((pose_of(rendering.device(), state.reference.q_m).p - start.p).norm(), 1e-6);
@@ -185,6 +187,20 @@ TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
   EXPECT_GT(before, 0.1);
   EXPECT_LT((goal - state.reference.q_m).norm(), 0.1 * before);
   EXPECT_LT(state.reference.dq_m.norm(), 1e-3);
+}
+
+TEST(SevenJoints, InAStopIdleMotionComesToRestShortOfItsGoal) {
+  DeviceModel device = seven_joint_device();
+  VectorM goal = kPosture;
+  for (int k = 0; k < 400; ++k) goal += 1e-3 * idle_motion(device, goal);
+  device.posture = goal;
+  Rendering rendering(device, free_body(), {});
+  RenderingState state = rendering.start(kPosture);
+  play_at_rest(rendering, state, 0.2);
+  EXPECT_GT(state.reference.dq_m.norm(), 0.1);
+  play_at_rest(rendering, state, 0.8, 10.0);
+  EXPECT_LT(state.reference.dq_m.norm(), 1e-3);
+  EXPECT_GT((goal - state.reference.q_m).norm(), 0.05);
 }
 
 TEST(SevenJoints, WithoutAGoalIdleMotionComesToRest) {
