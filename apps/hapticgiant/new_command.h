@@ -13,14 +13,14 @@ namespace hg::apps {
 
 struct NewArguments {
   generator::ChainPart part;
-  std::string output;  ///< file to write; empty: named after the URDF, in this folder
-  std::string device;  ///< device that a twin is placed for; empty: the HapticGiant
+  std::string output;               ///< file to write; empty: named after the URDF, in this folder
+  std::string device;               ///< device that a twin is placed for; empty: the HapticGiant
   std::string drives = "position";  ///< drives of a device: position, torque or ideal
   bool may_overwrite = false;
 };
 
-/// Writes the file, and for a device that of its simulation, prints the next step, returns the exit code. Throws SetupError when the URDF
-/// cannot be used or the file exists already.
+/// Writes the file, and for a device that of its simulation, prints the next step, returns the exit
+/// code. Throws SetupError when the URDF cannot be used or the file exists already.
 int new_device(const NewArguments& arguments);
 int new_twin(const NewArguments& arguments);
 

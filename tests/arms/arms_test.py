@@ -20,6 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 TRIES_ALL = "--all" in sys.argv and not sys.argv.remove("--all")
 PER_ARM = 2  # mechanisms per arm, others for every arm
+TOO_LARGE = {("iiwa14", "gate")}  # a door of 0.6 m in the box of this hand: not possible at all, a warning is right
 ARMS = {path.parent.name: path for path in sorted((ROOT / "models/arms").glob("*/device.yaml"))}
 
 
@@ -92,7 +93,7 @@ class Arms(unittest.TestCase):
                 with self.subTest(arm=device.parent.name, mechanism=name):
                     opens, is_warned, text = self.open_and_shut(device, name)
                     tried += 1
-                    if is_warned:
+                    if is_warned and (device.parent.name, name) not in TOO_LARGE:
                         warned.append(f"{device.parent.name} {name}")
                     self.assertTrue(opens or is_warned, text)
         self.assertLessEqual(len(warned), 0.1 * tried, warned)

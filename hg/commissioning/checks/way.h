@@ -42,7 +42,8 @@ std::string trouble_of(const Way& way);
 /// What helps.
 inline constexpr const char* kCuresOfWay =
     "move or turn the placement, start elsewhere (start of the twin's joints, posture of the "
-    "device), or narrow the limits of the twin's joints; against oscillation more mass or damping";
+    "device), or narrow the limits of the twin's joints; against oscillation more mass "
+    "(mass_scale)";
 
 /// Leads `twin` on `device`. Locks, conditional limits, springs, weight, damping and friction of
 /// the twin are left out, since they are no matter of the device. Joints without limits and those
