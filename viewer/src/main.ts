@@ -17,6 +17,7 @@ import { Tabs } from "./panels/tabs";
 import { PlotDrawer } from "./plots/drawer";
 import { ReplayBar } from "./replay_bar";
 import { Cameras } from "./scene/cameras";
+import { foot_of_arm, sight_of, what_matters } from "./scene/first_view";
 import { Layers } from "./scene/layers";
 import { type Pixel, Stage } from "./scene/stage";
 import { World } from "./scene/world";
@@ -179,7 +180,10 @@ class Page {
     this.world?.note(frame);
     if (this.has_looked) return;
     this.has_looked = true;
-    this.cameras.look_at(frame.p_B_H_m);
+    const { scene } = this.store;
+    const foot = scene && foot_of_arm(scene);
+    if (!scene || !foot) return this.cameras.look_at(frame.p_B_H_m);
+    this.cameras.begin_with(sight_of(what_matters(scene, frame, foot), this.stage.camera));
   }
 
   private draw(now_ms: number): void {

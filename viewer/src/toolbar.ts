@@ -73,7 +73,10 @@ export class Toolbar {
       scenario,
     );
     const twin = scene.choices.twins.find(({ name }) => name !== "" && name === scene.choices.twin);
-    if (twin) this.scenario.selectedOptions[0]!.text += `, twin: ${twin.title}`;
+    const chosen = this.scenario.selectedOptions[0]!;
+    const is_file = scene.choices.twin.endsWith(".yaml");
+    if (is_file) chosen.text = scene.title; // what the scenario had is not there
+    else if (twin) chosen.text += `, twin: ${twin.title}`;
     const speeds = scene.source === "recording" ? RECORDING_SPEEDS : RUN_SPEEDS;
     this.speed.replaceChildren(...speeds.map((s) => new Option(`${s} \u00d7`, String(s))));
     for (const [commands, part] of this.by_command) {

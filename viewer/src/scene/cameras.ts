@@ -4,6 +4,7 @@ import { MOUSE, type PerspectiveCamera, TOUCH, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 import type { SceneBox, Vec3 } from "../messages";
+import type { Sight } from "./first_view";
 
 export type View = "orbit" | "follow" | "top" | "first person";
 export const VIEWS: View[] = ["orbit", "follow", "top", "first person"];
@@ -26,6 +27,7 @@ export class Cameras {
   private low = new Vector3();
   private high = new Vector3();
   private seen_first = new Vector3(); // what the first view turns to
+  private first_from: Vector3 | null = null; // where it is taken from; null: beside the box
 
   constructor(
     private readonly camera: PerspectiveCamera,
@@ -49,6 +51,13 @@ export class Cameras {
     this.high.set(...box.max_m);
     this.seen_first.addVectors(this.low, this.high).multiplyScalar(0.5);
     this.choose("orbit");
+  }
+
+  // Begins with a view of all that matters, instead of one into the box.
+  begin_with({ from, at }: Sight): void {
+    this.first_from = from;
+    this.seen_first.copy(at);
+    this.choose(this.view);
   }
 
   // Turns the first view half way to what matters.
@@ -76,6 +85,7 @@ export class Cameras {
       const away = Math.max(SMALLEST_AWAY, 0.62 * size.y);
       this.controls.target.copy(this.seen_first);
       this.camera.position.set(center.x + 0.6 * size.x, this.low.y - away, center.z + EYE_ABOVE);
+      if (this.first_from) this.camera.position.copy(this.first_from);
     }
     this.resize();
     this.controls.update();

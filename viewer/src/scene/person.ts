@@ -59,7 +59,11 @@ export class Person {
   private readonly skin = new MeshStandardMaterial({ roughness: 0.8 });
   private readonly shirt = new MeshStandardMaterial({ roughness: 0.9 });
 
-  constructor(private readonly floor_z_m: number) {
+  // `faced_B`: what the person faces, beyond the handle; null: they stand where the hand axis points.
+  constructor(
+    private readonly floor_z_m: number,
+    private readonly faced_B: Vector3 | null = null,
+  ) {
     const { skin, shirt } = this;
     for (const material of [skin, shirt]) {
       Object.assign(material, { transparent: true, opacity: OPACITY });
@@ -92,7 +96,7 @@ export class Person {
   // Follows the handle at `p_B` with its attitude.
   pose(p_B: Vector3, attitude: Quaternion): void {
     const to_user = new Vector3(0, 0, 1).applyQuaternion(attitude);
-    this.turn_to(Math.atan2(-to_user.y, -to_user.x), to_user);
+    this.face(p_B, to_user);
     const heading = this.heading ?? 0;
     const ahead = new Vector3(Math.cos(heading), Math.sin(heading), 0);
     const right = new Vector3(ahead.y, -ahead.x, 0);
@@ -126,8 +130,13 @@ export class Person {
     this.left_arm[0].mesh.visible = !is_hidden;
   }
 
-  private turn_to(wanted: number, to_user: Vector3): void {
-    if (Math.hypot(to_user.x, to_user.y) < 0.2) return; // the hand axis is too steep to say
+  private face(p_B: Vector3, to_user: Vector3): void {
+    const ahead = this.faced_B ? this.faced_B.clone().sub(p_B) : to_user.clone().negate();
+    if (Math.hypot(ahead.x, ahead.y) < 0.2) return; // too steep to say
+    this.turn_to(Math.atan2(ahead.y, ahead.x));
+  }
+
+  private turn_to(wanted: number): void {
     if (this.heading === null) this.heading = wanted;
     const turn = Math.atan2(Math.sin(wanted - this.heading), Math.cos(wanted - this.heading));
     this.heading += FOLLOW_SHARE * turn;

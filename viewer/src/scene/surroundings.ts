@@ -15,23 +15,45 @@ import {
   type Object3D,
   PlaneGeometry,
   RingGeometry,
+  type Vector3,
 } from "three";
 
 import type { Scene, SceneChain } from "../messages";
 import type { Theme } from "../theme";
+import { foot_of_arm } from "./first_view";
 
 // Height of things that lie flat on the floor above it, m: what lies higher is drawn over the rest.
 const FLAT = 0.004;
+const OWN_FOOT = 0.2; // m, below where an arm stands: it brings what it stands on
+const PLATE = { wide: 0.36, thick: 0.03 }; // m, under an arm
 
 export interface Surroundings {
   group: Group;
   paint(theme: Theme): void;
 }
 
-export function surroundings_of(scene: Scene): Surroundings {
+// `lowest_z_m`: of what the device itself has, a table perhaps.
+export function surroundings_of(scene: Scene, lowest_z_m: number): Surroundings {
   if (scene.environment === "door") return wall(scene.twin, scene.floor_z_m);
   if (scene.environment === "excavator") return site(scene.twin, scene.floor_z_m);
+  const foot = foot_of_arm(scene);
+  const has_table = foot !== null && lowest_z_m < foot.z - OWN_FOOT;
+  if (foot) return stand(foot, has_table ? foot.z : scene.floor_z_m);
   return room(scene.floor_z_m);
+}
+
+// What an arm stands on.
+function stand({ x, y, z }: Vector3, floor_z: number): Surroundings {
+  const group = new Group();
+  const height = z - floor_z;
+  if (height > 2 * PLATE.thick) {
+    const metal = matt(0x8d99a6);
+    const plate = new BoxGeometry(PLATE.wide, PLATE.wide, PLATE.thick);
+    add(group, lit(new Mesh(plate, metal)), x, y, z - 0.5 * PLATE.thick);
+    const column = new CylinderGeometry(0.09, 0.12, height - PLATE.thick, 32).rotateX(Math.PI / 2);
+    add(group, lit(new Mesh(column, metal)), x, y, 0.5 * (z - PLATE.thick + floor_z));
+  }
+  return { group, paint: () => {} };
 }
 
 function at_twin(twin: SceneChain): Group {

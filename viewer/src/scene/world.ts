@@ -1,12 +1,13 @@
 // Everything that is drawn of one run: made from its Scene, moved by its Frames.
 
-import { Group, type Object3D, Quaternion, Vector3 } from "three";
+import { Box3, Group, type Object3D, Quaternion, Vector3 } from "three";
 
 import { limit_closeness } from "../limit_words";
 import type { Frame, Scene, Vec3 } from "../messages";
 import { ELBOW_COLOR, FORCE_COLOR, type Theme } from "../theme";
 import { type ChainView, load_chain } from "./chain_view";
 import { dispose_of } from "./dispose";
+import { foot_of_arm } from "./first_view";
 import { Ghost } from "./ghost";
 import { HandleView } from "./handle_view";
 import { JointGauge } from "./joint_gauges";
@@ -47,8 +48,9 @@ export class World {
     private readonly stage: Stage,
     private readonly layers: Layers,
   ) {
-    this.person = new Person(scene.floor_z_m);
-    this.surroundings = surroundings_of(scene);
+    this.person = new Person(scene.floor_z_m, foot_of_arm(scene));
+    const lowest = new Box3().setFromObject(device.placement).min.z;
+    this.surroundings = surroundings_of(scene, lowest);
     this.surfaces = new SurfacesView(scene.surfaces);
     this.scanner = scanner_zone(scene.box, scene.floor_z_m);
     this.ghost = new Ghost(scene);

@@ -1,0 +1,53 @@
+import { PerspectiveCamera, type Vector3 } from "three";
+import { describe, expect, it } from "vitest";
+
+import type { Frame, Scene } from "../../src/messages";
+import { foot_of_arm, sight_of, what_matters } from "../../src/scene/first_view";
+
+function arm(handle: number[], twin: number[]): { scene: Scene; frame: Frame } {
+  const scene = {
+    gantry_joints: 0,
+    floor_z_m: -0.75,
+    device: { p_B_root_m: [0, 0, 0] },
+    twin: { p_B_root_m: twin },
+  } as unknown as Scene;
+  return { scene, frame: { p_B_H_m: handle } as unknown as Frame };
+}
+
+function seen(places: Vector3[], aspect: number): Vector3[] {
+  const camera = new PerspectiveCamera(40, aspect, 0.05);
+  camera.up.set(0, 0, 1);
+  const { from, at } = sight_of(places, camera);
+  camera.position.copy(from);
+  camera.lookAt(at);
+  camera.updateMatrixWorld();
+  return places.map((place) => place.clone().project(camera));
+}
+
+describe("the first view of an arm", () => {
+  const arms = [
+    arm([0.35, 0, 0.3], [0.4, 0.1, 0.3]),
+    arm([0.5, -0.4, 0.4], [0.6, -0.6, 0.1]),
+    arm([-0.9, 0.8, 0.6], [-1, 0.5, 0.2]),
+  ];
+
+  it.each([2, 1.2, 0.6])("has arm, mechanism and person in the picture, %f times as wide", (aspect) => {
+    for (const { scene, frame } of arms) {
+      const pixels = seen(what_matters(scene, frame, foot_of_arm(scene)!), aspect);
+      const most = Math.max(...pixels.flatMap(({ x, y }) => [Math.abs(x), Math.abs(y)]));
+      expect(most).toBeLessThan(1);
+      expect(most).toBeGreaterThan(0.5); // and fills it
+    }
+  });
+
+  it("is not that of a device that hangs above the person", () => {
+    const { scene } = arms[0]!;
+    expect(foot_of_arm({ ...scene, gantry_joints: 2 })).toBeNull();
+  });
+
+  it("is taken from where arm and person do not hide one another", () => {
+    const { scene, frame } = arms[1]!;
+    const [handle, foot] = seen(what_matters(scene, frame, foot_of_arm(scene)!), 1.5);
+    expect(Math.abs(handle!.x - foot!.x)).toBeGreaterThan(0.2);
+  });
+});
