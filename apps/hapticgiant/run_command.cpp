@@ -25,6 +25,8 @@
 #include "hg/analysis/summary.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
+#include "hg/page/page_scene.h"
 #include "hg/page/run_page.h"
 #include "hg/recording/problem_dumps.h"
 #include "hg/recording/recording_folder.h"
@@ -33,6 +35,7 @@
 #include "hg/scenario/names.h"
 #include "hg/scenario/recorded/run_recording.h"
 #include "hg/scenario/run.h"
+#include "hg/viewer_server/meshes.h"
 
 namespace hg::apps {
 namespace {
@@ -248,6 +251,21 @@ std::unique_ptr<page::RunPage> open_page(const PreparedRun& run, page::RunPage::
   return std::make_unique<page::RunPage>(options, run.shown(), std::move(prepare));
 }
 
+// what a page cannot draw of device and twin
+void tell_missing_meshes(const config::Scenario& scenario) {
+  const viewer_server::Scene scene = page::page_scene(scenario);
+  for (const viewer_server::SceneChain* chain : {&scene.device, &scene.twin}) {
+    if (chain->urdf.empty()) continue;
+    const auto missing = viewer_server::missing_meshes(
+        chain->urdf, chain->urdf_text.empty() ? read_file(chain->urdf) : chain->urdf_text);
+    if (missing.empty()) continue;
+    print_out(
+        "note        {}: {} of its meshes are not there, the first is {}: the page draws bars. Set "
+        "ROS_PACKAGE_PATH to the folder that holds the package\n",
+        chain->urdf.filename().string(), missing.size(), missing.front());
+  }
+}
+
 // to its end and its summary; the exit code
 int play(PreparedRun& run, const std::atomic<bool>& interrupted, const BackgroundOutput& output,
          page::RunPage* page) {
@@ -282,6 +300,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
         "note        frozen sensors are not noticed (rule 105): simulation.yaml says that they "
         "have no noise, or monitor.frozen_samples is 0\n");
   }
+  if (page != nullptr) tell_missing_meshes(scenario);
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
   if (run.is_machine) {
     notify(observers, 0.0, "start test", run.start_test);

@@ -1,10 +1,11 @@
 #include "hg/viewer_server/meshes.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <sstream>
 #include <system_error>
-#include <vector>
+#include <utility>
 
 #include "hg/core/open_file.h"
 
@@ -53,13 +54,13 @@ fs::path find_mesh(const fs::path& urdf, std::string_view name) {
   return {};
 }
 
-}  // namespace
+// a name of a mesh in the text of a URDF
+struct MeshName {
+  std::size_t begin = 0, end = 0;
+};
 
-std::string with_meshes(const fs::path& urdf, const std::string& text, std::string_view folder,
-                        AssetTable& assets) {
-  std::map<std::string, std::string, std::less<>> addresses;  // by name in the URDF
-  std::string served;
-  std::size_t copied = 0;
+std::vector<MeshName> mesh_names(const std::string& text) {
+  std::vector<MeshName> names;
   for (std::size_t mesh = text.find(kMesh); mesh != std::string::npos;
        mesh = text.find(kMesh, mesh + 1)) {
     const std::size_t attribute = text.find(kAttribute, mesh);
@@ -69,7 +70,19 @@ std::string with_meshes(const fs::path& urdf, const std::string& text, std::stri
     if (begin >= text.size()) break;
     const std::size_t end = text.find(text[quote], begin);
     if (end == std::string::npos) break;
+    names.push_back({begin, end});
+  }
+  return names;
+}
 
+}  // namespace
+
+std::string with_meshes(const fs::path& urdf, const std::string& text, std::string_view folder,
+                        AssetTable& assets) {
+  std::map<std::string, std::string, std::less<>> addresses;  // by name in the URDF
+  std::string served;
+  std::size_t copied = 0;
+  for (const auto& [begin, end] : mesh_names(text)) {
     const std::string name = text.substr(begin, end - begin);
     const auto [known, is_new] = addresses.try_emplace(name, name);
     const fs::path file = is_new ? find_mesh(urdf, name) : fs::path();
@@ -82,6 +95,16 @@ std::string with_meshes(const fs::path& urdf, const std::string& text, std::stri
     copied = end;
   }
   return served.append(text, copied);
+}
+
+std::vector<std::string> missing_meshes(const fs::path& urdf, const std::string& text) {
+  std::vector<std::string> missing;
+  for (const auto& [begin, end] : mesh_names(text)) {
+    std::string name = text.substr(begin, end - begin);
+    const bool is_known = std::ranges::find(missing, name) != missing.end();
+    if (!is_known && find_mesh(urdf, name).empty()) missing.push_back(std::move(name));
+  }
+  return missing;
 }
 
 }  // namespace hg::viewer_server

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hg/viewer_server/access.h"
 
@@ -15,5 +16,8 @@ namespace hg::viewer_server {
 /// of ROS_PACKAGE_PATH. A mesh that is not found keeps its name: the page draws bars instead.
 std::string with_meshes(const std::filesystem::path& urdf, const std::string& text,
                         std::string_view folder, AssetTable& assets);
+
+/// Names of the meshes in `text` that with_meshes() does not find, each once.
+std::vector<std::string> missing_meshes(const std::filesystem::path& urdf, const std::string& text);
 
 }  // namespace hg::viewer_server

@@ -17,8 +17,8 @@ namespace {
 class ShippedArm : public testing::TestWithParam<const char*> {};
 
 TEST_P(ShippedArm, OpensShutsAndMoves) {
-  for (const char* scenario : {"open_cupboard", "open_drawer", "move_tool"}) {
-    const std::string file = std::string("models/arms/") + GetParam() + "/" + scenario + ".yaml";
+  for (const char* name : {"open_cupboard", "open_drawer", "move_tool"}) {
+    const std::string file = std::string("models/arms/") + GetParam() + "/" + name + ".yaml";
     SCOPED_TRACE(file);
     const config::Scenario scenario = config::load_scenario(std::filesystem::path(file));
     EXPECT_EQ(scenario::idealisation(scenario.device), "");

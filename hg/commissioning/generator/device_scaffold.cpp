@@ -17,6 +17,7 @@ namespace hg::generator {
 namespace {
 
 constexpr int kPostures = 2000;
+constexpr double kTableHeight = 0.75;    // m, of what a standing arm stands on
 constexpr double kTable = 0.05;          // m, handles stay above the plane of the root link by it
 constexpr double kSingularMargin = 0.2;  // rad, kept from a singular value
 constexpr double kRampTime = 0.2;        // s, from rest to full speed where no rating is known
@@ -324,6 +325,9 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
   text += fmt::format("handle: {}  # [A] frame that is held, at the force/torque sensor\n",
                       quoted(d.chain.model().frame_names()[d.handle]));
   text += "rate_Hz: 1000\n";
+  if (d.stands) {
+    text += fmt::format("floor_z_m: -{}  # [A] it stands on a table\n", rounded(kTableHeight));
+  }
   const std::vector<DrivenJoint> joints = driven_joints(d);
   if (!has_typical_drives(joints)) drives = Drives::kIdeal;
   text += drive_lines(joints, drives, simulation_file);

@@ -52,6 +52,9 @@ TEST_F(Meshes, ThatAreMissingOrNoMeshesKeepTheirNames) {
       R"(<mesh scale="1 1 1"/><box size="1 1 1" filename="../meshes/base.stl"/><mesh filename=")";
   EXPECT_EQ(serve(urdf), urdf);
   EXPECT_TRUE(assets_.empty());
+  const std::vector<std::string> missing = {"package://arm/meshes/none.stl",
+                                            "../meshes/secret.txt"};
+  EXPECT_EQ(missing_meshes(folder_.path() / "robots/arm/urdf/arm.urdf", urdf + urdf), missing);
 }
 
 TEST_F(Meshes, OfAUrdfThatIsNotThereAreRefused) {

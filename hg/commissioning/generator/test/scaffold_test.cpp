@@ -26,7 +26,8 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
   const config::DeviceConfig device = config::load_device(file);
   EXPECT_EQ(device.model.n_p, 0);
   EXPECT_EQ(device.model.n_m, 6);
-  for (int i : {2, 4}) {  // elbow and wrist_bend are singular at 0
+  EXPECT_EQ(device.floor_z, -0.75);  // a person stands beside its table
+  for (int i : {2, 4}) {             // elbow and wrist_bend are singular at 0
     const limits::JointLimits& range = device.model.joint_limits[i];
     EXPECT_FALSE(Interval({range.q_min, range.q_max}).contains(0.0)) << i;
     EXPECT_TRUE(Interval({range.q_min, range.q_max}).contains(device.model.posture[i])) << i;
