@@ -26,7 +26,7 @@ TEST_P(ShippedArm, OpensShutsAndMoves) {
     const ScenarioRun& run = trace.run();
     EXPECT_EQ(run.missing(), std::vector<std::string>{});
     EXPECT_TRUE(run.summary().limits_held());         // in truth, too
-    EXPECT_LT(run.summary().max_sync_error(), 1e-3);  // m
+    EXPECT_LT(run.summary().max_sync_error(), 2e-3);  // m, where a late arm meets a stop
     EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
     EXPECT_EQ(run.quality().unsolved, 0);
   }

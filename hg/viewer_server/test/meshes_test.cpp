@@ -54,7 +54,8 @@ TEST_F(Meshes, ThatAreMissingOrNoMeshesKeepTheirNames) {
   EXPECT_TRUE(assets_.empty());
   const std::vector<std::string> missing = {"package://arm/meshes/none.stl",
                                             "../meshes/secret.txt"};
-  EXPECT_EQ(missing_meshes(folder_.path() / "robots/arm/urdf/arm.urdf", urdf + urdf), missing);
+  const std::string twice = R"(<mesh filename="package://arm/meshes/none.stl"/>)" + urdf;
+  EXPECT_EQ(missing_meshes(folder_.path() / "robots/arm/urdf/arm.urdf", twice), missing);
 }
 
 TEST_F(Meshes, OfAUrdfThatIsNotThereAreRefused) {
