@@ -113,7 +113,7 @@ void Simulation::move(const CommandFrame& command) noexcept {
   }
   if (!is_on) {
     input.tau_command = VectorM::Zero(truth_.q_m.size());
-    input.dq_p_command.setZero();
+    input.dq_p_command = VectorP::Zero(truth_.q_p.size());
   }
   plant.step(input);
 }

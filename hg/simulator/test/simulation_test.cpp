@@ -104,6 +104,22 @@ TEST(IdealSimulation, TheSensorShowsTheHandsWrenchInItsOwnFrame) {
   EXPECT_LT((device.sensors().w_S.tail<3>() - n_S).norm(), 1e-9);
 }
 
+// A client that has gone leaves the device with commands that have no values.
+TEST(Simulation, AnEmptyCommandBringsItToRest) {
+  for (const SimulatorConfig& world : {elastic_world(), ideal_world()}) {
+    Simulation device = make(world);
+    CommandFrame command = hold(device);
+    command.dq_p.setConstant(0.3);
+    for (int k = 0; k < 100; ++k) {
+      command.sequence = device.sensors().sequence;
+      device.step(command);
+    }
+    EXPECT_GT(device.truth().dq_p[0], 0.1);
+    for (int k = 0; k < 1000; ++k) device.step({});
+    EXPECT_LT(device.truth().dq_p.norm(), 1e-3);
+  }
+}
+
 TEST(Simulation, TheLatencyIsAtMostSixtyFourPeriods) {
   SimulatorConfig world = elastic_world();
   world.latency = 64e-3;
