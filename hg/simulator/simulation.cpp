@@ -125,7 +125,11 @@ void Simulation::look(const HandTarget& target) noexcept {
   const double time_s = static_cast<double>(steps_) * config_.sensed.step;
   w_H_ = person_.wrench(time_s, {truth_.T_B_H, truth_.twist}, target);
   if (std::holds_alternative<IdealPlant>(plant_)) truth_.w_H = w_H_;
-  sensors_.observe(felt());
+  if (config_.sensors.torque_estimate.is_used) {
+    sensors_.observe(felt());
+  } else {
+    sensors_.observe(truth_);
+  }
   for (std::size_t unit = 0; unit < config_.link_units.size(); ++unit) {
     const int frame = config_.link_units[unit];
     sensors_.observe(
@@ -137,7 +141,7 @@ void Simulation::look(const HandTarget& target) noexcept {
 Truth Simulation::felt() const noexcept {
   Truth felt = truth_;
   const auto* plant = std::get_if<Plant>(&plant_);
-  if (plant != nullptr && config_.sensors.torque_estimate.is_used) {
+  if (plant != nullptr) {
     felt.w_H +=
         torque_estimate_.error(plant->handle_jacobian(), truth_.dq_m, plant->carrying_torques());
   }

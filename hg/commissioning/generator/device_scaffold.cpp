@@ -10,6 +10,8 @@
 #include "hg/commissioning/generator/drives.h"
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
+#include "hg/config/actuator_library.h"
+#include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
 #include "hg/model/chain_data.h"
 
@@ -259,13 +261,10 @@ std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   return text;
 }
 
-// the manipulator's joints, with the torque that weight, acceleration and a person need
-std::vector<DrivenJoint> driven_joints(DeviceDraft& d) {
+// the largest torques of all joints that weight, acceleration and a person need
+Eigen::VectorXd needed_torques(DeviceDraft& d) {
   constexpr double kReserve = 1.5, kForce = 50.0, kTorque = 5.0;  // N, Nm: of a person
-  std::vector<DrivenJoint> joints;
-  for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
-    joints.push_back({joint(d, i), speed_of(joint(d, i)), 0.0});
-  }
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(d.chain.model().nv());
   PostureSampler sampler(d.ranges);
   for (int k = 0; k < kPostures; ++k) {
     d.chain.update(sampler.draw(), Eigen::VectorXd::Zero(d.chain.model().nv()));
@@ -274,9 +273,27 @@ std::vector<DrivenJoint> driven_joints(DeviceDraft& d) {
       const double torque = std::abs(d.chain.c()[i]) +
                             d.chain.M()(i, i) * acceleration_of(joint(d, i)) +
                             kForce * J.head<3>().norm() + kTorque * J.tail<3>().norm();
-      double& need = joints[i - d.n_p].need;
-      need = std::max(need, kReserve * torque);
+      most[i] = std::max(most[i], kReserve * torque);
     }
+  }
+  return most;
+}
+
+// the manipulator's joints with typical drives; none where a joint is prismatic: these all turn
+std::vector<DrivenJoint> driven_joints(DeviceDraft& d) {
+  const std::vector<model::Joint>& all = d.chain.model().joints();
+  if (std::any_of(all.begin() + d.n_p, all.end(), [](const auto& j) { return j.is_slide(); })) {
+    return {};
+  }
+  const auto library =
+      config::load_actuator_library(config::models_root() / "models/actuators.yaml");
+  const Eigen::VectorXd need = needed_torques(d);
+  std::vector<DrivenJoint> joints;
+  for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
+    const double effort = joint(d, i).effort_max;
+    const double torque_max = std::isfinite(effort) ? effort : need[i];
+    joints.push_back(
+        {joint(d, i), config::actuator_for(library, torque_max, speed_of(joint(d, i)))});
   }
   return joints;
 }
@@ -328,8 +345,9 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
   if (d.stands) {
     text += fmt::format("floor_z_m: -{}  # [A] it stands on a table\n", rounded(kTableHeight));
   }
-  const std::vector<DrivenJoint> joints = driven_joints(d);
-  if (!has_typical_drives(joints)) drives = Drives::kIdeal;
+  std::vector<DrivenJoint> joints;
+  if (drives != Drives::kIdeal) joints = driven_joints(d);
+  if (joints.empty()) drives = Drives::kIdeal;
   text += drive_lines(joints, drives, simulation_file);
   text += joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
   if (drives == Drives::kIdeal) return {text, ""};

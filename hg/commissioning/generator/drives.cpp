@@ -2,29 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
-
-#include "hg/config/actuator_library.h"
-#include "hg/config/shipped_files.h"
 
 namespace hg::generator {
 namespace {
 
-std::vector<config::ActuatorType> types_of(const std::vector<DrivenJoint>& joints) {
-  const auto library =
-      config::load_actuator_library(config::models_root() / "models/actuators.yaml");
-  std::vector<config::ActuatorType> types;
-  for (const DrivenJoint& driven : joints) {
-    const double effort = driven.joint.effort_max;
-    const double torque_max = std::isfinite(effort) ? effort : driven.need;
-    types.push_back(config::actuator_for(library, torque_max, driven.dq_max));
-  }
-  return types;
-}
-
-std::string actuator_line(const model::Joint& joint, const config::ActuatorType& type) {
+std::string actuator_line(const DrivenJoint& driven) {
+  const auto& [joint, type] = driven;
   const ActuatorModel& a = type.model;
   return fmt::format(
       "{}: {{rotor_inertia_kg_m2: {}, stiffness_Nm_per_rad: {}, damping_Nms_per_rad: {}, "
@@ -40,11 +24,10 @@ std::string actuator_line(const model::Joint& joint, const config::ActuatorType&
 }
 
 std::string gear_ratio_line(const std::vector<DrivenJoint>& joints) {
-  const std::vector<config::ActuatorType> types = types_of(joints);
   std::string text;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", quoted(joints[i].joint.name),
-                        rounded(types[i].gear_ratio));
+  for (const auto& [joint, type] : joints) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", quoted(joint.name),
+                        rounded(type.gear_ratio));
   }
   return "gear_ratio: {" + text + "}  # [A]\n";
 }
@@ -68,17 +51,9 @@ constexpr const char* kTorqueLines =
 
 }  // namespace
 
-bool has_typical_drives(const std::vector<DrivenJoint>& joints) {
-  return std::ranges::none_of(joints,
-                              [](const DrivenJoint& driven) { return driven.joint.is_slide(); });
-}
-
 std::string actuator_lines(const std::vector<DrivenJoint>& joints, const std::string& indent) {
-  const std::vector<config::ActuatorType> types = types_of(joints);
   std::string text;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    text += indent + actuator_line(joints[i].joint, types[i]);
-  }
+  for (const DrivenJoint& driven : joints) text += indent + actuator_line(driven);
   return text;
 }
 

@@ -2,24 +2,20 @@
 /// scaled to what the URDF says.
 #pragma once
 
-#include <Eigen/Core>
 #include <string>
 #include <vector>
 
 #include "hg/commissioning/generator/scaffold.h"
+#include "hg/config/actuator_library.h"
 #include "hg/model/chain_model.h"
 
 namespace hg::generator {
 
-/// What a joint of the manipulator is drafted from; SI units.
+/// A joint of the manipulator with the type of the library that is scaled to it.
 struct DrivenJoint {
   model::Joint joint;
-  double dq_max = 0.0;  ///< largest speed, rad/s
-  double need = 0.0;    ///< torque for weight, acceleration and a person, Nm: without an effort
+  config::ActuatorType type;
 };
-
-/// Whether these joints have drives in the library: all are revolute.
-bool has_typical_drives(const std::vector<DrivenJoint>& joints);
 
 /// Lines "JOINT: {...}" under the key 'actuators' of device.yaml or simulation.yaml, each indented
 /// by `indent`.

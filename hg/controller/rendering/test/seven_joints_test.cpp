@@ -174,12 +174,16 @@ void play_at_rest(Rendering& rendering, RenderingState& state, double seconds,
   EXPECT_LT((pose_of(rendering.device(), state.reference.q_m).p - start.p).norm(), 1e-6);
 }
 
-TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
-  DeviceModel device = seven_joint_device();
-  // reachable: along idle motion from the start
+// A posture that idle motion reaches from kPosture.
+VectorM reachable_goal(const DeviceModel& device) {
   VectorM goal = kPosture;
   for (int k = 0; k < 400; ++k) goal += 1e-3 * idle_motion(device, goal);
-  device.posture = goal;
+  return goal;
+}
+
+TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
+  DeviceModel device = seven_joint_device();
+  const VectorM goal = device.posture = reachable_goal(device);
   Rendering rendering(device, free_body(), {});
   RenderingState state = rendering.start(kPosture);
   const double before = (goal - kPosture).norm();
@@ -191,9 +195,7 @@ TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
 
 TEST(SevenJoints, InAStopIdleMotionComesToRestShortOfItsGoal) {
   DeviceModel device = seven_joint_device();
-  VectorM goal = kPosture;
-  for (int k = 0; k < 400; ++k) goal += 1e-3 * idle_motion(device, goal);
-  device.posture = goal;
+  const VectorM goal = device.posture = reachable_goal(device);
   Rendering rendering(device, free_body(), {});
   RenderingState state = rendering.start(kPosture);
   play_at_rest(rendering, state, 0.2);
