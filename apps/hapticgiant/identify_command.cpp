@@ -67,7 +67,7 @@ void print_yaml(const PayloadEstimate& found) {
 
 int identify_payload(const IdentifyArguments& arguments) {
   const config::SimulatedDeviceConfig device =
-      config::load_simulated_device(config::find_device(arguments.device));
+      config::load_simulated_device(config::find_device(arguments.device, {}));
   const bool is_simulated = arguments.files.empty();
   const std::vector<StaticPose> poses =
       is_simulated ? simulated_poses(device, arguments.poses) : poses_of(arguments.files);

@@ -106,7 +106,7 @@ int identify_friction(const IdentifyFrictionArguments& arguments) {
   check_writable(arguments.json, kJson);
   std::optional<config::DeviceConfig> device;
   if (!arguments.device.empty()) {
-    device = config::load_device(config::find_device(arguments.device));
+    device = config::load_device(config::find_device(arguments.device, {}));
   }
   const identification::RecordedFriction result =
       identification::identify_recorded_friction(arguments.file, std::move(device));

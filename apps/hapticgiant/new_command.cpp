@@ -1,6 +1,7 @@
 #include "apps/hapticgiant/new_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -11,9 +12,11 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
 #include "hg/commissioning/checks/way.h"
+#include "hg/commissioning/generator/gripper.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
+#include "hg/model/urdf.h"
 
 namespace hg::apps {
 namespace {
@@ -42,6 +45,19 @@ generator::Drives drives_named(const std::string& name) {
   return name == "ideal" ? generator::Drives::kIdeal : generator::Drives::kPosition;
 }
 
+// The part as asked for; the whole of a robot is taken without its gripper, which is told.
+generator::ChainPart device_part(const NewArguments& arguments) {
+  generator::ChainPart part = arguments.part;
+  if (!part.root_link.empty() || !part.tip_link.empty()) return part;
+  const auto gripper = generator::find_gripper(model::read_urdf_file(part.urdf));
+  if (!gripper) return part;
+  part.tip_link = gripper->link;
+  print_out(
+      "note        taken as a gripper, which stands still: {}; --tip-link takes another part\n",
+      fmt::join(gripper->joints, ", "));
+  return part;
+}
+
 }  // namespace
 
 int new_device(const NewArguments& arguments) {
@@ -50,7 +66,7 @@ int new_device(const NewArguments& arguments) {
   const generator::Drives drives = drives_named(arguments.drives);
   if (drives != generator::Drives::kIdeal) check_new(arguments, simulation);
   const generator::DeviceFiles files = generator::draft_device(
-      arguments.part, output.parent_path(), drives, simulation.filename().string());
+      device_part(arguments), output.parent_path(), drives, simulation.filename().string());
   if (!files.simulation.empty()) {
     write_output(simulation.string(), files.simulation);
     print_out("{} written: its simulated drives and sensors, typical ones ([A]: assumed).\n",
@@ -73,8 +89,7 @@ int new_twin(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "twin");
   const bool is_own = !arguments.device.empty();
   const config::SimulatedDeviceConfig device = config::load_simulated_device(
-      is_own ? fs::path(arguments.device)
-             : config::models_root() / "models/haptic_giant/device.yaml");
+      config::find_device(is_own ? arguments.device : "haptic_giant", {}));
   const generator::TwinDraft draft = generator::draft_twin(arguments.part, output.parent_path(),
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
@@ -82,12 +97,13 @@ int new_twin(const NewArguments& arguments) {
     print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), draft.trouble,
                 checks::kCuresOfWay);
   }
-  const std::string with = is_own ? " --device " + arguments.device : "";
+  const std::string file = is_own ? device.sources.front().name : "";
+  const std::string with = is_own ? " --device " + file : "";
   print_out(
       "{0} written. Next:\n"
       "  hapticgiant check {2}{0}\n"
       "  hapticgiant run{1} --twin {0}\n",
-      output.string(), with, is_own ? arguments.device + " " : "");
+      output.string(), with, is_own ? file + " " : "");
   return 0;
 }
 
@@ -120,7 +136,9 @@ void add_new(CLI::App& app, int& exit_code) {
                    "ideal (positions, followed exactly)")
       ->check(CLI::IsMember({"position", "torque", "ideal"}));
   add("twin", "the mechanism that is felt", new_twin)
-      ->add_option("--device", arguments->device, "device.yaml that the twin is placed for");
+      ->add_option(
+          "--device", arguments->device,
+          "device.yaml that the twin is placed for, or the name of a shipped device (fr3)");
 }
 
 }  // namespace hg::apps

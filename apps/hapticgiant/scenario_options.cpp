@@ -25,12 +25,16 @@ void add_choice(CLI::App& command, const char* option, std::string& value,
 
 void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
   command
-      .add_option("scenario", world.scenario,
-                  "scenario file, or door, excavator, free_space, path, walk, surfaces")
+      .add_option(
+          "scenario", world.scenario,
+          "scenario file, or door, excavator, free_space, path, walk, surfaces, ARM/SCENARIO")
       ->capture_default_str();
-  command.add_option("--device", world.device, "device.yaml instead of the scenario's");
-  command.add_option("--twin", world.twin,
-                     "twin.yaml, or the name of a shipped one, instead of the scenario's");
+  command.add_option(
+      "--device", world.device,
+      "device.yaml, or the name of a shipped device (fr3), instead of the scenario's");
+  command.add_option(
+      "--twin", world.twin,
+      "twin.yaml, or the name of a shipped one (light, fr3/drawer), instead of the scenario's");
   command
       .add_option("--plant", world.plant, "elastic: with springs, friction and delays; or ideal")
       ->check(CLI::IsMember({"elastic", "ideal"}));

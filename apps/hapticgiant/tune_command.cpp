@@ -54,7 +54,7 @@ std::string command_of(const TuneArguments& arguments) {
 
 int run_tune(const TuneArguments& arguments) {
   const config::SimulatedDeviceConfig device =
-      config::load_simulated_device(config::find_device(arguments.device));
+      config::load_simulated_device(config::find_device(arguments.device, {}));
   tuning::TuningProblem problem = problem_of(device, arguments);
   const tuning::Figures now = tuning::figures_of(problem, problem.device);
   problem.friction_most_N = now.friction_N;

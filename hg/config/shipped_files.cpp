@@ -28,19 +28,19 @@ std::vector<std::string> names_in(const fs::path& folder, std::string_view prefi
   return names;
 }
 
-// Names of the folders in a folder; sorted.
-std::vector<std::string> folders_in(const fs::path& folder) {
+// Names of the folders in a folder that hold this file; sorted.
+std::vector<std::string> folders_with(const std::string& file, const fs::path& folder) {
   std::error_code error;
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_directory(error)) names.push_back(entry.path().filename().string());
+    if (fs::exists(entry.path() / file, error)) names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
   return names;
 }
 
 // A file, or the shipped one of this name in models/KINDs: NAME.yaml, or where `has_folder`
-// NAME/KIND.yaml. `words` is what the option takes beside.
+// NAME/KIND.yaml; or that of a shipped arm, "fr3/drawer". `words` is what the option takes beside.
 fs::path find_shipped(const std::string& name, std::string_view kind, bool has_folder = false,
                       const std::vector<std::string>& words = {}) {
   std::error_code error;  // a name may be longer than the system takes
@@ -49,8 +49,17 @@ fs::path find_shipped(const std::string& name, std::string_view kind, bool has_f
   const fs::path known =
       has_folder ? folder / name / fmt::format("{}.yaml", kind) : folder / (name + ".yaml");
   if (fs::is_regular_file(known, error)) return known;
+  const fs::path of_arm = models_root() / "models" / "arms" / (name + ".yaml");
+  if (fs::is_regular_file(of_arm, error)) return of_arm;
 
-  const std::vector<std::string> shipped = has_folder ? folders_in(folder) : names_in(folder, "");
+  const std::string arm = fs::path(name).parent_path().string();
+  if (const auto of_this = names_in(of_arm.parent_path(), ""); !arm.empty() && !of_this.empty()) {
+    throw SetupError(fmt::format("{}: no such file, did you mean '{}/{}'? Of {} there are {}", name,
+                                 arm, nearest_name(fs::path(name).filename().string(), of_this),
+                                 arm, fmt::join(of_this, ", ")));
+  }
+  const std::vector<std::string> shipped =
+      has_folder ? folders_with(fmt::format("{}.yaml", kind), folder) : names_in(folder, "");
   std::vector<std::string> names = words;
   names.insert(names.end(), shipped.begin(), shipped.end());
   throw SetupError(fmt::format("{}: no such {} file, did you mean '{}'? Shipped are {}", name, kind,
@@ -91,9 +100,19 @@ fs::path find_twin(const std::string& name, const SourceReader& reader) {
   return reader.exists(name) ? fs::path(name) : find_shipped(name, "twin", true);
 }
 
-fs::path find_device(const std::string& file) {
-  std::error_code error;
-  return fs::exists(file, error) ? fs::path(file) : models_root() / file;
+fs::path find_device(const std::string& name, const SourceReader& reader) {
+  if (reader.exists(name)) return name;
+  const fs::path models = models_root() / "models";
+  for (const fs::path& known : {models.parent_path() / name, models / name / "device.yaml",
+                                models / "arms" / name / "device.yaml"}) {
+    if (reader.exists(known)) return known;
+  }
+  // the reader of a file says what is beside it
+  if (fs::path(name).extension() == ".yaml") return name;
+  std::vector<std::string> names = folders_with("device.yaml", models / "arms");
+  names.insert(names.begin(), "haptic_giant");
+  throw SetupError(fmt::format("{}: no such device file, did you mean '{}'? Shipped are {}", name,
+                               nearest_name(name, names), fmt::join(names, ", ")));
 }
 
 fs::path find_simulation(const std::string& name, const DeviceConfig& device,

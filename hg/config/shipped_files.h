@@ -20,20 +20,21 @@ std::filesystem::path installation_root();
 /// when neither has one.
 std::filesystem::path models_root();
 
-/// Finds a scenario by file name, or by the name of a shipped one ("door"). Throws SetupError with
-/// the nearest name.
+/// Finds a scenario by file name, or by the name of a shipped one ("door", "fr3/open_drawer").
+/// Throws SetupError with the nearest name.
 std::filesystem::path find_scenario(const std::string& name);
 
 /// Finds a person's script by file name, or by the name of a shipped one. Throws SetupError with
 /// the nearest name.
 std::filesystem::path find_script(const std::string& name);
 
-/// A twin file that `reader` has, or the shipped one of this name ("light"). Throws SetupError
-/// naming the nearest one.
+/// A twin file that `reader` has, or the shipped one of this name ("light", "fr3/drawer"). Throws
+/// SetupError naming the nearest one.
 std::filesystem::path find_twin(const std::string& name, const SourceReader& reader);
 
-/// A device file as given, or among the data that comes with the program.
-std::filesystem::path find_device(const std::string& file);
+/// A device file that `reader` has, or the shipped device of this name ("fr3"). Throws SetupError
+/// naming the nearest one.
+std::filesystem::path find_device(const std::string& name, const SourceReader& reader);
 
 /// A simulation file, or for NAME the file simulation_NAME.yaml beside that of the device. Throws
 /// SetupError naming the nearest one.

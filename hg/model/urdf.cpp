@@ -381,11 +381,18 @@ class Reader {
     joint.effort_max = rating(*limit, "effort", kEffort, item);
     if (!has_range) return;
     const Interval& range = joint.type == UrdfJointType::kPrismatic ? kPosition : kAngle;
-    joint.position = {number(*limit, "lower", range, item), number(*limit, "upper", range, item)};
+    // the default of URDF is 0
+    const auto end = [&](const char* key) {
+      return limit->Attribute(key) == nullptr ? 0.0 : number(*limit, key, range, item);
+    };
+    joint.position = {end("lower"), end("upper")};
     if (!(joint.position.lb < joint.position.ub)) {
+      const bool is_complete =
+          limit->Attribute("lower") != nullptr && limit->Attribute("upper") != nullptr;
+      const std::string missing = is_complete ? "" : " (one that is missing is 0)";
       fail(urdf_, limit->GetLineNum(),
-           item + ": limit lower must be below upper, got lower " + to_text(joint.position.lb) +
-               ", upper " + to_text(joint.position.ub));
+           item + ": limit lower must be below upper" + missing + ", got lower " +
+               to_text(joint.position.lb) + ", upper " + to_text(joint.position.ub));
     }
   }
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "hg/core/error.h"
+#include "hg/model/chain_data.h"
 #include "hg/page/page_scene.h"
 #include "hg/scenario/names.h"
 #include "hg/scenario/recorded/recorded_scenario.h"
@@ -27,6 +29,43 @@ config::Scenario scenario_of(const recording::RecordedRun& run) {
   }
 }
 
+// Whether the coordinates of one chain put the links of the other where its own are.
+bool moves_alike(const model::ChainModel& one, const model::ChainModel& other) {
+  const bool has_same_joints = std::ranges::equal(
+      one.joints(), other.joints(),
+      [](const auto& a, const auto& b) { return a.name == b.name && a.type == b.type; });
+  if (!has_same_joints || one.frame_names() != other.frame_names()) return false;
+  model::ChainData first(one);
+  model::ChainData second(other);
+  for (const double step : {0.0, 0.3}) {  // every joint moved, or none
+    const ConfigurationA q =
+        one.integrate(one.neutral(), Eigen::VectorXd::Constant(one.nv(), step));
+    first.update_poses(q);
+    second.update_poses(q);
+    for (int i = 0; i < std::ssize(one.frame_names()); ++i) {
+      constexpr double kNear = 1e-6;  // m, and of directions
+      if ((first.pose(i).p - second.pose(i).p).norm() > kNear) return false;
+      if ((first.pose(i).R - second.pose(i).R).norm() > kNear) return false;
+    }
+  }
+  return true;
+}
+
+// the second recording is drawn with the links of the first
+void require_alike(const config::Scenario& first, const config::Scenario& second) {
+  const auto refuse = [](const std::string& what, const config::SourceText& file,
+                         const config::SourceText& other) {
+    throw SetupError(fmt::format("--compare: both recordings need the same {}, got {} and {}", what,
+                                 file.name, other.name));
+  };
+  if (!moves_alike(first.device.model.chain, second.device.model.chain)) {
+    refuse("device", first.device.sources.front(), second.device.sources.front());
+  }
+  if (!moves_alike(first.twin.model.chain, second.twin.model.chain)) {
+    refuse("twin at the same place", first.twin.sources.front(), second.twin.sources.front());
+  }
+}
+
 std::string speed_rule() {
   return fmt::format("speed: must be {} .. {}", recording::Playback::kSlowest,
                      recording::Playback::kFastest);
@@ -41,7 +80,10 @@ RecordingPage::RecordingPage(const std::filesystem::path& file,
       scenario_(scenario_of(run_)),
       names_(scenario::part_names(scenario_)),
       playback_(run_.duration_s()) {
-  if (!compare.empty()) other_.emplace(compare, kFrame_s);
+  if (!compare.empty()) {
+    other_.emplace(compare, kFrame_s);
+    require_alike(scenario_, scenario_of(*other_));
+  }
   if (!playback_.set_speed(speed)) throw SetupError(speed_rule());
 }
 

@@ -24,7 +24,8 @@ void apply(const ScenarioOptions& options, config::SourceReader& reader,
     scenario.sources.insert(scenario.sources.end(), sources.begin(), sources.end());
   };
   if (!options.device.empty()) {
-    scenario.device = config::load_simulated_device(options.device, reader);
+    scenario.device =
+        config::load_simulated_device(config::find_device(options.device, reader), reader);
     add_sources(scenario.device.sources);
   }
   if (!options.simulation.empty()) {
@@ -161,7 +162,9 @@ std::string to_text(const ScenarioOptions& options) {
   const auto line = [&](const char* option, const std::string& value) {
     if (!value.empty()) text += fmt::format("{} {}\n", option, value);
   };
-  line("--device", options.device);
+  if (!options.device.empty()) {
+    line("--device", config::find_device(options.device, {}).string());
+  }
   if (!options.twin.empty()) line("--twin", config::find_twin(options.twin, {}).string());
   line("--user", options.user);
   if (options.rate_Hz) line("--rate-hz", fmt::format("{}", *options.rate_Hz));

@@ -85,6 +85,18 @@ class MainJob(TemporaryFolder):
             self.assertEqual((code, err), (0, ""), f"{rate} Hz\n{out}")
             self.assertEqual(json.loads(summary.read_text())["rate_Hz"], rate)
 
+    def test_shipped_arms_have_names(self):
+        code, out, err = run("run", "--device", "fr3", "--twin", "fr3/drawer", "--user", "none", "--fast",
+                             "--no-viewer", "--no-recording", "--duration", "0.1")
+        self.assertEqual((code, err), (0, ""), out)
+        for arguments, words in (
+                (("--device", "fr4"), "fr4: no such device file, did you mean 'fr3'?"),
+                (("--twin", "fr3/drawr"), "did you mean 'fr3/drawer'? Of fr3 there are cupboard"),
+                (("fr3/opendrawer",), "did you mean 'fr3/open_drawer'?")):
+            code, _, err = run("run", *arguments, "--fast", "--no-viewer")
+            self.assertEqual(code, 2)
+            self.assertIn(words, err)
+
     def test_other_simulated_machines_lie_beside_the_shipped_one(self):
         peaks = {}
         for machine in (None, "as_published", "harder"):

@@ -368,6 +368,13 @@ class PageTest(TemporaryFolder):
             page.next("frame", lambda frame: frame["run_state"]["is_over"])
             self.end(process)
 
+    def test_another_mechanism_is_not_drawn_as_a_ghost(self):
+        first, second = self.record(), self.record("--twin", "excavator")
+        code, out, err = run("replay", first, "--compare", second, "--view")
+        self.assertEqual((code, out), (2, ""))
+        self.assertIn("--compare: both recordings need the same twin at the same place, got "
+                      "models/twins/door/twin.yaml and models/twins/excavator/twin.yaml", err)
+
     def test_a_flight_recording_is_played_in_the_time_of_its_run(self):
         code, out, err = run("run", "door", "--fast", "--duration", "12", "--flight-recorder",
                              "always", "--recordings", self.folder / "recordings")

@@ -80,6 +80,14 @@ TEST(Urdf, LimitsThatAreNotGivenAreUnbounded) {
   EXPECT_EQ(ChainModel::from_urdf_text(text.all(), "").joints()[0].velocity_max, kInfinity);
 }
 
+TEST(Urdf, AnEndOfARangeThatIsNotGivenIsZero) {
+  Text text;
+  text.joint = joint_with("revolute", "<limit upper='1.5'/>");
+  const Joint joint = ChainModel::from_urdf_text(text.all(), "arm.urdf").joints()[0];
+  EXPECT_EQ(joint.position.lb, 0.0);
+  EXPECT_EQ(joint.position.ub, 1.5);
+}
+
 TEST(Urdf, RotationsAreRollPitchYawAboutFixedAxes) {
   Text text;
   text.fix =
@@ -302,7 +310,8 @@ std::vector<Fault> faults_of_elements() {
   add(
       "limit without upper",
       [](Text& t) { t.joint = joint_with("revolute", "<limit lower='0'/>"); },
-      "arm.urdf:5: joint turn: <limit> needs the attribute 'upper'");
+      "arm.urdf:5: joint turn: limit lower must be below upper (one that is missing is 0), got "
+      "lower 0, upper 0");
   add(
       "limits reversed",
       [](Text& t) { t.joint = joint_with("revolute", "<limit lower='1' upper='-1.5'/>"); },
