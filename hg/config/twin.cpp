@@ -33,6 +33,10 @@ bool is_whole(const model::Coupling& coupling) {
          coupling.joint != coupling.leader;
 }
 
+bool is_whole(const model::ClosedLoop& loop) {
+  return !loop.link.empty() && !loop.meets.empty() && !loop.leader.empty() && !loop.follow.empty();
+}
+
 std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, TwinDraft& draft) {
   // the URDF of a free body is only drawn, but a recording needs it, too
   const bool has_urdf = !draft.is_free_body || !draft.urdf.empty();
@@ -44,6 +48,7 @@ std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, Tw
   UrdfJointNames joints;
   if (urdf && !draft.is_free_body) joints = {urdf->joint_names, urdf->are_slides};
   describe_couplings(loader, draft.couplings, joints);
+  describe_loops(loader, draft.loops, links, joints.names);
   model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
                                  .gravity = draft.gravity,
                                  .floating_root = draft.floating_root};
@@ -51,7 +56,9 @@ std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, Tw
   if (!urdf || !draft.part.is_usable) return no_chain(file);
   options.root_link = name_of(links, draft.part.root_link);
   options.tip_link = name_of(links, draft.part.tip_link);
-  std::ranges::copy_if(draft.couplings, std::back_inserter(options.couplings), is_whole);
+  const auto whole = [](const auto& item) { return is_whole(item); };
+  std::ranges::copy_if(draft.couplings, std::back_inserter(options.couplings), whole);
+  std::ranges::copy_if(draft.loops, std::back_inserter(options.loops), whole);
   return read_chain(file, *urdf, options);
 }
 

@@ -45,6 +45,7 @@ struct TwinDraft {
   bool floating_root = false;
   ChainPart part;
   std::vector<model::Coupling> couplings;
+  std::vector<model::ClosedLoop> loops;
   Eigen::Vector3d force_ref = Eigen::Vector3d::Zero(), torque_ref = Eigen::Vector3d::Zero();
   double mass_scale = 1.0;
   std::vector<std::string> joint_names, frame_names;
@@ -118,6 +119,34 @@ void describe_couplings(V& v, std::vector<model::Coupling>& couplings,
       "the "
       "chain. Such a joint is none of 'joints': limits and forces are given at the joint that "
       "leads");
+}
+
+template <class V>
+void describe(V& v, model::ClosedLoop& loop, const std::vector<std::string>& links,
+              const std::vector<std::string>& joints) {
+  int link = -1, meets = -1, leader = -1;
+  std::vector<int> follow;
+  v.name("link", link, links, "a link of the URDF", "one end of the loop", Need::kRequired);
+  v.name("meets", meets, links, "a link of the URDF", "the other end: the origins of both coincide",
+         Need::kRequired);
+  v.name("leads", leader, joints, "a joint of the URDF",
+         "the joint that moves the loop; it is one of the chain to the handle", Need::kRequired);
+  v.names("follow", follow, joints, "a joint of the URDF",
+          "one to three joints that keep it closed; two for a planar linkage", Need::kRequired);
+  if (link >= 0) loop.link = links[link];
+  if (meets >= 0) loop.meets = links[meets];
+  if (leader >= 0) loop.leader = joints[leader];
+  for (const int joint : follow) loop.follow.push_back(joints[joint]);
+}
+
+template <class V>
+void describe_loops(V& v, std::vector<model::ClosedLoop>& loops,
+                    const std::vector<std::string>& links, const std::vector<std::string>& joints) {
+  v.list(
+      "loops", [&](auto& child) { describe(child, loops.emplace_back(), links, joints); },
+      "closed loops, such as four-bar hinges. A URDF is a tree: cut the loop at a joint and give "
+      "both sides a link there. The joints that follow move with the one that leads, within its "
+      "range");
 }
 
 /// Range of a parameter in the terms of the descriptions.

@@ -133,48 +133,97 @@ struct ChainData::Impl {
         results(parts.frames.size()),
         data(parts.model),
         scratch(parts.model),
-        zero(Eigen::VectorXd::Zero(parts.model.nv)),
-        all_q(parts.model.nq),
-        all_dq(parts.model.nv),
-        all_ddq(parts.model.nv),
+        all(parts),
+        all_later(parts),
         own_M(parts.nv, parts.nv),
         own_c(parts.nv),
         own_g(parts.nv) {}
 
   bool is_coupled() const noexcept { return !parts.couplings.empty(); }
   // whether the passes above do not know such a chain
-  bool needs_library() const noexcept { return parts.has_floating || parts.has_branch; }
+  bool needs_library() const noexcept {
+    return parts.has_floating || parts.has_branch || parts.has_curve;
+  }
 
-  // Values of the rigid-body model from those of the chain; `all` gives room.
-  VectorIn expanded(const VectorIn& own, const std::vector<ChainParts::Source>& from,
-                    Eigen::VectorXd& all) const noexcept {
-    if (!is_coupled()) return own;
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      all[static_cast<Eigen::Index>(i)] = from[i].ratio * own[from[i].index] + from[i].offset;
+  // With couplings only: values of the rigid-body model.
+  struct Expansion {
+    explicit Expansion(const ChainParts& parts)
+        : q(parts.model.nq),
+          dq(Eigen::VectorXd::Zero(parts.model.nv)),
+          ddq(Eigen::VectorXd::Zero(parts.model.nv)),
+          ratio(parts.model.nv) {
+      for (std::size_t i = 0; i < parts.v_from.size(); ++i) {
+        ratio[static_cast<Eigen::Index>(i)] = parts.v_from[i].ratio;
+      }
     }
-    return all;
+
+    Eigen::VectorXd q, dq;
+    Eigen::VectorXd ddq;    // where the velocities of the chain do not change
+    Eigen::VectorXd ratio;  // by velocity: its change over that of its leader
+  };
+
+  VectorIn expanded_q(const VectorIn& own, Expansion& to) const noexcept {
+    if (!is_coupled()) return own;
+    for (std::size_t i = 0; i < parts.q_from.size(); ++i) {
+      const ChainParts::Source& from = parts.q_from[i];
+      to.q[static_cast<Eigen::Index>(i)] = from.curve != nullptr
+                                               ? from.curve->at(own[from.leader]).value
+                                               : from.ratio * own[from.index] + from.offset;
+    }
+    return to.q;
+  }
+
+  VectorIn expanded_dq(const VectorIn& own_q, const VectorIn& own, Expansion& to) const noexcept {
+    if (!is_coupled()) return own;
+    for (std::size_t i = 0; i < parts.v_from.size(); ++i) {
+      const ChainParts::Source& from = parts.v_from[i];
+      const Eigen::Index k = static_cast<Eigen::Index>(i);
+      if (from.curve != nullptr) {
+        const CouplingCurve::Point point = from.curve->at(own_q[from.leader]);
+        to.ratio[k] = point.slope;
+        to.ddq[k] = point.curvature * own[from.index] * own[from.index];
+      }
+      to.dq[k] = to.ratio[k] * own[from.index];
+    }
+    return to.dq;
   }
 
   // Torques of the chain from those of the rigid-body model: power is the same.
   template <typename Own>
-  void reduce(const Eigen::VectorXd& all, Own& own) const noexcept {
+  void reduce(const Eigen::VectorXd& torques, const Expansion& by, Own& own) const noexcept {
     own.setZero();
     for (std::size_t i = 0; i < parts.v_from.size(); ++i) {
-      const ChainParts::Source& from = parts.v_from[i];
-      own[from.index] += from.ratio * all[static_cast<Eigen::Index>(i)];
+      const Eigen::Index k = static_cast<Eigen::Index>(i);
+      own[parts.v_from[i].index] += by.ratio[k] * torques[k];
     }
   }
 
   void reduce_dynamics() noexcept {
-    reduce(data.nle, own_c);
-    reduce(data.g, own_g);
+    if (parts.has_curve) data.nle.noalias() += data.M * all.ddq;
+    reduce(data.nle, all, own_c);
+    reduce(data.g, all, own_g);
     own_M.setZero();
     for (Eigen::Index i = 0; i < data.M.rows(); ++i) {
-      const ChainParts::Source& row = parts.v_from[i];
       for (Eigen::Index k = 0; k < data.M.cols(); ++k) {
-        const ChainParts::Source& column = parts.v_from[k];
-        own_M(row.index, column.index) += row.ratio * column.ratio * data.M(i, k);
+        own_M(parts.v_from[i].index, parts.v_from[k].index) +=
+            all.ratio[i] * all.ratio[k] * data.M(i, k);
       }
+    }
+  }
+
+  // What the curves add to accelerations at ddq = 0: each joint's passes on to the joints beyond
+  // it.
+  void add_curve_accelerations() noexcept {
+    for (pinocchio::JointIndex i = 1; i < data.a.size(); ++i) {
+      const ChainParts::Axis& axis = parts.axes[i - 1];
+      added[i].setZero();
+      if (parts.model.nvs[i] == 1) {
+        (axis.turns ? added[i].angular() : added[i].linear()) =
+            axis.e * all.ddq[parts.model.idx_vs[i]];
+      }
+      if (parts.model.parents[i] > 0)
+        added[i] += data.liMi[i].actInv(added[parts.model.parents[i]]);
+      data.a[i] += added[i];
     }
   }
 
@@ -200,9 +249,10 @@ struct ChainData::Impl {
   std::vector<Results> results;  // by frame
   pinocchio::Data data;          // results of update()
   pinocchio::Data scratch;       // workspace of inverse_dynamics()
-  Eigen::VectorXd zero;          // (nv of the rigid-body model)
-  // with couplings only: values of the rigid-body model, and results of the chain
-  Eigen::VectorXd all_q, all_dq, all_ddq;
+  // what curves add to the accelerations of the bodies
+  std::vector<pinocchio::Motion> added = std::vector<pinocchio::Motion>(parts.model.njoints);
+  Expansion all, all_later;  // of updates, and of inverse_dynamics()
+  // with couplings only: results of the chain
   Eigen::MatrixXd own_M;
   Eigen::VectorXd own_c, own_g;
 };
@@ -222,7 +272,7 @@ const ChainModel& ChainData::model() const noexcept { return impl_->model; }
 void ChainData::update_poses(const VectorIn& own_q) noexcept {
   assert(own_q.size() == model().nq());
   ++impl_->updates;
-  const VectorIn q = impl_->expanded(own_q, impl_->parts.q_from, impl_->all_q);
+  const VectorIn q = impl_->expanded_q(own_q, impl_->all);
   if (!impl_->needs_library()) return impl_->passes().poses(q);
   pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q);
 }
@@ -230,10 +280,10 @@ void ChainData::update_poses(const VectorIn& own_q) noexcept {
 void ChainData::update_kinematics(const VectorIn& own_q, const VectorIn& own_dq) noexcept {
   assert(own_q.size() == model().nq() && own_dq.size() == model().nv());
   ++impl_->updates;
-  const VectorIn q = impl_->expanded(own_q, impl_->parts.q_from, impl_->all_q);
-  const VectorIn dq = impl_->expanded(own_dq, impl_->parts.v_from, impl_->all_dq);
+  const VectorIn q = impl_->expanded_q(own_q, impl_->all);
+  const VectorIn dq = impl_->expanded_dq(own_q, own_dq, impl_->all);
   if (!impl_->needs_library()) return impl_->passes().kinematics(q, dq);
-  const VectorIn ddq(impl_->zero);
+  const VectorIn ddq(impl_->all.ddq);
   pinocchio::forwardKinematics(impl_->parts.model, impl_->data, q, dq, ddq);
   pinocchio::computeJointJacobians(impl_->parts.model, impl_->data);
 }
@@ -245,8 +295,8 @@ void ChainData::update(const VectorIn& q, const VectorIn& dq) noexcept {
 void ChainData::update(const VectorIn& own_q, const VectorIn& own_dq, const Loads& loads) noexcept {
   assert(own_q.size() == model().nq() && own_dq.size() == model().nv());
   ++impl_->updates;
-  const VectorIn q = impl_->expanded(own_q, impl_->parts.q_from, impl_->all_q);
-  const VectorIn dq = impl_->expanded(own_dq, impl_->parts.v_from, impl_->all_dq);
+  const VectorIn q = impl_->expanded_q(own_q, impl_->all);
+  const VectorIn dq = impl_->expanded_dq(own_q, own_dq, impl_->all);
   const pinocchio::Model& model = impl_->parts.model;
   pinocchio::Data& data = impl_->data;
 
@@ -264,6 +314,7 @@ void ChainData::update(const VectorIn& own_q, const VectorIn& own_dq, const Load
     data.a[i] = data.a_gf[i];
     data.a[i].linear() += data.oMi[i].rotation().transpose() * g;
   }
+  if (impl_->parts.has_curve) impl_->add_curve_accelerations();
 
   // each joint carries the weight of all bodies beyond it
   const Eigen::Vector3d g_earth(0.0, 0.0, -9.81);
@@ -325,8 +376,7 @@ const Jacobian& ChainData::jacobian(int frame) const noexcept {
     for (const pinocchio::JointIndex joint : impl_->parts.model.supports[f.joint]) {
       const int first = impl_->parts.model.idx_vs[joint];
       for (int i = first; i < first + impl_->parts.model.nvs[joint]; ++i) {
-        const ChainParts::Source& from = impl_->parts.v_from[i];
-        J.col(from.index) += from.ratio * column(i);
+        J.col(impl_->parts.v_from[i].index) += impl_->all.ratio[i] * column(i);
       }
     }
     return J;
@@ -381,13 +431,20 @@ VectorA ChainData::inverse_dynamics(const VectorIn& own_q, const VectorIn& own_d
                                     const VectorIn& own_ddq) noexcept {
   assert(own_q.size() == model().nq() && own_dq.size() == model().nv() &&
          own_ddq.size() == model().nv());
-  const VectorIn q = impl_->expanded(own_q, impl_->parts.q_from, impl_->all_q);
-  const VectorIn dq = impl_->expanded(own_dq, impl_->parts.v_from, impl_->all_dq);
-  const VectorIn ddq = impl_->expanded(own_ddq, impl_->parts.v_from, impl_->all_ddq);
-  const Eigen::VectorXd& all = pinocchio::rnea(impl_->parts.model, impl_->scratch, q, dq, ddq);
-  if (!impl_->is_coupled()) return all;
-  VectorA torque(impl_->parts.nv);
-  impl_->reduce(all, torque);
+  const ChainParts& parts = impl_->parts;
+  if (!impl_->is_coupled()) {
+    return pinocchio::rnea(parts.model, impl_->scratch, own_q, own_dq, own_ddq);
+  }
+  Impl::Expansion& all = impl_->all_later;
+  impl_->expanded_q(own_q, all);
+  impl_->expanded_dq(own_q, own_dq, all);
+  for (std::size_t i = 0; i < parts.v_from.size(); ++i) {
+    const Eigen::Index k = static_cast<Eigen::Index>(i);
+    const double curved = parts.v_from[i].curve != nullptr ? all.ddq[k] : 0.0;
+    all.ddq[k] = all.ratio[k] * own_ddq[parts.v_from[i].index] + curved;
+  }
+  VectorA torque(parts.nv);
+  impl_->reduce(pinocchio::rnea(parts.model, impl_->scratch, all.q, all.dq, all.ddq), all, torque);
   return torque;
 }
 

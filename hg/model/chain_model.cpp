@@ -8,6 +8,7 @@
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
 #include "hg/model/chain_parts.h"
+#include "hg/model/closed_loop.h"
 #include "hg/model/tool.h"
 #include "hg/model/urdf.h"
 #include "hg/model/urdf_parts.h"
@@ -348,6 +349,7 @@ class Coupler {
     if (leader->nv != 1) {
       fail(mimic, joint.name, "cannot follow the floating joint " + leader->name);
     }
+    if (mimic.curve) return follow_curve(joint, mimic, *leader);
     const double ratio = mimic.multiplier;
     if (ratio == 0.0) fail(mimic, joint.name, "multiplier must not be 0");
     const double a = (joint.position.lb - mimic.offset) / ratio;
@@ -364,6 +366,21 @@ class Coupler {
     chain_.couplings.push_back({joint.name, leader->name, ratio, mimic.offset});
   }
 
+  // What the joint has does not depend on the posture; what it is for the leader does.
+  void follow_curve(const Joint& joint, const UrdfMimic& mimic, Joint& leader) {
+    if (joint.damping != 0.0 || joint.friction != 0.0) {
+      fail(mimic, joint.name,
+           "damping and friction of a loop belong to the joint that leads it, " + leader.name);
+    }
+    leader.position = intersect(leader.position, mimic.curve->range());
+    leader.velocity_max =
+        std::min(leader.velocity_max, joint.velocity_max / mimic.curve->steepest());
+    chain_.q_from[joint.q_index] = {leader.q_index, 1.0, 0.0, mimic.curve.get(), leader.q_index};
+    chain_.v_from[joint.v_index] = {leader.v_index, 1.0, 0.0, mimic.curve.get(), leader.q_index};
+    chain_.couplings.push_back({joint.name, leader.name, 1.0, 0.0, mimic.curve});
+    chain_.has_curve = true;
+  }
+
   const Urdf& urdf_;
   ChainParts& chain_;
 };
@@ -373,7 +390,8 @@ void add_couplings(const std::vector<Coupling>& couplings, Urdf& urdf) {
     std::vector<std::string> names;
     for (const UrdfJoint& joint : urdf.joints) names.push_back(joint.name);
     const int index = find(coupling.joint, names, urdf.source, "coupled joint");
-    urdf.joints[index].mimic = {coupling.leader, coupling.ratio, coupling.offset};
+    urdf.joints[index].mimic = {coupling.leader, coupling.ratio, coupling.offset, 0,
+                                coupling.curve};
   }
 }
 
@@ -385,6 +403,7 @@ void finish(const ChainOptions& options, ChainParts& chain) {
 
 ChainParts build(Urdf urdf, const ChainOptions& options) {
   add_couplings(options.couplings, urdf);
+  for (const ClosedLoop& loop : options.loops) add_couplings(close_loop(urdf, loop), urdf);
   Urdf part = serial_part(urdf, options.root_link, options.tip_link);
   if (options.tool) attach(*options.tool, part);
   for (const PassiveJoint& joint : options.passive)

@@ -3,9 +3,10 @@
 /// Joints are revolute, continuous, prismatic or floating; fixed joints merge their links, planar
 /// ones become three scalar joints. A joint that is coupled to another one (<mimic>, a gear) moves
 /// with it and has no coordinate of its own: M, c, Jacobians and limits are those of the joint that
-/// leads. Coupled joints may be in branches. A continuous joint has one unwrapped coordinate. A
-/// floating joint has seven coordinates (x y z qx qy qz qw: pose of the child in its parent) and
-/// six velocities (twist of the child, resolved in the child). SI units.
+/// leads. So do the joints of a closed loop. Coupled joints may be in branches. A continuous joint
+/// has one unwrapped coordinate. A floating joint has seven coordinates (x y z qx qy qz qw: pose of
+/// the child in its parent) and six velocities (twist of the child, resolved in the child). SI
+/// units.
 ///
 /// Set-up throws SetupError, `file:line: item: rule, got value`. A model never changes after
 /// set-up: one model serves any number of chain_data.h, in any thread.
@@ -20,6 +21,7 @@
 
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
+#include "hg/model/coupling_curve.h"
 
 namespace hg::model {
 
@@ -46,12 +48,20 @@ struct Joint {
   bool is_slide() const noexcept { return type == JointType::kPrismatic; }
 };
 
-/// A joint that follows another joint of the chain: q = ratio q_leader + offset.
+/// A joint that follows another joint of the chain: q = ratio q_leader + offset, or by a curve.
 struct Coupling {
   std::string joint;
-  std::string leader;   ///< A joint with a coordinate of its own
-  double ratio = 1.0;   ///< Not 0; rad, m, rad/m or m/rad
-  double offset = 0.0;  ///< rad or m
+  std::string leader;                                    ///< A joint with a coordinate of its own
+  double ratio = 1.0;                                    ///< Not 0; rad, m, rad/m or m/rad
+  double offset = 0.0;                                   ///< rad or m
+  std::shared_ptr<const CouplingCurve> curve = nullptr;  ///< In place of ratio and offset
+};
+
+/// A closed loop of joints: the origins of two links meet, see closed_loop.h.
+struct ClosedLoop {
+  std::string link, meets;          ///< The two links
+  std::string leader;               ///< The joint that moves the loop
+  std::vector<std::string> follow;  ///< One to three joints that keep it closed
 };
 
 /// Tool fixed to a link of a chain, for example a handle with its force/torque sensor.
@@ -79,6 +89,7 @@ struct ChainOptions {
   std::vector<PassiveJoint> passive;  ///< Passive joints added to the URDF: a compliant structure
   bool floating_root = false;         ///< true: the root link floats in B by a joint "root"
   std::vector<Coupling> couplings;    ///< In addition to those of the URDF, or in their place
+  std::vector<ClosedLoop> loops;
   /// First and last link of the serial part of a branched URDF, see serial_part() in urdf_parts.h;
   /// empty = all of it.
   std::string root_link, tip_link;

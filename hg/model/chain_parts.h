@@ -29,10 +29,12 @@ struct ChainParts {
   };
 
   /// Where a coordinate or velocity of the rigid-body model comes from: ratio x[index] + offset,
-  /// with x of the chain.
+  /// with x of the chain, or the curve at q[leader].
   struct Source {
     Eigen::Index index = 0;
     double ratio = 1.0, offset = 0.0;
+    const CouplingCurve* curve = nullptr;  ///< Belongs to a coupling
+    Eigen::Index leader = 0;               ///< Its coordinate
   };
 
   std::string name;
@@ -43,7 +45,7 @@ struct ChainParts {
   int nq = 0, nv = 0;  ///< Numbers of coordinates and velocities of the chain
   std::vector<Axis>
       axes;  ///< Axis per joint of the rigid-body model; meaningless for floating ones
-  bool has_floating = false, has_branch = false;
+  bool has_floating = false, has_branch = false, has_curve = false;
   std::vector<std::string> joint_names;
   std::vector<std::string> frame_names;
   std::vector<Frame> frames;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "hg/core/interval.h"
 #include "hg/core/text.h"
 #include "hg/core/types.h"
+#include "hg/model/coupling_curve.h"
 
 namespace hg::model {
 
@@ -44,12 +46,13 @@ struct UrdfLink {
 
 enum class UrdfJointType { kFixed, kRevolute, kContinuous, kPrismatic, kFloating, kPlanar };
 
-/// The joint follows another one: q = multiplier q_joint + offset.
+/// The joint follows another one: q = multiplier q_joint + offset, or by a curve.
 struct UrdfMimic {
   std::string joint;
   double multiplier = 1.0;
-  double offset = 0.0;  ///< rad or m
-  int line = 0;         ///< Line of <mimic>; 0 = not from the URDF
+  double offset = 0.0;                                   ///< rad or m
+  int line = 0;                                          ///< Line of <mimic>; 0 = not from the URDF
+  std::shared_ptr<const CouplingCurve> curve = nullptr;  ///< In place of multiplier and offset
 };
 
 struct UrdfJoint {

@@ -154,6 +154,7 @@ std::string with_mimics(const std::string& urdf, const std::vector<Coupling>& co
   tinyxml2::XMLDocument document;
   if (document.Parse(urdf.data(), urdf.size()) != tinyxml2::XML_SUCCESS) return urdf;
   for (const Coupling& coupling : couplings) {
+    if (coupling.curve) continue;
     tinyxml2::XMLElement* joint = document.RootElement()->FirstChildElement("joint");
     while (joint != nullptr && !joint->Attribute("name", coupling.joint.c_str())) {
       joint = joint->NextSiblingElement("joint");

@@ -72,11 +72,30 @@ std::string drawn_urdf(const config::Twin& twin) {
   return model::with_mimics(source->content, twin.model.chain.couplings());
 }
 
+std::vector<viewer_server::SceneFollower> followers_of(const model::ChainModel& chain) {
+  constexpr int kValues = 129;
+  std::vector<viewer_server::SceneFollower> followers;
+  for (const model::Coupling& coupling : chain.couplings()) {
+    if (!coupling.curve) continue;
+    viewer_server::SceneFollower follower = {coupling.joint, coupling.leader, {}, false, {}};
+    follower.range = coupling.curve->range();
+    follower.is_periodic = !follower.range.bounded();
+    if (follower.is_periodic) follower.range = {-M_PI, M_PI};
+    const auto& [lb, ub] = follower.range;
+    for (int i = 0; i < kValues; ++i) {
+      follower.values.push_back(coupling.curve->at(lb + i * (ub - lb) / (kValues - 1)).value);
+    }
+    followers.push_back(std::move(follower));
+  }
+  return followers;
+}
+
 viewer_server::SceneChain twin_chain(const config::Twin& twin) {
   viewer_server::SceneChain chain;
   chain.urdf = twin.urdf;
   chain.urdf_text = drawn_urdf(twin);
   chain.T_B_root = twin.T_B_root;
+  chain.followers = followers_of(twin.model.chain);
   for (const model::Joint& joint : twin.model.chain.joints()) {
     chain.joints.push_back(scene_joint(joint));
     const rendering::TwinDof& dof = twin.model.dofs[joint.v_index];

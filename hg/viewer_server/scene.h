@@ -32,12 +32,21 @@ struct SceneJoint {
   double tau_max = kInfinity;    ///< peak, Nm or N; infinite: unknown
 };
 
+/// A joint of a closed loop: its position over that of the joint that it follows.
+struct SceneFollower {
+  std::string joint, leader;   ///< names in the URDF
+  Interval range;              ///< of the leader, rad or m
+  bool is_periodic = false;    ///< the range is one turn, and goes on
+  std::vector<double> values;  ///< at equal distances over the range, rad or m
+};
+
 struct SceneChain {
-  std::filesystem::path urdf;      ///< empty: the page draws a plain body at the handle
-  std::string address;             ///< address of the URDF on the server, filled by it
-  std::string urdf_text;           ///< text of a recorded URDF; empty: the file is read
-  Pose T_B_root;                   ///< root link in B
-  std::vector<SceneJoint> joints;  ///< in the order of the coordinates
+  std::filesystem::path urdf;            ///< empty: the page draws a plain body at the handle
+  std::string address;                   ///< address of the URDF on the server, filled by it
+  std::string urdf_text;                 ///< text of a recorded URDF; empty: the file is read
+  Pose T_B_root;                         ///< root link in B
+  std::vector<SceneJoint> joints;        ///< in the order of the coordinates
+  std::vector<SceneFollower> followers;  ///< joints of closed loops, which have no coordinates
 };
 
 /// Surroundings of the twin.

@@ -27,6 +27,9 @@ std::vector<SceneLimitMessage> limit_messages(const LimitCatalogue& limits);
 template <>
 inline constexpr Interface kInterface<SceneJoint> = {"SceneJoint", "a joint of a chain"};
 template <>
+inline constexpr Interface kInterface<SceneFollower> = {
+    "SceneFollower", "a joint of a closed loop: its position over that of the joint it follows"};
+template <>
 inline constexpr Interface kInterface<SceneChain> = {"SceneChain", "a robot or a twin"};
 template <>
 inline constexpr Interface kInterface<SceneLimitMessage> = {"SceneLimit", "a limited quantity"};
@@ -55,12 +58,23 @@ void fields(Archive& a, T& joint) {
   a("tau_max", bounded(joint.tau_max), "peak torque or force, Nm or N; null = unknown");
 }
 
+template <typename Archive, Is<SceneFollower> T>
+void fields(Archive& a, T& follower) {
+  a("joint", follower.joint);
+  a("leader", follower.leader);
+  a("begin", follower.range.lb, "of the range of the leader, rad or m");
+  a("end", follower.range.ub, "of the range of the leader, rad or m");
+  a("is_periodic", follower.is_periodic, "the range is one turn, and goes on");
+  a("values", follower.values, "at equal distances over the range, rad or m");
+}
+
 template <typename Archive, Is<SceneChain> T>
 void fields(Archive& a, T& chain) {
   a("urdf", chain.urdf.empty() ? "" : chain.address, "address of the file, empty = none");
   a("p_B_root_m", chain.T_B_root.p);
   a("quaternion_B_root", quaternion(chain.T_B_root.R));
   a("joints", chain.joints, "in the order of the coordinates");
+  a("followers", chain.followers, "joints of closed loops, which have no coordinates");
 }
 
 template <typename Archive, Is<SceneLimitMessage> T>

@@ -57,6 +57,7 @@ Json twin_table() {
   describe_chain(writer, draft);
   describe(writer, draft.part, {});
   describe_couplings(writer, draft.couplings, {});
+  describe_loops(writer, draft.loops, {}, {});
   describe_joints(writer, draft);
   return writer.table();
 }

@@ -123,11 +123,11 @@ Json all() {
 }  // namespace
 
 Json message_facts() {
-  return all<Scene, SceneChain, SceneJoint, SceneLimitMessage, Eigen::AlignedBox3d, SceneSurface,
-             Choices, Choice, Setting, FrameMessage, FeltLimitMessage, ActiveLimitMessage,
-             ContactReport, HandBudget, Vector6, Singularity, RunState, SafetyMessage, Ghost,
-             HandMessage, HoldMessage, CommandMessage, WelcomeMessage, AnswerMessage, ValuesMessage,
-             EventMessage>();
+  return all<Scene, SceneChain, SceneJoint, SceneFollower, SceneLimitMessage, Eigen::AlignedBox3d,
+             SceneSurface, Choices, Choice, Setting, FrameMessage, FeltLimitMessage,
+             ActiveLimitMessage, ContactReport, HandBudget, Vector6, Singularity, RunState,
+             SafetyMessage, Ghost, HandMessage, HoldMessage, CommandMessage, WelcomeMessage,
+             AnswerMessage, ValuesMessage, EventMessage>();
 }
 
 }  // namespace hg::pages

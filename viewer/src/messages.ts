@@ -36,6 +36,7 @@ export interface SceneChain {
   p_B_root_m: Vec3;
   quaternion_B_root: Quaternion;
   joints: SceneJoint[]; // in the order of the coordinates
+  followers: SceneFollower[]; // joints of closed loops, which have no coordinates
 }
 
 // a joint of a chain
@@ -48,6 +49,16 @@ export interface SceneJoint {
   q_max: number | null; // upper limit, rad or m; null = unbounded
   dq_max: number | null; // speed limit, rad/s or m/s; null = unbounded
   tau_max: number | null; // peak torque or force, Nm or N; null = unknown
+}
+
+// a joint of a closed loop: its position over that of the joint it follows
+export interface SceneFollower {
+  joint: string;
+  leader: string;
+  begin: number; // of the range of the leader, rad or m
+  end: number; // of the range of the leader, rad or m
+  is_periodic: boolean; // the range is one turn, and goes on
+  values: number[]; // at equal distances over the range, rad or m
 }
 
 // a limited quantity

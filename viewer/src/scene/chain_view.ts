@@ -18,6 +18,7 @@ import URDFLoader, { type URDFJoint, type URDFRobot } from "urdf-loader";
 import { authorization } from "../data/token";
 import type { SceneChain, SceneJoint } from "../messages";
 import { current_theme } from "../theme";
+import { position_of } from "./follower";
 import { add_skeleton, has_shapes } from "./skeleton";
 
 const MESHES = "/models/"; // where the program puts mesh files
@@ -71,8 +72,17 @@ export class ChainView {
         first += 1;
       } else {
         this.robot?.setJointValue(joint.name, q[first] ?? 0);
+        this.pose_followers(joint.name, q[first] ?? 0);
         first += 1;
       }
+    }
+  }
+
+  // Joints of closed loops that this one leads.
+  private pose_followers(leader: string, q: number): void {
+    for (const follower of this.chain.followers) {
+      if (follower.leader === leader)
+        this.robot?.setJointValue(follower.joint, position_of(follower, q));
     }
   }
 

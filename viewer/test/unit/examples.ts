@@ -34,12 +34,14 @@ export const scene: Scene = {
       joint("m1"),
       joint("m2", { q_min: 0, q_max: 2, tau_max: 100 }),
     ],
+    followers: [],
   },
   twin: {
     urdf: "",
     p_B_root_m: [0, 0, 0],
     quaternion_B_root: [0, 0, 0, 1],
     joints: [joint("hinge", { q_min: 0, q_max: 1.5 })],
+    followers: [],
   },
   gantry_joints: 1,
   limits: [
