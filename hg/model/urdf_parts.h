@@ -36,8 +36,8 @@ std::array<UrdfJoint, 3> planar_parts(const UrdfJoint& planar);
 void insert_behind(const std::string& behind, const std::string& name,
                    const std::optional<Eigen::Vector3d>& axis, Urdf& urdf);
 
-/// The text of a URDF with a <mimic> for each coupling without a curve, for programs that draw it: in place of one
-/// that is there already. Joints that the text lacks are left out.
+/// The text of a URDF with a <mimic> for each coupling without a curve, for programs that draw it:
+/// in place of one that is there already. Joints that the text lacks are left out.
 std::string with_mimics(const std::string& urdf, const std::vector<Coupling>& couplings);
 
 }  // namespace hg::model
