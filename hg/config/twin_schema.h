@@ -133,6 +133,8 @@ void describe(V& v, model::ClosedLoop& loop, const std::vector<std::string>& lin
          "the joint that moves the loop; it is one of the chain to the handle", Need::kRequired);
   v.names("follow", follow, joints, "a joint of the URDF",
           "one to three joints that keep it closed; two for a planar linkage", Need::kRequired);
+  v.rule(!v.is_given("follow") || (!follow.empty() && follow.size() <= 3), "follow",
+         "one to three joints must keep the loop closed", std::to_string(follow.size()));
   if (link >= 0) loop.link = links[link];
   if (meets >= 0) loop.meets = links[meets];
   if (leader >= 0) loop.leader = joints[leader];

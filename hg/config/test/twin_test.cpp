@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hg/core/error.h"
+#include "hg/core/test/message_of.h"
 
 namespace hg::config {
 namespace {
@@ -48,13 +49,15 @@ TEST(Twin, AProfileIsReadWithItsRepeatAndItsFriction) {
   EXPECT_TRUE(gate("", "").model.dofs[0].profile.empty());
 }
 
-Twin flywheel(const std::string& more) {
+Twin example(const std::string& name, const std::string& more) {
   SourceReader disk;
   SourceReader reader(
       {{"twin.yaml", "name: f\nurdf: f.urdf\ntip_link: handle\nend_effector: handle\n" + more},
-       {"f.urdf", disk.read("models/examples/flywheel.urdf")}});
+       {"f.urdf", disk.read("models/examples/" + name + ".urdf")}});
   return load_twin("twin.yaml", reader);
 }
+
+Twin flywheel(const std::string& more) { return example("flywheel", more); }
 
 std::string fault_of(const std::string& more) {
   try {
@@ -88,6 +91,22 @@ TEST(Twin, CouplingsThatCannotBeAreRefusedAtTheirPlace) {
       fault_of("joints: {wheel_joint: {damping_Nms_per_rad: 1}}\n"),
       "twin.yaml:5:10: joints.wheel_joint: must be a joint of the twin, got 'wheel_joint', did "
       "you mean 'lever_joint'?");
+}
+
+TEST(Twin, ALoopIsClosedByTheJointsThatFollow) {
+  const auto door = [](const std::string& follow) {
+    return example("lift_door",
+                   "loops:\n  - {link: upper_arm_end, meets: hinge_on_door, leads: "
+                   "lower_hinge, follow: [" +
+                       follow + "]}\n");
+  };
+  const model::ChainModel chain = door("door_hinge, upper_hinge").model.chain;
+  EXPECT_EQ(chain.nv(), 1);
+  ASSERT_EQ(chain.couplings().size(), 2u);
+  EXPECT_TRUE(chain.couplings()[0].curve && chain.couplings()[1].curve);
+  EXPECT_EQ(
+      message_of([&] { door(""); }),
+      "twin.yaml:6:77: loops[0].follow: one to three joints must keep the loop closed, got 0");
 }
 
 }  // namespace
