@@ -148,7 +148,8 @@ class Columns {
 /// Bytes of a column in rows of column.width() numbers; shorter rows are padded with NaN or 0.
 inline std::vector<std::byte> padded(const Column& column, std::size_t rows) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const std::size_t numbers = rows * column.width();
+  const std::size_t width = column.width();  // looks at every row
+  const std::size_t numbers = rows * width;
   std::vector<std::byte> bytes(numbers * column.bytes);
   if (column.kind == 'f') {
     for (std::size_t i = 0; i < numbers; ++i) {
@@ -158,7 +159,7 @@ inline std::vector<std::byte> padded(const Column& column, std::size_t rows) {
   const std::byte* from = column.data.data();
   for (std::size_t row = 0; row < column.counts.size(); ++row) {
     const std::size_t size = column.counts[row] * column.bytes;
-    std::copy_n(from, size, bytes.data() + row * column.width() * column.bytes);
+    std::copy_n(from, size, bytes.data() + row * width * column.bytes);
     from += size;
   }
   return bytes;
