@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Does what a user does: pip install from a clean copy of HEAD into a fresh virtual environment, with
-# the ordinary registries, then runs the Python tests and examples with what was installed.
-# Takes some minutes; `make test` runs the same tests on the extension of the normal build.
+# the ordinary registries, then runs examples and those Python tests that an installation can break
+# with what was installed. Takes some minutes; `make test` runs all of them on the normal build.
 #
 #   tools/check_pip_install.sh [WORK]    WORK: folder for all of it, default build/pip_install
 set -euo pipefail
