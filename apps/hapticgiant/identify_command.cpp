@@ -63,6 +63,22 @@ void print_yaml(const PayloadEstimate& found) {
       found.mass, row(found.com, 4));
 }
 
+// Adds a subcommand that identifies something from a recording.
+void add_recorded(CLI::App& identify, int& exit_code,
+                  int (*run)(const IdentifyRecordingArguments& arguments), const char* name,
+                  const char* what, const char* examples) {
+  const auto arguments = std::make_shared<IdentifyRecordingArguments>();
+  CLI::App* command = identify.add_subcommand(name, what);
+  command->footer(examples);
+  command->add_option("file", arguments->file, "recording of hapticgiant run")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--device", arguments->device,
+                      "device.yaml to compare with instead of that of the recording");
+  command->add_option("--json", arguments->json, "write all figures as JSON to this file");
+  command->callback([arguments, run, &exit_code] { exit_code = run(*arguments); });
+}
+
 }  // namespace
 
 int identify_payload(const IdentifyArguments& arguments) {
@@ -87,7 +103,6 @@ int identify_payload(const IdentifyArguments& arguments) {
 
 void add_identify(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<IdentifyArguments>();
-  const auto recorded = std::make_shared<IdentifyFrictionArguments>();
   CLI::App* identify = app.add_subcommand("identify", "Parameters of a device from measurements.");
   identify->require_subcommand(1);
   CLI::App* payload = identify->add_subcommand(
@@ -103,20 +118,17 @@ void add_identify(CLI::App& app, int& exit_code) {
       ->check(at_least(1))
       ->capture_default_str();
   payload->callback([arguments, &exit_code] { exit_code = identify_payload(*arguments); });
-  CLI::App* friction = identify->add_subcommand(
-      "friction",
-      "Friction of each joint from a recording of its motion (docs/concepts/friction.md).");
-  friction->footer(
-      "Examples:\n"
-      "  hapticgiant run free_space --user friction --fast   moves all joints\n"
-      "  hapticgiant identify friction recordings/latest.mcap");
-  friction->add_option("file", recorded->file, "recording of hapticgiant run")
-      ->required()
-      ->check(CLI::ExistingFile);
-  friction->add_option("--device", recorded->device,
-                       "device.yaml to compare with instead of that of the recording");
-  friction->add_option("--json", recorded->json, "write all figures as JSON to this file");
-  friction->callback([recorded, &exit_code] { exit_code = identify_friction(*recorded); });
+  add_recorded(*identify, exit_code, identify_friction, "friction",
+               "Friction of each joint from a recording of its motion (docs/concepts/friction.md).",
+               "Examples:\n"
+               "  hapticgiant run free_space --user friction --fast   moves all joints\n"
+               "  hapticgiant identify friction recordings/latest.mcap");
+  add_recorded(*identify, exit_code, identify_joints, "joints",
+               "Stiffness and damping of each joint, or the delay of drives that follow positions, "
+               "from a recording (docs/concepts/identification.md).",
+               "Examples:\n"
+               "  hapticgiant run models/arms/fr3/move_tool.yaml --fast\n"
+               "  hapticgiant identify joints recordings/latest.mcap");
 }
 
 }  // namespace hg::apps

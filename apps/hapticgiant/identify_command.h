@@ -1,6 +1,7 @@
 /// `hapticgiant identify payload [FILE...]`: the payload beyond the force/torque sensor, from poses
 /// at rest: of the simulated device, which takes them on its own, or from CSV files. `hapticgiant
-/// identify friction RECORDING`: the friction of each joint, from a run.
+/// identify friction RECORDING`: the friction of each joint, from a run. `hapticgiant identify
+/// joints RECORDING`: stiffness and damping of each joint, or the delay of its drive.
 #pragma once
 
 #include <string>
@@ -18,7 +19,7 @@ struct IdentifyArguments {
   int poses = 12;  ///< number of poses taken on the simulated device
 };
 
-struct IdentifyFrictionArguments {
+struct IdentifyRecordingArguments {
   std::string file;    ///< recording file
   std::string device;  ///< device.yaml; empty = that of the recording
   std::string json;    ///< file for all figures; empty = none
@@ -29,7 +30,11 @@ struct IdentifyFrictionArguments {
 int identify_payload(const IdentifyArguments& arguments);
 /// Identifies friction and prints to stdout. Returns the exit code: 0, or 2 when no joint moved
 /// enough.
-int identify_friction(const IdentifyFrictionArguments& arguments);
+int identify_friction(const IdentifyRecordingArguments& arguments);
+
+/// Identifies stiffness, damping and delay and prints to stdout. Returns the exit code: 0, or 2
+/// when no joint moved enough.
+int identify_joints(const IdentifyRecordingArguments& arguments);
 
 /// Adds the subcommands to the program; running it sets `exit_code`.
 void add_identify(CLI::App& app, int& exit_code);

@@ -102,7 +102,7 @@ nlohmann::ordered_json to_json(const std::vector<JointFriction>& joints) {
 
 }  // namespace
 
-int identify_friction(const IdentifyFrictionArguments& arguments) {
+int identify_friction(const IdentifyRecordingArguments& arguments) {
   check_writable(arguments.json, kJson);
   std::optional<config::DeviceConfig> device;
   if (!arguments.device.empty()) {

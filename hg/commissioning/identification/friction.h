@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "hg/commissioning/identification/figure.h"
 #include "hg/signals/actuator_model.h"
 
 namespace hg::identification {
@@ -29,12 +30,7 @@ struct FrictionTrace {
   std::vector<std::size_t> cuts;
 };
 
-/// A number and its standard deviation.
-struct FrictionFigure {
-  double value = 0.0;
-  double deviation = 0.0;
-  bool is_found = false;  ///< false: not observable from the motion, `value` is the nominal one
-};
+using FrictionFigure = Figure;
 
 struct FrictionEstimate {
   FrictionFigure coulomb;         ///< F, Nm

@@ -1,0 +1,64 @@
+// What `hapticgiant identify joints` finds of simulated arms, whose truth is known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "hg/commissioning/identification/drive_delay.h"
+#include "hg/commissioning/identification/joint_elasticity.h"
+#include "hg/commissioning/identification/joint_recording.h"
+#include "hg/scenario/options.h"
+#include "hg/studies/player.h"
+
+namespace hg {
+namespace {
+
+using identification::Figure;
+
+// A tool moved to and fro by the arm of this folder.
+std::vector<identification::JointMotion> moved(const config::Scenario& scenario) {
+  identification::JointRecording joints(scenario.device.model);
+  studies::Player player(scenario);
+  for (bool is_running = true; is_running; is_running = player.end()) {
+    player.begin();
+    player.run();
+    joints.add(player.sample());
+  }
+  EXPECT_EQ(player.record().fault.code, FaultCode::kNone);
+  return joints.parts();
+}
+
+void expect_covered(const Figure& found, double truth, double share, const char* what) {
+  EXPECT_TRUE(found.is_found) << what;
+  EXPECT_LT(std::abs(found.value - truth), std::min(1.5 * found.interval(), share * truth))
+      << what << " " << found.value << " +- " << found.interval();
+}
+
+TEST(IdentifyJoints, FindsStiffnessAndDampingOfAnArmWhoseFileIsWrong) {
+  const config::Scenario scenario = scenario::load({.scenario = "models/arms/fr3/move_tool.yaml"});
+  const auto parts = moved(scenario);
+  const auto& [factors, device] = std::tie(scenario.device.simulation.factors, scenario.device);
+  for (int i = 0; i < 6; ++i) {
+    SCOPED_TRACE(device.model.manipulator_joint(i));
+    const ActuatorModel& nominal = device.model.actuators[static_cast<std::size_t>(i)];
+    const auto found = identification::identify_elasticity(parts, i, device.model.dt(), nominal,
+                                                           device.simulation.gear_ratio[i]);
+    expect_covered(found.stiffness, factors.stiffness * nominal.stiffness, 0.02, "stiffness");
+    expect_covered(found.damping, factors.damping * nominal.damping, 0.08, "damping");
+  }
+}
+
+TEST(IdentifyJoints, FindsTheDelayOfDrivesThatFollowPositions) {
+  const config::Scenario scenario = scenario::load({.scenario = "models/arms/ur5e/move_tool.yaml"});
+  const auto parts = moved(scenario);
+  std::vector<identification::DriveDelay> delays;
+  for (int i = 0; i < 6; ++i) {
+    delays.push_back(identification::identify_delay(parts, i, scenario.device.model.dt()));
+  }
+  // 8 ms of latency and a period of 2 ms, less the step by which the drives look ahead
+  expect_covered(identification::common_delay(delays), 9.75e-3, 0.01, "delay");
+}
+
+}  // namespace
+}  // namespace hg
