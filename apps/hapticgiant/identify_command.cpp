@@ -129,6 +129,12 @@ void add_identify(CLI::App& app, int& exit_code) {
                "Examples:\n"
                "  hapticgiant run models/arms/fr3/move_tool.yaml --fast\n"
                "  hapticgiant identify joints recordings/latest.mcap");
+  add_recorded(*identify, exit_code, identify_inertia, "inertia",
+               "Inertial parameters of the links of an arm with joint torque sensors, from a "
+               "recording (docs/concepts/identification.md).",
+               "Examples:\n"
+               "  hapticgiant run models/arms/fr3/excite.yaml --fast   moves all joints\n"
+               "  hapticgiant identify inertia recordings/latest.mcap");
 }
 
 }  // namespace hg::apps

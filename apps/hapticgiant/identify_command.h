@@ -1,7 +1,8 @@
 /// `hapticgiant identify payload [FILE...]`: the payload beyond the force/torque sensor, from poses
 /// at rest: of the simulated device, which takes them on its own, or from CSV files. `hapticgiant
 /// identify friction RECORDING`: the friction of each joint, from a run. `hapticgiant identify
-/// joints RECORDING`: stiffness and damping of each joint, or the delay of its drive.
+/// joints RECORDING`: stiffness and damping of each joint, or the delay of its drive. `hapticgiant
+/// identify inertia RECORDING`: inertial parameters of the links.
 #pragma once
 
 #include <string>
@@ -35,6 +36,10 @@ int identify_friction(const IdentifyRecordingArguments& arguments);
 /// Identifies stiffness, damping and delay and prints to stdout. Returns the exit code: 0, or 2
 /// when no joint moved enough.
 int identify_joints(const IdentifyRecordingArguments& arguments);
+
+/// Identifies inertial parameters of the links and prints to stdout. Returns the exit code: 0, or 2
+/// when the motion does not show enough of them.
+int identify_inertia(const IdentifyRecordingArguments& arguments);
 
 /// Adds the subcommands to the program; running it sets `exit_code`.
 void add_identify(CLI::App& app, int& exit_code);

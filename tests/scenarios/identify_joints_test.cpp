@@ -1,11 +1,14 @@
-// What `hapticgiant identify joints` finds of simulated arms, whose truth is known.
+// What `hapticgiant identify joints` and `identify inertia` find of simulated arms, whose truth is
+// known.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "hg/commissioning/identification/drive_delay.h"
+#include "hg/commissioning/identification/inertia.h"
 #include "hg/commissioning/identification/joint_elasticity.h"
 #include "hg/commissioning/identification/joint_recording.h"
 #include "hg/scenario/options.h"
@@ -16,7 +19,7 @@ namespace {
 
 using identification::Figure;
 
-// A tool moved to and fro by the arm of this folder.
+// The motion of the joints in a scenario.
 std::vector<identification::JointMotion> moved(const config::Scenario& scenario) {
   identification::JointRecording joints(scenario.device.model);
   studies::Player player(scenario);
@@ -58,6 +61,22 @@ TEST(IdentifyJoints, FindsTheDelayOfDrivesThatFollowPositions) {
   }
   // 8 ms of latency and a period of 2 ms, less the step by which the drives look ahead
   expect_covered(identification::common_delay(delays), 9.75e-3, 0.01, "delay");
+}
+
+TEST(IdentifyInertia, FindsThatAnArmIsHeavierThanItsFilesSay) {
+  const config::Scenario scenario = scenario::load({.scenario = "models/arms/fr3/excite.yaml"});
+  const auto found = identification::identify_inertia(moved(scenario), scenario.device);
+  EXPECT_EQ(found.missing, "");
+  EXPECT_GE(found.shown, 30);
+  int large = 0;
+  for (const identification::BaseFigure& base : found.base) {
+    if (std::abs(base.nominal) < 0.5) continue;
+    ++large;
+    const double factor = base.found.value / base.nominal;
+    EXPECT_GT(factor, scenario.device.simulation.factors.mass - 0.01) << base.name;
+    EXPECT_LT(factor, scenario.device.simulation.factors.mass + 0.03) << base.name << " and grip";
+  }
+  EXPECT_GE(large, 8);
 }
 
 }  // namespace

@@ -4,20 +4,37 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/core/interval.h"
+
 namespace hg::identification {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Solves H x = g with columns of any size; directions without rows stay near 0.
-VectorXd solve_scaled(MatrixXd H, const VectorXd& g) {
-  constexpr double kLeast = 1e-12;  // of a column's own square
-  const VectorXd scale = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  H = scale.asDiagonal() * H * scale.asDiagonal();
-  H.diagonal().array() += kLeast;
-  return scale.cwiseProduct(H.ldlt().solve(scale.cwiseProduct(g)));
-}
+constexpr double kLeast = 1e-12;  // of a column's own square
+
+// Factors of a normal matrix with columns of any size; directions without rows stay near 0.
+class Factors {
+ public:
+  explicit Factors(const MatrixXd& H)
+      : scale_(H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()) {
+    MatrixXd scaled = scale_.asDiagonal() * H * scale_.asDiagonal();
+    scaled.diagonal().array() += kLeast;
+    ldlt_.compute(scaled);
+  }
+  VectorXd solve(const VectorXd& g) const {
+    return scale_.cwiseProduct(ldlt_.solve(scale_.cwiseProduct(g)));
+  }
+  MatrixXd inverse() const {
+    const Eigen::Index n = scale_.size();
+    return scale_.asDiagonal() * ldlt_.solve(MatrixXd::Identity(n, n)) * scale_.asDiagonal();
+  }
+
+ private:
+  VectorXd scale_;
+  Eigen::LDLT<MatrixXd> ldlt_;
+};
 
 }  // namespace
 
@@ -44,28 +61,69 @@ BlockRegression::Block BlockRegression::total() const {
   return sum;
 }
 
-Regressed BlockRegression::solve(const VectorXd& prior) const {
+// With the columns in `used` only, and this precision of their prior; inflation is that of
+// `judged`.
+Regressed BlockRegression::solve(const std::vector<Eigen::Index>& used, const VectorXd& precision,
+                                 const std::vector<Eigen::Index>& judged) const {
   const Block sum = total();
   const auto blocks = static_cast<double>(blocks_.size());
+  MatrixXd H = sum.H(used, used);
+  const VectorXd g = sum.g(used);
+  H.diagonal() += precision;
+  const Factors factors(H);
   Regressed result;
-  const auto square = [&](const VectorXd& x) {
-    return std::max(0.0, sum.yy - 2.0 * x.dot(sum.g) + x.dot(sum.H * x)) / sum.rows;
-  };
-  const double variance = square(solve_scaled(sum.H, sum.g));
+  result.x = factors.solve(g);
+  result.inverse = factors.inverse();
+  const double squares =
+      sum.yy - 2.0 * result.x.dot(g) + result.x.dot(sum.H(used, used) * result.x);
+  result.residual = std::sqrt(std::max(0.0, squares) / sum.rows);
 
-  // rows of one block are no independent evidence against the prior
-  MatrixXd H = sum.H;
-  H.diagonal().array() += variance * sum.rows / blocks * prior.array().square().inverse();
-  result.x = solve_scaled(H, sum.g);
-  result.residual = std::sqrt(square(result.x));
-
-  MatrixXd without(columns_, blocks_.size());
+  MatrixXd without(g.size(), blocks_.size());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     without.col(static_cast<Eigen::Index>(b)) =
-        solve_scaled(H - blocks_[b].H, sum.g - blocks_[b].g);
+        Factors(H - blocks_[b].H(used, used)).solve(g - VectorXd(blocks_[b].g(used)));
   }
   without.colwise() -= VectorXd(without.rowwise().mean());
   result.covariance = (blocks - 1.0) / blocks * without * without.transpose();
+
+  result.inflation = inflation_of(used, result.x, judged);
+  return result;
+}
+
+// A block's rows pull at a parameter together: the mean square of that over what independent rows
+// of variance 1 would do.
+double BlockRegression::inflation_of(const std::vector<Eigen::Index>& used, const VectorXd& x,
+                                     const std::vector<Eigen::Index>& judged) const {
+  VectorXd pulls = VectorXd::Zero(columns_), sizes = VectorXd::Zero(columns_);
+  for (const Block& block : blocks_) {
+    const VectorXd pull = block.g - block.H(Eigen::all, used) * x;
+    pulls += pull.cwiseAbs2();
+    sizes += block.H.diagonal();
+  }
+  double logarithms = 0.0, count = 0.0;
+  for (const Eigen::Index i : judged) {
+    if (!(pulls[i] > 0.0 && sizes[i] > 0.0)) continue;
+    logarithms += std::log(pulls[i] / sizes[i]);
+    ++count;
+  }
+  return count > 0.0 ? std::exp(logarithms / count) : 1.0;
+}
+
+Regressed BlockRegression::solve(const VectorXd& prior) const {
+  std::vector<Eigen::Index> all, open;
+  for (Eigen::Index i = 0; i < columns_; ++i) {
+    all.push_back(i);
+    if (prior[i] == kInfinity) open.push_back(i);
+  }
+  // how much the rows count against the prior follows from what they leave
+  constexpr int kRounds = 3;
+  const VectorXd shares = prior.array().square().inverse();
+  double inflation = solve(open, VectorXd::Zero(std::ssize(open)), open).inflation;
+  Regressed result;
+  for (int round = 0; round < kRounds; ++round) {
+    result = solve(all, inflation * shares, open);
+    inflation = result.inflation;
+  }
   return result;
 }
 

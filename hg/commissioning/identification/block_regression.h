@@ -14,7 +14,11 @@ inline constexpr int kFewestOfBlocks = 8;  ///< fewest blocks that show a deviat
 struct Regressed {
   Eigen::VectorXd x;           ///< parameters
   Eigen::MatrixXd covariance;  ///< by leaving out one block after the other
-  double residual = 0.0;       ///< rms of the weighted residual
+  Eigen::MatrixXd inverse;     ///< of A^T A with the prior
+  /// Variance of a row, times the number of rows that are no evidence of their own; inverse times
+  /// inflation is a covariance that knows of the prior
+  double inflation = 1.0;
+  double residual = 0.0;  ///< rms of the weighted residual
 };
 
 class BlockRegression {
@@ -30,10 +34,13 @@ class BlockRegression {
   /// Solves with a prior around 0: `prior` has the standard deviation of each parameter, infinity =
   /// none. Needs a block.
   Regressed solve(const Eigen::VectorXd& prior) const;
-  /// Sum of A^T A over all rows.
-  Eigen::MatrixXd normal() const { return total().H; }
 
  private:
+  Regressed solve(const std::vector<Eigen::Index>& used, const Eigen::VectorXd& precision,
+                  const std::vector<Eigen::Index>& judged) const;
+  double inflation_of(const std::vector<Eigen::Index>& used, const Eigen::VectorXd& x,
+                      const std::vector<Eigen::Index>& judged) const;
+
   struct Block {
     Eigen::MatrixXd H;
     Eigen::VectorXd g;
