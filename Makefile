@@ -23,6 +23,8 @@
 #   make lint    checks names and some common mistakes (clang-tidy)
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
+#   make franka  runs the driver of the Franka against franka-sim, an independent server, in an
+#                environment of its own (175 MB); MINUTE=1 measures its loop for a minute instead
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -59,7 +61,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
+.PHONY: demo franka arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -93,6 +95,9 @@ experiments: build  # each one refreshes its page, also after one that is not as
 
 arms: build
 	@.venv/bin/python tools/compare_arms.py $(BUILD)/hapticgiant docs/reports/arms.md
+
+franka: build
+	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(MINUTE),--minute)
 
 bench-instructions:
 	@tools/setup.sh count

@@ -1,10 +1,17 @@
 #include "apps/hapticgiant/prepared_run.h"
 
+#include <fmt/format.h>
+
+#include <future>
+
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
+#include "hg/runtime/control_thread.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/remote/franka_setup.h"
 #include "hg/scenario/remote/remote_setup.h"
+#include "hg/scenario/start_posture.h"
 
 namespace hg::apps {
 
@@ -19,22 +26,47 @@ PreparedRun::PreparedRun(const RunArguments& a)
     : arguments(a), scenario(make_scenario(a)), cycle(scenario::make_cycle(scenario)) {
   if (arguments.device_address.empty()) {
     device = scenario::make_simulated_device(scenario);
-    return;
+  } else if (scenario::is_franka(arguments.device_address)) {
+    connect_franka();
+  } else if (arguments.moves_to_start) {
+    throw SetupError("--move-to-start: only a Franka can be moved, got --device-address " +
+                     arguments.device_address);
+  } else {
+    connect_remote();
   }
+}
+
+void PreparedRun::connect_franka() {
+  if (arguments.is_fast) throw SetupError("--fast: a Franka keeps its own time, leave it out");
+  auto connected = scenario::connect_franka(arguments.device_address, scenario);
+  if (arguments.moves_to_start) {
+    const VectorM start = scenario::find_start(scenario.device, scenario.twin).q_m;
+    std::async(std::launch::async, [&] {
+      runtime::become_real_time({.priority = arguments.priority, .cpu = arguments.cpu});
+      connected->move_to(start);
+    }).get();
+  }
+  note = "a Franka tests its brakes and stops itself: no start test is required";
+  remote = connected.get();
+  device = std::move(connected);
+}
+
+void PreparedRun::connect_remote() {
   const auto connect = [&](double busy_patience_s) {
     return scenario::connect_device(arguments.device_address, scenario::key_of(arguments.key_file),
-                                    scenario, std::string("hapticgiant run ") + kVersion,
+                                    scenario, fmt::format("hapticgiant run {}", kVersion),
                                     arguments.is_fast, busy_patience_s);
   };
   auto connected = connect(0.0);
-  is_machine = !connected->welcome().is_simulated;
-  if (is_machine) {
+  note = "the device says that it is a simulation: no start test is required";
+  if (!connected->welcome().is_simulated) {
     const start_test::MachineMemory memory = machine_memory(arguments);
     start_test = start_test::check_start_test(memory, scenario.device);
     posture = start_test::check_posture(memory, scenario.device, *connected);
     // the server may not know yet that the session for the posture is over
     constexpr double kFarewell = 0.5;  // s
     connected = connect(kFarewell);
+    machine = connected.get();
   }
   remote = connected.get();
   device = std::move(connected);

@@ -8,7 +8,7 @@
 #include "hg/commissioning/start_test/machine_memory.h"
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
-#include "hg/device/device.h"
+#include "hg/device/connected_device.h"
 #include "hg/device/udp/remote_device.h"
 #include "hg/page/run_page.h"
 
@@ -28,11 +28,17 @@ struct PreparedRun {
   const config::Scenario scenario;
   controller::Cycle cycle;
   std::unique_ptr<device::Device> device;
-  /// `device` as a remote device; nullptr = simulated here
-  udp::RemoteDevice* remote = nullptr;
-  bool is_machine = false;  ///< the device is a real machine
+  /// `device` as one at the other end of a connection; nullptr = simulated here
+  device::ConnectedDevice* remote = nullptr;
+  /// `device` as a real machine behind our protocol, which has a start test; nullptr = it is none
+  udp::RemoteDevice* machine = nullptr;
+  std::string note;  ///< why a remote device needs no start test
   /// Messages on a machine's start test and posture; see machine_memory.h
   std::string start_test, posture;
+
+ private:
+  void connect_remote();
+  void connect_franka();
 };
 
 }  // namespace hg::apps

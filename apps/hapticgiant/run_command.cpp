@@ -146,7 +146,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
   observers.status_line.clear();
 }
 
-void close_device(udp::RemoteDevice& device, const Fault& fault) {
+void close_device(device::ConnectedDevice& device, const Fault& fault) {
   device.close(fault.code);
   if (!device.farewell().empty()) {
     print_out(fmt::format("message of the remote device: {}\n", device.farewell()));
@@ -302,11 +302,11 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   }
   if (page != nullptr) tell_missing_meshes(scenario);
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
-  if (run.is_machine) {
+  if (run.machine != nullptr) {
     notify(observers, 0.0, "start test", run.start_test);
     notify(observers, 0.0, "posture", run.posture);
   } else if (run.remote != nullptr) {
-    print_out("note        the device says that it is a simulation: no start test is required\n");
+    print_out(fmt::format("note        {}\n", run.note));
   }
 
   runtime::Runtime runtime(options, run.cycle, *run.device);
@@ -315,9 +315,9 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   watch(runtime, observers);
   const runtime::RuntimeReport report = runtime.join();
   std::vector<std::string> about_machine;
-  if (run.is_machine) {
+  if (run.machine != nullptr) {
     about_machine = start_test::leave_machine(machine_memory(arguments), scenario.device,
-                                              *run.remote, observers.summary.fault().code);
+                                              *run.machine, observers.summary.fault().code);
   }
   if (run.remote != nullptr) close_device(*run.remote, observers.summary.fault());
 
@@ -338,7 +338,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));
-  if (run.is_machine) print_out(fmt::format("  start test   {}\n", run.start_test));
+  if (run.machine != nullptr) print_out(fmt::format("  start test   {}\n", run.start_test));
   for (const std::string& line : about_machine) print_out(fmt::format("  {}\n", line));
   bool is_written = recorded.is_whole();
   try {

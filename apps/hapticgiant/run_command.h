@@ -17,8 +17,10 @@ namespace hg::apps {
 struct RunArguments {
   std::string program = "hapticgiant";  ///< program name as called, for printed commands
   scenario::ScenarioOptions world;
-  std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
-  std::string key_file;        ///< file of the key shared with the device; empty = none
+  /// HOST:PORT of a remote device, or franka://HOST; empty = simulated here
+  std::string device_address;
+  bool moves_to_start = false;  ///< a Franka first moves to where the twin starts
+  std::string key_file;         ///< file of the key shared with the device; empty = none
   /// Duration of the run, s; unset = until the script has played; on a terminal with a page until
   /// Ctrl-C.
   std::optional<double> duration_s;

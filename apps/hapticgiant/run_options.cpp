@@ -21,7 +21,12 @@ void add_run(CLI::App& app, const std::string& program, int& exit_code) {
   add_scenario_options(*command, arguments->world);
   command->add_option(
       "--device-address", arguments->device_address,
-      "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one");
+      "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one, or "
+      "franka://HOST of a Franka FR3 (docs/start/franka.md)");
+  command
+      ->add_flag("--move-to-start", arguments->moves_to_start,
+                 "a Franka first moves slowly to where the twin starts; keep its way clear")
+      ->needs("--device-address");
   command
       ->add_option("--key-file", arguments->key_file,
                    "secret that the remote device has, too (docs/reference/device_protocol.md)")

@@ -103,8 +103,9 @@ fs::path find_twin(const std::string& name, const SourceReader& reader) {
 fs::path find_device(const std::string& name, const SourceReader& reader) {
   if (reader.exists(name)) return name;
   const fs::path models = models_root() / "models";
-  for (const fs::path& known : {models.parent_path() / name, models / name / "device.yaml",
-                                models / "arms" / name / "device.yaml"}) {
+  for (const fs::path& known :
+       {models.parent_path() / name, models / name / "device.yaml",
+        models / "arms" / name / "device.yaml", models / "arms" / (name + ".yaml")}) {
     if (reader.exists(known)) return known;
   }
   // the reader of a file says what is beside it

@@ -175,7 +175,7 @@ TEST_F(MachineTest, ASimulationNeedsNoStartTest) {
   const Machine machine(scenario::load(arguments_.world), true);
   arguments_.device_address = machine.address();
   const apps::PreparedRun run(arguments_);
-  EXPECT_FALSE(run.is_machine);
+  EXPECT_EQ(run.machine, nullptr);
   EXPECT_EQ(run.start_test, "");
 }
 

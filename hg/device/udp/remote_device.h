@@ -7,13 +7,12 @@
 #include <cstdint>
 #include <string>
 
-#include "hg/device/device.h"
+#include "hg/device/connected_device.h"
 #include "hg/device/udp/frame_queue.h"
 #include "hg/device/udp/inbox.h"
 #include "hg/device/udp/outbox.h"
 #include "hg/device/udp/protocol.h"
 #include "hg/device/udp/udp_socket.h"
-#include "hg/signals/link_counts.h"
 
 namespace hg::udp {
 
@@ -31,7 +30,7 @@ struct ClientConfig {
   Key key;  ///< shared key, which the server must have, too
 };
 
-class RemoteDevice final : public device::Device {
+class RemoteDevice final : public device::ConnectedDevice {
  public:
   /// Connects. Throws SetupError: no answer, refused and why, other device or version.
   RemoteDevice(const Address& address, const ClientConfig& config);
@@ -41,15 +40,14 @@ class RemoteDevice final : public device::Device {
   /// server, the last frame is repeated with its driver_fault set, from now on without waiting.
   void read(SensorFrame& sensors) noexcept override;
   void write(const CommandFrame& command) noexcept override;
-  bool is_clock() const noexcept override { return true; }
 
-  /// Notifies the server that the session is over, and why: kNone = as planned. Only once.
-  void close(FaultCode reason) noexcept;
+  /// Notifies the server that the session is over, without waiting.
+  void close(FaultCode reason) noexcept override;
 
   const Welcome& welcome() const noexcept { return welcome_; }
   /// Reason why the server ended the session, printable; empty: it did not.
-  std::string farewell() const { return goodbye_.reason.printable(); }
-  LinkCounts counts() const noexcept;
+  std::string farewell() const override { return goodbye_.reason.printable(); }
+  LinkCounts counts() const noexcept override;
 
  private:
   void connect(const std::string& at);

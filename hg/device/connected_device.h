@@ -1,0 +1,21 @@
+/// A device at the other end of a connection, which is the clock of a run.
+#pragma once
+
+#include <string>
+
+#include "hg/device/device.h"
+#include "hg/signals/link_counts.h"
+
+namespace hg::device {
+
+class ConnectedDevice : public Device {
+ public:
+  bool is_clock() const noexcept override { return true; }
+  /// Ends the connection and says why: kNone = as planned. May block for a bounded time. Only once.
+  virtual void close(FaultCode reason) noexcept = 0;
+  /// What the device said when it ended or refused to move, printable; empty: nothing.
+  virtual std::string farewell() const = 0;
+  virtual LinkCounts counts() const noexcept = 0;
+};
+
+}  // namespace hg::device

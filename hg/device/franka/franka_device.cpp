@@ -1,0 +1,408 @@
+#include "hg/device/franka/franka_device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hg/core/error.h"
+#include "hg/device/franka/estimate.h"
+
+namespace hg::franka {
+namespace {
+
+constexpr std::uint64_t kStartPatience = 1000;  // states until a motion has begun
+constexpr std::uint64_t kEndPatience = 200;     // states until a motion has ended, then StopMove
+constexpr std::uint64_t kOvertaken = 100;       // states that may be older than an answer
+constexpr std::int64_t kLook = 5'000'000;       // ns between looks at the stream
+constexpr double kCloseTime = 0.5;              // s
+constexpr double kLoadTime = 1.0;               // s until a state shows the load
+constexpr double kSameMass = 1e-3;              // kg
+constexpr double kNoMass = 0.01;                // kg
+
+constexpr double kApproachSpeed = 0.2;  // rad/s on the way to a start
+constexpr double kTopSpeed = 1.875;     // of an approach, times its mean
+constexpr double kSettling = 0.5;       // s after an approach
+
+std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
+
+// Minimum jerk from 0 to 1 in one unit of time.
+struct Approach {
+  double way = 0.0, speed = 0.0, acceleration = 0.0;
+};
+
+Approach approach(double s) noexcept {
+  return {.way = s * s * s * (10.0 + s * (-15.0 + 6.0 * s)),
+          .speed = 30.0 * s * s * (1.0 - s) * (1.0 - s),
+          .acceleration = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s)};
+}
+
+CollisionRequest request_of(const CollisionThresholds& thresholds) {
+  return {.lower_torque_accelerating = thresholds.torque,
+          .upper_torque_accelerating = thresholds.torque,
+          .lower_torque = thresholds.torque,
+          .upper_torque = thresholds.torque,
+          .lower_force_accelerating = thresholds.force,
+          .upper_force_accelerating = thresholds.force,
+          .lower_force = thresholds.force,
+          .upper_force = thresholds.force};
+}
+
+bool is_driven_by_torques(const RobotState& state) noexcept {
+  return state.controller_mode == kExternalController &&
+         state.motion_generator_mode == kStateWithoutGenerator;
+}
+
+bool is_finite(const CommandFrame& command) noexcept {
+  const Eigen::Index n = kJoints;
+  return command.q_m.size() == n && command.dq_m.size() == n && command.ddq_m.size() == n &&
+         command.q_m.allFinite() && command.dq_m.allFinite() && command.ddq_m.allFinite();
+}
+
+}  // namespace
+
+FrankaDevice::FrankaDevice(const FrankaConfig& config, const model::ChainModel& chain)
+    : config_(config), session_(config.address, config.timeouts), impedance_(chain, config.gains) {
+  if (chain.nv() != kJoints) {
+    throw SetupError(
+        fmt::format("{}: a Franka has 7 joints, this device {}", session_.at(), chain.nv()));
+  }
+  await_idle();
+  set_collision(config_.collision);
+  session_.ask(Command::kSetLoad, config_.load, "load");
+  check_at_rest();
+}
+
+FrankaDevice::~FrankaDevice() { close(fault_); }
+
+void FrankaDevice::set_collision(const CollisionThresholds& thresholds) {
+  session_.ask(Command::kSetCollisionBehavior, request_of(thresholds), "collision thresholds");
+}
+
+// Recovers from what has stopped the robot before this session.
+void FrankaDevice::await_idle() {
+  const std::int64_t deadline = now_ns() + ns(config_.timeouts.first_state_s);
+  bool has_state = false;
+  while (!has_state && now_ns() < deadline) {
+    session_.wait(deadline);
+    while (session_.receive(state_)) has_state = true;
+  }
+  if (!has_state) throw SetupError(session_.at() + ": the robot sends no states any more");
+  if (state_.robot_mode == RobotMode::kReflex) {
+    session_.ask(Command::kAutomaticErrorRecovery,
+                 fmt::format("recovery from {}", to_string(errors_of(state_))));
+    return;
+  }
+  if (state_.robot_mode == RobotMode::kIdle) return;
+  throw SetupError(
+      fmt::format("{}: the robot must be idle, it is in mode '{}': release the user stop, end "
+                  "guiding and other "
+                  "programs",
+                  session_.at(), to_string(state_.robot_mode)));
+}
+
+void FrankaDevice::check_at_rest() {
+  RestingEstimate estimate;
+  const int needed = static_cast<int>(std::lround(config_.rest_s / kPeriod_s));
+  const std::int64_t deadline = now_ns() + ns(config_.rest_s + kLoadTime + 2.0);
+  while (estimate.states < needed && now_ns() < deadline) {
+    session_.wait(deadline);
+    while (session_.receive(state_)) {
+      const float mass = state_.m_load;
+      if (std::abs(mass - config_.load.mass) < kSameMass) estimate.add(state_, config_.T_F_S);
+    }
+  }
+  if (estimate.states < needed) {
+    const float mass = state_.m_load;
+    throw SetupError(fmt::format("{}: the robot was given a load of {:g} kg and shows {:g} kg",
+                                 session_.at(), config_.load.mass, mass));
+  }
+  const float m_ee = state_.m_ee;
+  if (m_ee > kNoMass) {
+    throw SetupError(
+        fmt::format("{}: Desk knows an end effector of {:.2f} kg: choose none there; the mass of "
+                    "the tool stands "
+                    "in its file and is sent to the robot",
+                    session_.at(), m_ee));
+  }
+  estimate.finish();
+  const std::string why = objection(estimate, impedance_.weight(estimate.q));
+  if (!why.empty()) throw SetupError(session_.at() + ": " + why);
+  resting_ = estimate.w_S;
+}
+
+void FrankaDevice::move_to(const VectorM& goal) {
+  set_collision(kLightTouch);
+  lead_to(goal);
+  await_end_of_motion();
+  set_collision(config_.collision);
+  check_at_rest();
+  // a run begins anew
+  queue_ = {};
+  is_started_ = false;
+  first_id_ = 0;
+}
+
+void FrankaDevice::lead_to(const VectorM& goal) {
+  SensorFrame sensors;
+  read(sensors);
+  const VectorM from = sensors.q_m, way = goal - from;
+  const double duration = std::max(1.0, kTopSpeed * way.cwiseAbs().maxCoeff() / kApproachSpeed);
+  double begin = -1.0;  // until the motion has begun
+  CommandFrame command;
+  command.enable = true;
+  while (true) {
+    if (sensors.driver_fault != FaultCode::kNone || sensors.safety.emergency_stop) {
+      throw SetupError(fmt::format("{}: the robot has stopped on its way to the start: {}",
+                                   session_.at(), stop_words(sensors)));
+    }
+    if (begin < 0.0 && phase_ == Phase::kMoving) begin = sensors.time_s;
+    const double since = begin < 0.0 ? 0.0 : sensors.time_s - begin;
+    if (since > duration + kSettling) return;
+    const Approach at = approach(std::min(since / duration, 1.0));
+    command.sequence = sensors.sequence;
+    command.q_m = from + at.way * way;
+    command.dq_m = at.speed / duration * way;
+    command.ddq_m = at.acceleration / (duration * duration) * way;
+    write(command);
+    read(sensors);
+  }
+}
+
+std::string FrankaDevice::stop_words(const SensorFrame& sensors) const {
+  if (sensors.safety.emergency_stop) return "the user stop is pressed";
+  const std::string words = farewell();
+  return words.empty() ? std::string(to_string(sensors.driver_fault)) : words;
+}
+
+void FrankaDevice::read(SensorFrame& sensors) noexcept {
+  if (fault_ != FaultCode::kNone) return stop(fault_, sensors);
+  if (!is_started_) skip_old_states();
+  const std::int64_t deadline = now_ns() + ns(config_.state_timeout_s);
+  while (true) {
+    take_in();
+    if (session_.is_closed()) return stop(FaultCode::kDeviceGone, sensors);
+    if (queue_.pop(sensors)) {
+      sensors.driver_fault = driver_fault();
+      return;
+    }
+    const std::int64_t now = now_ns();
+    if (now >= deadline) return stop(FaultCode::kDeviceSilent, sensors);
+    session_.wait(std::min(now + kLook, deadline));
+  }
+}
+
+// What has come between set-up and the first read.
+void FrankaDevice::skip_old_states() noexcept {
+  while (session_.receive(state_)) {
+  }
+  is_started_ = true;
+}
+
+void FrankaDevice::take_in() noexcept {
+  take_answers();
+  RobotState state;
+  while (!queue_.is_full() && session_.receive(state)) take(state);
+}
+
+void FrankaDevice::take(const RobotState& state) noexcept {
+  const std::uint64_t id = state.message_id, before = state_.message_id;
+  if (first_id_ == 0) {
+    first_id_ = id;
+  } else if (id > before) {
+    own_.lost += id - before - 1;
+  } else {
+    ++(id == before ? own_.duplicate : own_.reordered);
+  }
+  ++own_.received;
+  arrived_.sequence = id;
+  arrived_.time_s = kPeriod_s * static_cast<double>(id - first_id_);
+  arrived_.q_m = joints_of(state.q);
+  arrived_.dq_m = joints_of(state.dq);
+  arrived_.w_S = user_wrench(state, config_.T_F_S) - resting_;
+  arrived_.dead_man = true;  // the arm has none
+  arrived_.safety.emergency_stop = state.robot_mode == RobotMode::kUserStopped;
+  if (!queue_.push(arrived_)) ++own_.late;
+  if (id <= before) return;
+  state_ = state;
+  follow(state);
+}
+
+void FrankaDevice::take_answers() noexcept {
+  Answer answer;
+  while (session_.receive(answer)) {
+    if (answer.header.id == recovery_id_) {
+      recovery_id_ = 0;
+      if (answer.status != 0) continue;
+      is_aborted_ = was_not_finite_ = false;
+      errors_.reset();
+      recovered_at_ = state_.message_id;
+    }
+    if (answer.header.id != move_id_) continue;
+    const auto status = static_cast<MoveStatus>(answer.status);
+    if (status == MoveStatus::kMotionStarted) continue;
+    move_id_ = 0;
+    if (status == MoveStatus::kSuccess || phase_ == Phase::kFinishing) continue;
+    if (status == MoveStatus::kEmergencyAborted) {
+      phase_ = Phase::kIdle;  // the user stop is an input of safety, no fault of the drives
+      continue;
+    }
+    move_status_ = status;
+    // a reflex shows in the next states, with its reasons
+    if (status != MoveStatus::kReflexAborted) abort(state_);
+  }
+}
+
+// The phase of the motion by what the robot says of itself.
+void FrankaDevice::follow(const RobotState& state) noexcept {
+  const std::uint64_t id = state.message_id;
+  const bool has_motion = is_driven_by_torques(state);
+  if (state.robot_mode == RobotMode::kUserStopped) {
+    phase_ = Phase::kIdle;
+    return;
+  }
+  if (state.robot_mode == RobotMode::kReflex) {
+    // an answer by TCP may overtake a state
+    if (recovered_at_ == 0 || id > recovered_at_ + kOvertaken) abort(state);
+    return;
+  }
+  switch (phase_) {
+    case Phase::kIdle:
+      return;
+    case Phase::kStarting:
+      if (has_motion) phase_ = Phase::kMoving;
+      if (id - phase_since_ > kStartPatience) abort(state);
+      return;
+    case Phase::kMoving:
+      if (!has_motion) abort(state);
+      return;
+    case Phase::kFinishing:
+      if (!has_motion) phase_ = Phase::kIdle;
+      return;
+  }
+}
+
+void FrankaDevice::abort(const RobotState& state) noexcept {
+  is_aborted_ = true;
+  errors_ |= errors_of(state);
+  phase_ = Phase::kIdle;
+}
+
+FaultCode FrankaDevice::driver_fault() const noexcept {
+  if (was_not_finite_) return FaultCode::kCommandNotFinite;
+  if (!is_aborted_) return FaultCode::kNone;
+  return errors_[kCommunicationError] ? FaultCode::kCommandsLost : FaultCode::kDriveFault;
+}
+
+void FrankaDevice::stop(FaultCode fault, SensorFrame& sensors) noexcept {
+  fault_ = fault;
+  if (sensors.q_m.size() != kJoints) {
+    sensors.q_m = joints_of(state_.q);
+    sensors.dq_m = VectorM::Zero(kJoints);
+  }
+  ++sensors.sequence;
+  sensors.driver_fault = fault;
+}
+
+void FrankaDevice::write(const CommandFrame& command) noexcept {
+  if (command.panel.reset && !was_reset_) recover();
+  was_reset_ = command.panel.reset;
+  if (!command.enable || is_aborted_ || fault_ != FaultCode::kNone) return finish_motion();
+  if (!is_finite(command)) {
+    was_not_finite_ = true;
+    return finish_motion();
+  }
+  if (phase_ == Phase::kIdle && !was_not_finite_) start_motion();
+  if (phase_ != Phase::kMoving) return;
+  if (command.sequence != state_.message_id) {
+    ++own_.late;  // an answer to an older state does not count for the robot
+    return;
+  }
+  send_torques(command);
+}
+
+void FrankaDevice::start_motion() noexcept {
+  move_status_ = MoveStatus::kSuccess;
+  errors_.reset();
+  move_id_ = session_.send(Command::kMove, MoveRequest{});
+  phase_ = Phase::kStarting;
+  phase_since_ = state_.message_id;
+}
+
+void FrankaDevice::send_torques(const CommandFrame& command) noexcept {
+  const VectorM wanted = impedance_.torques(command, joints_of(state_.q), joints_of(state_.dq));
+  const VectorM tau = rate_limited(wanted, joints_of(state_.tau_J_d));
+  if (!tau.allFinite()) return;  // the state was not finite
+  torques_.message_id = state_.message_id;
+  std::array<double, kJoints> values;
+  Eigen::Map<Eigen::Matrix<double, kJoints, 1>>(values.data()) = tau;
+  torques_.tau_J_d = values;
+  torques_.torque_command_finished = 0;
+  session_.send(torques_);
+  ++own_.sent;
+}
+
+// Says that the torques are over until the robot has ended the motion; the robot then holds itself.
+void FrankaDevice::finish_motion() noexcept {
+  if (phase_ == Phase::kIdle) return;
+  const std::uint64_t id = state_.message_id;
+  if (phase_ != Phase::kFinishing) {
+    if (phase_ == Phase::kStarting) session_.send(Command::kStopMove, {});
+    phase_ = Phase::kFinishing;
+    phase_since_ = id;
+  } else if (id - phase_since_ == kEndPatience) {
+    session_.send(Command::kStopMove, {});
+  }
+  torques_.message_id = id;
+  torques_.torque_command_finished = 1;
+  session_.send(torques_);
+  ++own_.sent;
+}
+
+void FrankaDevice::recover() noexcept {
+  if (fault_ != FaultCode::kNone || recovery_id_ != 0) return;
+  if (is_aborted_) {
+    recovery_id_ = session_.send(Command::kAutomaticErrorRecovery, {});
+  } else {
+    was_not_finite_ = false;
+  }
+}
+
+void FrankaDevice::close(FaultCode) noexcept {
+  if (is_closed_) return;
+  is_closed_ = true;
+  await_end_of_motion();
+  if (phase_ != Phase::kIdle) session_.send(Command::kStopMove, {});
+}
+
+void FrankaDevice::await_end_of_motion() noexcept {
+  const std::int64_t deadline = now_ns() + ns(kCloseTime);
+  SensorFrame ignored;
+  while (phase_ != Phase::kIdle && now_ns() < deadline && !session_.is_closed()) {
+    finish_motion();
+    session_.wait(std::min(now_ns() + ns(kPeriod_s), deadline));
+    take_in();
+    while (queue_.pop(ignored)) {
+    }
+  }
+}
+
+std::string FrankaDevice::farewell() const {
+  if (was_not_finite_) return "a command that is not finite was not sent to the robot";
+  if (!is_aborted_) return "";
+  std::string words = fmt::format("robot in mode '{}'", to_string(state_.robot_mode));
+  if (errors_.any()) words += ": " + to_string(errors_);
+  if (move_status_ != MoveStatus::kSuccess) {
+    words += fmt::format("; motion {}", to_string(move_status_));
+  }
+  return words;
+}
+
+LinkCounts FrankaDevice::counts() const noexcept {
+  LinkCounts counts = own_;
+  counts.held = queue_.held();
+  counts.foreign = session_.foreign();
+  return counts;
+}
+
+}  // namespace hg::franka

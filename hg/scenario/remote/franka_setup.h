@@ -1,0 +1,23 @@
+/// Sets up a Franka behind its research interface as the device of a scenario.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hg/config/simulation/scenario.h"
+#include "hg/device/franka/franka_device.h"
+
+namespace hg::scenario {
+
+/// Whether an address of --device-address names a Franka: franka://HOST or franka://HOST:PORT.
+bool is_franka(const std::string& address);
+
+/// Set-up data of the Franka of a scenario. Throws SetupError where the scenario's device is none:
+/// other joints or rate, torques of its own, a payload that the robot subtracts itself, no tool.
+franka::FrankaConfig franka_config(const std::string& address, const config::Scenario& scenario);
+
+/// The scenario's device as the Franka behind `address`. Throws SetupError.
+std::unique_ptr<franka::FrankaDevice> connect_franka(const std::string& address,
+                                                     const config::Scenario& scenario);
+
+}  // namespace hg::scenario
