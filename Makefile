@@ -41,7 +41,7 @@ BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
   head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering surfaces prepositioning tracking safety \
-  collision passivity controller person simulator faults udp identification analysis doctor recording \
+  collision passivity controller person simulator faults udp franka identification analysis doctor recording \
   fuzz_replay)
 TSAN_TESTS := $(addsuffix _test, core runtime recording viewer_server)
 RTSAN_TESTS := $(addsuffix _test, controller runtime)

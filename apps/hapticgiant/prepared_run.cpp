@@ -38,6 +38,7 @@ PreparedRun::PreparedRun(const RunArguments& a)
 
 void PreparedRun::connect_franka() {
   if (arguments.is_fast) throw SetupError("--fast: a Franka keeps its own time, leave it out");
+  if (!arguments.key_file.empty()) throw SetupError("--key-file: a Franka's protocol has no key");
   auto connected = scenario::connect_franka(arguments.device_address, scenario);
   if (arguments.moves_to_start) {
     const VectorM start = scenario::find_start(scenario.device, scenario.twin).q_m;

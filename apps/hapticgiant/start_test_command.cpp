@@ -20,13 +20,18 @@
 #include "hg/commissioning/start_test/device_station.h"
 #include "hg/commissioning/start_test/machine_memory.h"
 #include "hg/commissioning/start_test/memory.h"
+#include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/remote/franka_setup.h"
 #include "hg/scenario/remote/remote_setup.h"
 
 namespace hg::apps {
 
 int start_test(const StartTestArguments& arguments) {
+  if (scenario::is_franka(arguments.device_address)) {
+    throw SetupError("start-test: a Franka tests its brakes and stop inputs itself, see Desk");
+  }
   RunArguments run;
   run.world = arguments.world;
   run.device_address = arguments.device_address;

@@ -95,6 +95,23 @@ class Commands(unittest.TestCase):
             self.assertRegex(said, r"link +\d+ sent, \d+ received")
             self.assertRegex(said, r"truth +joint limits .*; force of the user at most \d")
 
+    def test_what_a_franka_cannot_be_is_refused(self):
+        fci = ("fr3/open_drawer", "--device", "fr3/fci", "--device-address")
+        nobody = "franka://127.0.0.1:1"
+        for arguments, reason in (
+                (("fr3/open_drawer", "--device-address", nobody), "lists no actuators"),
+                (("door", "--device-address", nobody), "7 joints and no gantry"),
+                ((*fci, nobody), "127.0.0.1:1: the robot refuses the connection: activate FCI"),
+                ((*fci, "franka://"), "expected franka://HOST or franka://HOST:PORT"),
+                ((*fci, "franka://host:port"), "--device-address: expected HOST:PORT"),
+                ((*fci, nobody, "--fast"), "a Franka keeps its own time"),
+                ((*fci, nobody, "--seed", "2"), "--seed"),
+                ((*fci, "127.0.0.1:1", "--move-to-start"), "only a Franka can be moved")):
+            with self.subTest(arguments):
+                result = run(*arguments)
+                self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+                self.assertIn(reason, result.stderr)
+
     def test_sensors_without_their_described_noise_are_noticed(self):
         with Server("free_space", "--fast", "--sensors", "ideal") as server:
             result = run("free_space", "--fast", "--device-address", server.address)

@@ -24,9 +24,9 @@ VectorM joints_of(const std::array<float, kJoints>& values) noexcept {
 }
 
 Vector6 user_wrench(const RobotState& state, const Pose& T_F_S) noexcept {
-  const std::array<float, 16> F_T_EE = state.F_T_EE, EE_T_K = state.EE_T_K;
+  const std::array<float, 16> T_F_ee = state.T_F_ee, T_ee_K = state.T_ee_K;
   const std::array<float, 6> of_robot = state.K_F_ext_hat_K;
-  const Pose T_S_K = inverse(T_F_S) * pose_of(F_T_EE) * pose_of(EE_T_K);
+  const Pose T_S_K = inverse(T_F_S) * pose_of(T_F_ee) * pose_of(T_ee_K);
   const Vector6 at_K =
       -Eigen::Map<const Eigen::Matrix<float, 6, 1>>(of_robot.data()).cast<double>();
   Vector6 w_S;

@@ -1,10 +1,10 @@
-/// Messages of the Franka Control Interface (FCI), version 10, which an FR3 speaks from system 5.9
-/// on.
+/// Messages of the Franka Control Interface (FCI), version 10: an FR3 with system 5.9 or newer.
 ///
 /// Source: libfranka-common d96c221, include/research_interface/robot/{service_types,rbk_types,
-/// error}.h: layouts and numbers. Copyright 2024 Franka Robotics GmbH, Apache-2.0. Differs from it: truth values are bytes, because
-/// untrusted bytes are read. Packed, little endian. SI units; matrices column by column; frames O
-/// (base), F (flange), EE (end effector), K (where stiffness and external wrench are meant).
+/// error}.h: layouts and numbers. Copyright 2024 Franka Robotics GmbH, Apache-2.0. Differs from it:
+/// truth values are bytes, because untrusted bytes are read; poses are named as ours. Packed,
+/// little endian. SI units; matrices column by column; frames O (base), F (flange), ee (end
+/// effector), K (where stiffness and external wrench are meant).
 ///
 /// Commands and answers go through TCP, each behind a CommandHeader; states and commands of a
 /// motion through UDP, one per datagram, 1000 per second.
@@ -108,20 +108,20 @@ struct CollisionRequest {
 };
 
 struct LoadRequest {
-  double mass = 0.0;                  ///< kg
-  std::array<double, 3> F_x_Cload{};  ///< centre of mass in F, m
-  std::array<double, 9> inertia{};    ///< about the centre of mass, kg m^2
+  double mass = 0.0;                 ///< kg
+  std::array<double, 3> p_F_load{};  ///< centre of mass in F, m
+  std::array<double, 9> inertia{};   ///< about the centre of mass, kg m^2
 };
 
 struct RobotState {
   std::uint64_t message_id = 0;  ///< milliseconds of the robot's clock
-  std::array<float, 16> O_T_EE, O_T_EE_d, F_T_EE, EE_T_K, F_T_NE, NE_T_EE;
+  std::array<float, 16> T_O_ee, T_O_ee_d, T_F_ee, T_ee_K, T_F_ne, T_ne_ee;
   float m_ee;
   std::array<float, 9> I_ee;
-  std::array<float, 3> F_x_Cee;
+  std::array<float, 3> p_F_ee;
   float m_load;
   std::array<float, 9> I_load;
-  std::array<float, 3> F_x_Cload;
+  std::array<float, 3> p_F_load;
   std::array<float, 2> elbow, elbow_d;
   std::array<float, kJoints> tau_J;    ///< joint torque sensors, Nm
   std::array<float, kJoints> tau_J_d;  ///< torques of the last command in effect, Nm
@@ -134,11 +134,11 @@ struct RobotState {
   std::array<float, kJoints> tau_ext_hat_filtered;
   /// Estimated wrench of the robot on its surroundings at K: resolved in O, resolved in K.
   std::array<float, 6> O_F_ext_hat_K, K_F_ext_hat_K;
-  std::array<float, 6> O_dP_EE_d;
-  std::array<float, 3> O_ddP_O;
+  std::array<float, 6> twist_ee_d;
+  std::array<float, 3> acceleration_O;
   std::array<float, 2> elbow_c, delbow_c, ddelbow_c;
-  std::array<float, 16> O_T_EE_c;
-  std::array<float, 6> O_dP_EE_c, O_ddP_EE_c;
+  std::array<float, 16> T_O_ee_c;
+  std::array<float, 6> twist_ee_c, acceleration_ee_c;
   std::array<float, kJoints> theta, dtheta;
   std::array<float, 18> accelerometer_top, accelerometer_bottom;
   std::uint8_t motion_generator_mode;
@@ -153,8 +153,8 @@ static_assert(sizeof(RobotState) == 1377);
 struct RobotCommand {
   std::uint64_t message_id = 0;  ///< of the state that is answered
   std::array<double, kJoints> q_c{}, dq_c{};
-  std::array<double, 16> O_T_EE_c{};
-  std::array<double, 6> O_dP_EE_c{};
+  std::array<double, 16> T_O_ee_c{};
+  std::array<double, 6> twist_ee_c{};
   std::array<double, 2> elbow_c{};
   std::uint8_t valid_elbow = 0;
   std::uint8_t motion_generation_finished = 0;

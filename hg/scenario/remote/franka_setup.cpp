@@ -56,7 +56,7 @@ franka::LoadRequest load_of(const model::Tool& tool) {
   Eigen::Map<Eigen::Vector3d>(com.data()) = tool.p_com;
   std::array<double, 9> inertia;
   Eigen::Map<Eigen::Matrix3d>(inertia.data()) = tool.inertia;
-  load.F_x_Cload = com;
+  load.p_F_load = com;
   load.inertia = inertia;
   return load;
 }

@@ -30,7 +30,7 @@ struct Behaviour {
   bool sends_states = true;
   bool sends_nonsense = false;  ///< a datagram that is no state before each state
   bool accepts_moves = true;
-  bool yields = false;  ///< torques move it
+  bool yields = false;                ///< torques move it
   RobotMode mode = RobotMode::kIdle;  ///< at the beginning
   std::array<float, kJoints> tau_ext{};
   std::array<float, 6> K_F_ext = {0.25F, 0, 0, 0, 0, 0};
@@ -158,7 +158,7 @@ class FakeRobot {
     state_.robot_mode = behaviour_.mode;
     state_.controller_mode = 3;
     const std::array<float, 16> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    state_.F_T_EE = state_.EE_T_K = identity;
+    state_.T_F_ee = state_.T_ee_K = identity;
     state_.q = kPosture;
     is_connected_ = is_leaving_ = false;
     id_ = 1;
