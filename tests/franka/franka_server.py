@@ -13,7 +13,8 @@ import argparse
 import logging
 import math
 import os
-import tempfile
+import pathlib
+import sys
 import time
 import xml.etree.ElementTree as ET
 
@@ -151,20 +152,12 @@ def main():
     parser.add_argument("--torque-rate", type=float)
     options = parser.parse_args()
     logging.basicConfig(level=logging.WARNING)
-    with tempfile.TemporaryDirectory() as folder:
-        model = os.path.join(folder, "fr3.xml")
-        with open(model, "w", encoding="utf-8") as file:
-            file.write(mjcf_of(options.urdf))
-        os.environ["FR3_MJCF"] = model
-        if options.torque_rate:
-            limits_of_franka_sim(options.torque_rate)
-        server = make_server(options)
-        try:
-            server.start()
-        except KeyboardInterrupt:
-            pass
-        finally:
-            server.stop()
+    model = pathlib.Path(sys.prefix, "fr3.xml")
+    model.write_text(mjcf_of(options.urdf), encoding="utf-8")
+    os.environ["FR3_MJCF"] = str(model)
+    if options.torque_rate:
+        limits_of_franka_sim(options.torque_rate)
+    make_server(options).start()
 
 
 if __name__ == "__main__":

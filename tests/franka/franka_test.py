@@ -49,12 +49,8 @@ def server(*arguments):
             raise AssertionError("the server has ended: " + process.stdout.read())
         yield f"franka://127.0.0.1:{port}"
     finally:
-        process.send_signal(signal.SIGINT)
-        try:
-            process.communicate(timeout=20)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
+        process.kill()  # it keeps nothing
+        process.communicate()
 
 
 def listens(port):
