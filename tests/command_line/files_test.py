@@ -46,6 +46,7 @@ class Names(TemporaryFolder):
                                 ("plot", name), ("compare", name, name), ("check", name),
                                 ("hqp", "solve", name), ("identify", "payload", name),
                                 ("identify", "payload", "--device", name),
+                                ("identify", "joints", name), ("identify", "inertia", name),
                                 ("new", "device", name, "-o", self.folder / "new.yaml")):
                     code, out, err = run(*command, timeout=60)
                     self.assertEqual(code, 2, (command, out, err))

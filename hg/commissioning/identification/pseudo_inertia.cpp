@@ -83,8 +83,8 @@ ConsistentParameters consistent_parameters(const VectorXd& base, const MatrixXd&
                                            const MatrixXd& combination, const VectorXd& nominal) {
   constexpr double kWeight = 1.0 / (kUrdfTrust * kUrdfTrust);
   constexpr int kMostRounds = 100;
-  const MatrixXd CtL = combination.transpose() * information;
-  const MatrixXd H_data = CtL * combination;
+  const MatrixXd weighted = combination.transpose() * information;
+  const MatrixXd H_data = weighted * combination;
   const auto cost = [&](const VectorXd& p, const Divergence& d) {
     const VectorXd r = combination * p - base;
     return 0.5 * r.dot(information * r) + kWeight * d.value;
@@ -94,7 +94,7 @@ ConsistentParameters consistent_parameters(const VectorXd& base, const MatrixXd&
   result.prior = inverse_of(kWeight * d.hessian);
   double least = cost(result.p, d);
   for (int round = 0; round < kMostRounds; ++round) {
-    const VectorXd gradient = CtL * (combination * result.p - base) + kWeight * d.gradient;
+    const VectorXd gradient = weighted * (combination * result.p - base) + kWeight * d.gradient;
     const MatrixXd inverse = inverse_of(H_data + kWeight * d.hessian);
     const VectorXd step = -inverse * gradient;
     const double slope = gradient.dot(step);
