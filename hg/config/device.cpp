@@ -204,96 +204,15 @@ void state_stopping(DeviceConfig& device) {
   state(monitor.turn_stop_distance, gantry);
 }
 
-// Link that a joint carries and that `link` is fixed to.
-int carrier_of(const model::Urdf& urdf, int link) {
-  for (std::size_t steps = 0; steps <= urdf.joints.size(); ++steps) {
-    const auto above = std::ranges::find(urdf.joints, link, &model::UrdfJoint::child);
-    if (above == urdf.joints.end() || above->type != model::UrdfJointType::kFixed) break;
-    link = above->parent;
-  }
-  return link;
-}
-
-int link_named(const model::Urdf& urdf, const std::string& name) {
-  const auto link = std::ranges::find(urdf.links, name, &model::UrdfLink::name);
-  return link == urdf.links.end() ? -1 : static_cast<int>(link - urdf.links.begin());
-}
-
-model::UrdfCollision element_of(const LinkCapsule& capsule) {
-  const Eigen::Vector3d axis = capsule.to - capsule.from;
-  model::UrdfCollision element = {.name = {},
-                                  .T_link_shape = {},
-                                  .shape = model::UrdfShape::kCylinder,
-                                  .size = {capsule.radius, axis.norm(), 0.0}};
-  element.T_link_shape.p = 0.5 * (capsule.from + capsule.to);
-  element.T_link_shape.R =
-      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
-  return element;
-}
-
-// The URDF with the capsules of device.yaml as the only collision elements of their links and of
-// the links that are fixed to these.
-model::Urdf with_capsules(model::Urdf urdf, const DeviceDraft& draft) {
-  std::vector<int> links;
-  for (const LinkCapsule& capsule : draft.capsules) {
-    links.push_back(link_named(urdf, name_of(draft.link_names, capsule.link)));
-  }
-  for (std::size_t i = 0; i < urdf.links.size(); ++i) {
-    const int carrier = carrier_of(urdf, static_cast<int>(i));
-    const bool is_given = std::ranges::any_of(
-        links, [&](int link) { return link >= 0 && carrier_of(urdf, link) == carrier; });
-    if (is_given) urdf.links[i].collisions.clear();
-  }
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (links[i] < 0) continue;  // not among the links from root_link on
-    urdf.links[links[i]].collisions.push_back(element_of(draft.capsules[i]));
-  }
-  return urdf;
-}
-
-// Moves pairs that the file says never touch to the excluded ones.
-void leave_out(const DeviceDraft& draft, const model::Urdf& urdf,
-               collision::CollisionConfig& collision) {
-  const auto body_of = [&](int link) {
-    const std::string carrier =
-        urdf.links[carrier_of(urdf, link_named(urdf, name_of(draft.link_names, link)))].name;
-    const auto above = std::ranges::find(urdf.joints, carrier, [&](const model::UrdfJoint& joint) {
-      return urdf.links[joint.child].name;
-    });
-    return above == urdf.joints.end() ? 0 : draft.device.model.chain.joint(above->name) + 1;
-  };
-  for (const std::vector<int>& links : draft.never_touch) {
-    const auto [first, second] = std::minmax(body_of(links[0]), body_of(links[1]));
-    std::erase_if(collision.pairs.watched, [&](const collision::Pair& pair) {
-      const bool is_named = collision.shapes[pair.a].body == first &&
-                            collision.shapes[pair.b].body == second &&
-                            !collision.shapes[pair.a].is_surrounding;
-      if (is_named) {
-        collision.pairs.excluded.push_back({pair.a, pair.b, collision::Exclusion::kNever, 0.0});
-      }
-      return is_named;
-    });
-  }
-}
-
-// Fills the collision model from the collision elements of the URDF and the capsules of the file.
-void watch_collisions(const UrdfText& text, DeviceDraft& draft) {
-  DeviceConfig& device = draft.device;
+// Fills the collision model from the collision elements of the URDF.
+void watch_collisions(const UrdfText& urdf, DeviceConfig& device) {
   const model::ChainOptions& options = device.chain_options;
   const model::ChainModel& chain = device.model.chain;
-  const model::Urdf urdf =
-      with_capsules(model::serial_part(model::read_urdf_text(text.text, text.file.generic_string()),
-                                       options.root_link, options.tip_link),
-                    draft);
-  collision::Geometry geometry = collision::read_geometry(urdf, chain);
+  collision::Geometry geometry = collision::read_geometry(
+      model::serial_part(model::read_urdf_text(urdf.text, urdf.file.generic_string()),
+                         options.root_link, options.tip_link),
+      chain);
   device.unknown_links = std::move(geometry.links_without);
-  std::erase_if(device.unknown_links, [&](const std::string& link) {
-    const int carrier = carrier_of(urdf, link_named(urdf, link));
-    return std::ranges::any_of(draft.capsules, [&](const LinkCapsule& capsule) {
-      const int other = link_named(urdf, name_of(draft.link_names, capsule.link));
-      return other >= 0 && carrier_of(urdf, other) == carrier;
-    });
-  });
   if (options.tool) device.unknown_links.push_back(options.tool->handle);
   if (geometry.shapes.empty()) return;
 
@@ -306,7 +225,6 @@ void watch_collisions(const UrdfText& text, DeviceDraft& draft) {
   }
   collision.pairs = collision::choose_pairs(collision.shapes, chain, range,
                                             collision.safe_distance + collision::kFarEnough);
-  leave_out(draft, urdf, collision);
 }
 
 }  // namespace
@@ -372,7 +290,7 @@ DeviceConfig load_device(const std::filesystem::path& path, SourceReader& reader
   take_model(std::move(*chain), draft);
   state_stopping(device);
   settle_law(device);
-  if (draft.watches_collisions) watch_collisions(*urdf, draft);
+  if (draft.watches_collisions) watch_collisions(*urdf, device);
   device.sources = reader.since(first_source);
   device.places = std::move(file.places);
   return std::move(device);

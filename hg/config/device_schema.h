@@ -21,14 +21,6 @@ struct DeviceJoint {
   std::optional<ActuatorModel> actuator;
 };
 
-/// A capsule of device.yaml around the shape of a link and of what is fixed to it.
-struct LinkCapsule {
-  int link = -1;
-  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< Ends of its segment in the link, m
-  Eigen::Vector3d to = Eigen::Vector3d::Zero();
-  double radius = 0.0;  ///< m
-};
-
 /// A device in the making: what is known of it so far, and the names and parts it is made from.
 struct DeviceDraft {
   /// Its chain comes last
@@ -45,8 +37,6 @@ struct DeviceDraft {
   std::vector<std::string> manipulator_names;
   Placement sensor;
   bool watches_collisions = true;
-  std::vector<LinkCapsule> capsules;
-  std::vector<std::vector<int>> never_touch;  ///< pairs of links
 };
 
 /// Whether start posture and gantry target have a closed form.
@@ -432,37 +422,6 @@ void describe_prepositioning(V& v, DeviceDraft& d) {
 }
 
 template <class V>
-void describe(V& v, LinkCapsule& capsule, const std::vector<std::string>& links) {
-  v.name("link", capsule.link, links, "a link of the URDF",
-         "it moves with this link; the URDF's shapes of what is fixed to it do not count then",
-         Need::kRequired);
-  v.vector("from_m", capsule.from, kAnyNumber, "one end of its segment, in the link");
-  v.vector("to_m", capsule.to, kAnyNumber, "the other end");
-  v.number("radius_m", capsule.radius, kPositive, "around the segment", Need::kRequired);
-}
-
-template <class V>
-void describe_collision(V& v, DeviceDraft& d) {
-  v.flag("is_watched", d.watches_collisions,
-         "stop before the device hits itself, its frame or the floor");
-  v.number("safe_distance_m", d.device.collision.safe_distance, kPositive,
-           "between any two parts while the device brakes");
-  v.list(
-      "capsules", [&](auto& child) { describe(child, d.capsules.emplace_back(), d.link_names); },
-      "shapes in place of meshes: 'hapticgiant new device' fits them");
-  v.list(
-      "never_touch",
-      [&](auto& child) {
-        std::vector<int>& links = d.never_touch.emplace_back();
-        child.names("links", links, d.link_names, "a link of the URDF",
-                    "two links, each with all that is fixed to it", Need::kRequired);
-        child.rule(links.size() == 2 || !child.is_given("links"), "links", "must be two links",
-                   std::to_string(links.size()));
-      },
-      "pairs that are not watched, because their true shapes never meet");
-}
-
-template <class V>
 void describe_behaviour(V& v, DeviceDraft& d) {
   for (const char* key : {"drive", "prepositioning"}) {
     v.rule(!d.has_joints || !d.gantry.empty() || !v.is_given(key), key,
@@ -519,9 +478,14 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       },
       "contact anywhere along the arm, docs/concepts/compliance.md");
   v.group(
-      "collision", [&](auto& child) { describe_collision(child, d); },
-      "self-collision, from the collision elements of the URDF and the capsules given here; "
-      "docs/concepts/collision.md");
+      "collision",
+      [&](auto& child) {
+        child.flag("is_watched", d.watches_collisions,
+                   "stop before the device hits itself, its frame or the floor");
+        child.number("safe_distance_m", d.device.collision.safe_distance, kPositive,
+                     "between any two parts while the device brakes");
+      },
+      "self-collision, from the collision elements of the URDF; docs/concepts/collision.md");
   for (double* distance :
        {&d.device.monitor.stop_distance, &d.device.monitor.slide_stop_distance,
         &d.device.monitor.gantry_stop_distance, &d.device.monitor.turn_stop_distance}) {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "hg/controller/safety/collision/distance.h"
 #include "hg/core/error.h"
@@ -55,33 +54,6 @@ std::optional<Violation> find_violation(const DeviceModel& device, model::ChainD
   }
   return {};
 }
-
-// tests whether the watched shapes of the device touch each other
-class Contact {
- public:
-  explicit Contact(const config::DeviceConfig& device) : config_(device.collision) {
-    for (const collision::Pair& pair : config_.pairs.watched) {
-      distances_.emplace_back(config_.shapes[pair.a], config_.shapes[pair.b]);
-    }
-  }
-
-  // in the posture of `chain`
-  bool is_there(const model::ChainData& chain) const {
-    const auto pose = [&](int shape) {
-      const int frame = config_.shapes[shape].frame;
-      return frame < 0 ? Pose{} : chain.pose(frame);
-    };
-    for (std::size_t i = 0; i < distances_.size(); ++i) {
-      const collision::Pair& pair = config_.pairs.watched[i];
-      if (distances_[i](pose(pair.a), pose(pair.b)) <= 0.0) return true;
-    }
-    return false;
-  }
-
- private:
-  const collision::CollisionConfig& config_;
-  std::vector<collision::Distance> distances_;
-};
 
 // throws SetupError when the device may not be at `start`
 void check_limits(const config::DeviceConfig& device, const config::Twin& twin,
@@ -164,9 +136,7 @@ std::string joints_at_limits(const model::ChainModel& chain, const model::Invers
   return names.empty() ? "the arm is stretched or folded" : "at their limits: " + names;
 }
 
-Start numeric_start(const config::DeviceConfig& config, const config::Twin& twin) {
-  const DeviceModel& device = config.model;
-  const Contact contact(config);
+Start numeric_start(const DeviceModel& device, const config::Twin& twin) {
   const int n_p = device.n_p, n = device.chain.nv();
   Start start;
   start.T_B_H = handle_start(twin.model);
@@ -185,9 +155,7 @@ Start numeric_start(const config::DeviceConfig& config, const config::Twin& twin
   if (device.posture.size() > 0) problem.goal.tail(device.n_m) = device.posture;
 
   model::ChainData chain(device.chain);
-  problem.permits = [&](const Eigen::VectorXd& q) {
-    return !find_violation(device, chain, q) && !contact.is_there(chain);
-  };
+  problem.permits = [&](const Eigen::VectorXd& q) { return !find_violation(device, chain, q); };
   const model::InverseResult found = model::inverse_kinematics(device.chain, problem);
   if (!found.is_solved) {
     const Eigen::Vector3d& p = start.T_B_H.p;
@@ -213,8 +181,8 @@ Pose handle_start(const rendering::TwinModel& twin) {
 }
 
 Start find_start(const config::DeviceConfig& device, const config::Twin& twin) {
-  Start start =
-      device.model.has_closed_form ? closed_form_start(device, twin) : numeric_start(device, twin);
+  Start start = device.model.has_closed_form ? closed_form_start(device, twin)
+                                             : numeric_start(device.model, twin);
   check_limits(device, twin, start);
   check_floor(device, twin, start);
   return start;

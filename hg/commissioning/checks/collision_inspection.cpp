@@ -18,14 +18,9 @@ void inspect_collisions(const config::DeviceConfig& device, Collector& out) {
           : fmt::format("not monitored: {}", fmt::join(device.unknown_links, ", "));
   if (config.shapes.empty()) {
     if (unknown.empty()) return;  // switched off
-    const bool has_meshes = std::ranges::any_of(device.sources, [](const auto& source) {
-      return source.content.find("<mesh") != std::string::npos;
-    });
     out.add(Severity::kWarning, "collision", unknown,
-            has_meshes ? "the meshes of the URDF do not count here: 'hapticgiant new device' fits "
-                         "capsules to them, to be copied from its file"
-                       : "give the links <collision> elements that are spheres, cylinders or "
-                         "boxes");
+            "give the links <collision> elements that are spheres, cylinders or boxes: meshes do "
+            "not count");
     return;
   }
   const auto count = [&](collision::Exclusion reason) {

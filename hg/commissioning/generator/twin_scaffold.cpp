@@ -13,9 +13,7 @@
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/config/twin.h"
-#include "hg/controller/safety/collision/distance.h"
 #include "hg/core/error.h"
-#include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
@@ -84,7 +82,6 @@ class Reach {
  public:
   explicit Reach(const config::DeviceConfig& device)
       : device_(device),
-        chain_(device.model.chain),
         twin_{.name = "draft",
               .model = {.chain = model::ChainModel::free_body({}),
                         .end_effector = 0,
@@ -95,30 +92,14 @@ class Reach {
     q.head<3>() = T_B_H.p;
     q.segment<4>(3) = Eigen::Quaterniond(T_B_H.R).normalized().coeffs();
     try {
-      const scenario::Start start = scenario::find_start(device_, twin_);
-      if (is_clear(start)) return start;
+      return scenario::find_start(device_, twin_);
     } catch (const SetupError&) {
+      return {};
     }
-    return {};
   }
 
  private:
-  // whether all watched shapes of the device are apart
-  bool is_clear(const scenario::Start& start) {
-    chain_.update_poses(stacked(start.q_p, start.q_m));
-    const auto& [watched, excluded] = device_.collision.pairs;
-    return std::ranges::all_of(watched, [&](const collision::Pair& pair) {
-      const collision::Shape& a = device_.collision.shapes[pair.a];
-      const collision::Shape& b = device_.collision.shapes[pair.b];
-      const auto pose = [&](const collision::Shape& shape) {
-        return shape.frame < 0 ? Pose{} : chain_.pose(shape.frame);
-      };
-      return collision::Distance(a, b)(pose(a), pose(b)) > 0.0;
-    });
-  }
-
   const config::DeviceConfig& device_;
-  model::ChainData chain_;
   config::Twin twin_;
 };
 
