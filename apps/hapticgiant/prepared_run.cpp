@@ -48,6 +48,12 @@ void PreparedRun::connect_franka() {
     }).get();
   }
   note = "a Franka tests its brakes and stops itself: no start test is required";
+  if (!connected->has_checked_signs()) {
+    note +=
+        "; the weight of the tool does not appear in its estimate: push lightly first, and see "
+        "that "
+        "the arm yields that way";
+  }
   remote = connected.get();
   device = std::move(connected);
 }

@@ -7,6 +7,7 @@ skipped (exit code 77). With --minute only the loop is measured, for 60 s.
 """
 
 import contextlib
+import functools
 import json
 import pathlib
 import signal
@@ -90,7 +91,21 @@ def run(address, duration_s, *arguments):
         return Run(address, duration_s, folder, *arguments).wait()
 
 
+def patiently(test):
+    """Repeats a test in which this computer was so busy that the server paused for 50 ms."""
+    @functools.wraps(test)
+    def repeated(self):
+        for attempt in range(1, 4):
+            try:
+                return test(self)
+            except AssertionError as error:
+                if "remote device is silent" not in str(error) or attempt == 3:
+                    raise
+    return repeated
+
+
 class Franka(unittest.TestCase):
+    @patiently
     def test_a_hand_opens_the_drawer_and_shuts_it(self):
         with server("--pull", "12", TOLERANT) as address, tempfile.TemporaryDirectory() as folder:
             first = Run(address, 6.5, folder)
@@ -100,6 +115,7 @@ class Franka(unittest.TestCase):
             self.assertIn("does another program control the robot?", said)
             code, said, summary = first.wait()
             self.assertEqual(code, 0, said)
+            self.assertNotIn("push lightly first", said)  # the weight of the tool was seen
             happened = [(event["name"], event["what"]) for event in summary["events"]]
             self.assertEqual(happened, [("slide", "upper limit reached"),
                                         ("slide", "lower limit reached")], said)
@@ -114,6 +130,7 @@ class Franka(unittest.TestCase):
             code, said, _ = run(address, 0.5)
             self.assertEqual(code, 0, said)
 
+    @patiently
     def test_it_moves_to_the_start_when_it_is_asked_to(self):
         with server("--away", "0.1", TOLERANT) as address:
             _, said, summary = run(address, 0.5)
@@ -124,6 +141,7 @@ class Franka(unittest.TestCase):
             self.assertNotIn("not armed", said)
             self.assertGreater(summary["solver"]["status"]["solved"], 400)
 
+    @patiently
     def test_a_silent_client_is_stopped_in_the_robots_words(self):
         with server() as address, tempfile.TemporaryDirectory() as folder:
             stopped = Run(address, 5, folder)
@@ -140,6 +158,7 @@ class Franka(unittest.TestCase):
             code, said, _ = run(address, 0.5)
             self.assertEqual(code, 0, said)
 
+    @patiently
     def test_a_step_of_torque_is_stopped_in_the_robots_words(self):
         with server("--torque-rate", "100", TOLERANT) as address:
             code, said, summary = run(address, 4)
@@ -147,8 +166,10 @@ class Franka(unittest.TestCase):
         self.assertIn("controller_torque_discontinuity", said)
         self.assertEqual(summary["fault"]["code"], 113)
 
+    @patiently
     def test_an_estimate_that_cannot_be_used_is_refused(self):
         for estimate, reason in (("weight", "contains the weight of the arm"),
+                                 ("opposite", "sign or frame of the estimate differ"),
                                  ("none", "exactly zero")):
             with self.subTest(estimate), server("--estimate", estimate) as address:
                 code, said, _ = run(address, 1)

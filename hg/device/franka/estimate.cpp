@@ -83,4 +83,14 @@ std::string objection(const RestingEstimate& estimate, const VectorM& weight) {
       force, torque, kMostForce, kMostTorque);
 }
 
+SignCheck check_weight(const Eigen::Vector3d& seen, const Eigen::Vector3d& weight) noexcept {
+  constexpr double kLeastWeight = 1.0;  // N
+  constexpr double kShare = 0.5;        // of the weight
+  if (weight.norm() < kLeastWeight || seen.norm() < kShare * weight.norm()) {
+    return SignCheck::kUnseen;
+  }
+  const bool is_right = (seen - weight).norm() < kShare * weight.norm();
+  return is_right ? SignCheck::kRight : SignCheck::kWrong;
+}
+
 }  // namespace hg::franka

@@ -32,4 +32,14 @@ struct RestingEstimate {
 /// that hold the arm, Nm.
 std::string objection(const RestingEstimate& estimate, const VectorM& weight);
 
+enum class SignCheck {
+  kRight,
+  kWrong,
+  kUnseen,  ///< the weight does not appear, or is too small
+};
+
+/// Compares the weight of a tool as the robot's estimate shows it with the true one; forces on the
+/// flange, N.
+SignCheck check_weight(const Eigen::Vector3d& seen, const Eigen::Vector3d& weight) noexcept;
+
 }  // namespace hg::franka

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "hg/core/error.h"
-#include "hg/device/franka/estimate.h"
 
 namespace hg::franka {
 namespace {
@@ -16,9 +15,10 @@ constexpr std::uint64_t kEndPatience = 200;     // states until a motion has end
 constexpr std::uint64_t kOvertaken = 100;       // states that may be older than an answer
 constexpr std::int64_t kLook = 5'000'000;       // ns between looks at the stream
 constexpr double kCloseTime = 0.5;              // s
-constexpr double kLoadTime = 1.0;               // s until a state shows the load
+constexpr double kLoadTime = 3.0;               // s until enough states show the load
 constexpr double kSameMass = 1e-3;              // kg
 constexpr double kNoMass = 0.01;                // kg
+constexpr double kGravity = 9.81;               // m/s^2
 
 constexpr double kApproachSpeed = 0.2;  // rad/s on the way to a start
 constexpr double kTopSpeed = 1.875;     // of an approach, times its mean
@@ -69,8 +69,8 @@ FrankaDevice::FrankaDevice(const FrankaConfig& config, const model::ChainModel& 
   }
   await_idle();
   set_collision(config_.collision);
-  session_.ask(Command::kSetLoad, config_.load, "load");
   check_at_rest();
+  check_signs(chain);
 }
 
 FrankaDevice::~FrankaDevice() { close(fault_); }
@@ -96,39 +96,69 @@ void FrankaDevice::await_idle() {
   if (state_.robot_mode == RobotMode::kIdle) return;
   throw SetupError(
       fmt::format("{}: the robot must be idle, it is in mode '{}': release the user stop, end "
-                  "guiding and other "
-                  "programs",
+                  "guiding and other programs",
                   session_.at(), to_string(state_.robot_mode)));
 }
 
-void FrankaDevice::check_at_rest() {
+// The robot's estimates at rest, with this load.
+RestingEstimate FrankaDevice::estimate_with(const LoadRequest& load) {
+  session_.ask(Command::kSetLoad, load, "load");
   RestingEstimate estimate;
+  const double mass = load.mass;
   const int needed = static_cast<int>(std::lround(config_.rest_s / kPeriod_s));
-  const std::int64_t deadline = now_ns() + ns(config_.rest_s + kLoadTime + 2.0);
+  int to_settle = static_cast<int>(std::lround(config_.settle_s / kPeriod_s));
+  const std::int64_t deadline = now_ns() + ns(config_.rest_s + config_.settle_s + kLoadTime);
   while (estimate.states < needed && now_ns() < deadline) {
     session_.wait(deadline);
     while (session_.receive(state_)) {
-      const float mass = state_.m_load;
-      if (std::abs(mass - config_.load.mass) < kSameMass) estimate.add(state_, config_.T_F_S);
+      const float shown = state_.m_load;
+      if (std::abs(shown - mass) > kSameMass || to_settle-- > 0) continue;
+      estimate.add(state_, config_.T_F_S);
     }
   }
   if (estimate.states < needed) {
-    const float mass = state_.m_load;
+    const float shown = state_.m_load;
     throw SetupError(fmt::format("{}: the robot was given a load of {:g} kg and shows {:g} kg",
-                                 session_.at(), config_.load.mass, mass));
+                                 session_.at(), mass, shown));
   }
+  estimate.finish();
+  return estimate;
+}
+
+void FrankaDevice::check_at_rest() {
+  const RestingEstimate estimate = estimate_with(config_.load);
   const float m_ee = state_.m_ee;
   if (m_ee > kNoMass) {
     throw SetupError(
         fmt::format("{}: Desk knows an end effector of {:.2f} kg: choose none there; the mass of "
-                    "the tool stands "
-                    "in its file and is sent to the robot",
+                    "the tool stands in its file and is sent to the robot",
                     session_.at(), m_ee));
   }
-  estimate.finish();
   const std::string why = objection(estimate, impedance_.weight(estimate.q));
   if (!why.empty()) throw SetupError(session_.at() + ": " + why);
   resting_ = estimate.w_S;
+}
+
+// Without its load the robot takes the tool for a hand that pulls down, whatever its friction.
+void FrankaDevice::check_signs(const model::ChainModel& chain) {
+  const double mass = config_.load.mass;
+  const RestingEstimate without = estimate_with(LoadRequest{});
+  const RestingEstimate with = estimate_with(config_.load);
+  model::ChainData arm(chain);
+  arm.update_poses(with.q);
+  const Eigen::Matrix3d R_B_S = arm.pose(chain.frame(config_.flange)).R * config_.T_F_S.R;
+  const Eigen::Vector3d weight = R_B_S.transpose() * Eigen::Vector3d(0.0, 0.0, -kGravity * mass);
+  const Eigen::Vector3d seen = without.w_S.head<3>() - with.w_S.head<3>();
+  const SignCheck check = check_weight(seen, weight);
+  if (check == SignCheck::kWrong) {
+    throw SetupError(fmt::format(
+        "{}: the weight of the tool, {:.1f} N, appears in the robot's estimate as ({:.1f}, {:.1f}, "
+        "{:.1f}) N at the flange, expected is ({:.1f}, {:.1f}, {:.1f}) N: sign or frame of the "
+        "estimate differ from what this driver assumes",
+        session_.at(), weight.norm(), seen.x(), seen.y(), seen.z(), weight.x(), weight.y(),
+        weight.z()));
+  }
+  has_checked_signs_ = check == SignCheck::kRight;
 }
 
 void FrankaDevice::move_to(const VectorM& goal) {

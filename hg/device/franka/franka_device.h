@@ -11,6 +11,7 @@
 #include <string>
 
 #include "hg/device/connected_device.h"
+#include "hg/device/franka/estimate.h"
 #include "hg/device/franka/impedance.h"
 #include "hg/device/franka/session.h"
 #include "hg/device/franka/words.h"
@@ -32,13 +33,15 @@ inline constexpr CollisionThresholds kLightTouch = {.torque = {20, 20, 18, 18, 1
 /// Set-up data of a Franka.
 struct FrankaConfig {
   udp::Address address;
-  LoadRequest load;  ///< what is screwed onto the flange, the robot subtracts its weight
-  Pose T_F_S;        ///< where the wrench is wanted: S in the flange F
+  LoadRequest load;    ///< what is screwed onto the flange, the robot subtracts its weight
+  std::string flange;  ///< frame F of the chain
+  Pose T_F_S;          ///< where the wrench is wanted: S in the flange F
   CollisionThresholds collision;
   ImpedanceGains gains;
   Timeouts timeouts;
   double state_timeout_s = 0.05;  ///< without a state the device counts as silent
-  double rest_s = 0.2;            ///< time of the check at rest
+  double settle_s = 0.1;          ///< until the robot's filtered estimate knows a new load
+  double rest_s = 0.2;            ///< time over which estimates at rest are averaged
 };
 
 class FrankaDevice final : public device::ConnectedDevice {
@@ -53,6 +56,10 @@ class FrankaDevice final : public device::ConnectedDevice {
   /// checks the estimate there. The robot stops itself at a light touch meanwhile. Throws
   /// SetupError that says what has stopped it.
   void move_to(const VectorM& goal);
+
+  /// Whether the weight of the tool was seen in the robot's estimate with the right sign; false: it
+  /// did not appear there, or is too small.
+  bool has_checked_signs() const noexcept { return has_checked_signs_; }
 
   /// Waits for the next state. After silence the last frame is repeated with its driver_fault set,
   /// from now on without waiting.
@@ -72,7 +79,9 @@ class FrankaDevice final : public device::ConnectedDevice {
   void lead_to(const VectorM& goal);
   std::string stop_words(const SensorFrame& sensors) const;
   void await_end_of_motion() noexcept;
+  RestingEstimate estimate_with(const LoadRequest& load);
   void check_at_rest();
+  void check_signs(const model::ChainModel& chain);
   void skip_old_states() noexcept;
   void take_in() noexcept;
   void take(const RobotState& state) noexcept;
@@ -103,6 +112,7 @@ class FrankaDevice final : public device::ConnectedDevice {
   std::uint64_t recovered_at_ = 0;  ///< message_id of the newest state when it had recovered
   bool was_reset_ = false;          ///< reset button in the last command
   bool is_closed_ = false;
+  bool has_checked_signs_ = false;
   // what has stopped the robot; kept for farewell() until it recovers
   bool is_aborted_ = false;
   bool was_not_finite_ = false;

@@ -77,6 +77,7 @@ franka::FrankaConfig franka_config(const std::string& address, const config::Sce
   }
   const model::Tool& tool = *device.chain_options.tool;
   result.load = load_of(tool);
+  result.flange = tool.link;
   result.T_F_S = tool.T_link_handle * device.model.T_H_S;
   return result;
 }

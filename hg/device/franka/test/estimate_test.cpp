@@ -32,6 +32,16 @@ TEST(UserWrench, IsMovedAndTurnedToTheSensor) {
   EXPECT_LT((user_wrench(state, {.p = {0, 0, 0.1}}) - expected).norm(), 1e-6);
 }
 
+TEST(CheckWeight, TellsSignAndFrame) {
+  const Eigen::Vector3d weight(0, 0, 3.4);
+  EXPECT_EQ(check_weight(weight, weight), SignCheck::kRight);
+  EXPECT_EQ(check_weight({0.5, -0.5, 3.0}, weight), SignCheck::kRight);
+  EXPECT_EQ(check_weight(-weight, weight), SignCheck::kWrong);
+  EXPECT_EQ(check_weight({3.4, 0, 0}, weight), SignCheck::kWrong);
+  EXPECT_EQ(check_weight({0, 0, 0.1}, weight), SignCheck::kUnseen);
+  EXPECT_EQ(check_weight({0, 0, 0.5}, {0, 0, 0.5}), SignCheck::kUnseen);
+}
+
 TEST(Objection, NamesWhatIsWrongAtRest) {
   const VectorM weight{{0, -28, 0, 20, 0, 2, 0}};
   RestingEstimate good;

@@ -35,6 +35,9 @@ struct Behaviour {
   std::array<float, kJoints> tau_ext{};
   std::array<float, 6> K_F_ext = {0.25F, 0, 0, 0, 0, 0};
   float m_ee = 0.0F;
+  /// Weight of a tool that it holds with z of its flange down, N per kg that it was not told of
+  float weight_per_kg = 9.81F;
+  float tool_kg = 0.35F;
 };
 
 class FakeRobot {
@@ -278,7 +281,9 @@ class FakeRobot {
     if (states_to_send_.load() > 0) states_to_send_.fetch_sub(1);
     state_.message_id = id_++;
     state_.tau_ext_hat_filtered = behaviour_.tau_ext;
-    state_.K_F_ext_hat_K = behaviour_.K_F_ext;
+    std::array<float, 6> wrench = behaviour_.K_F_ext;
+    wrench[2] -= behaviour_.weight_per_kg * (behaviour_.tool_kg - state_.m_load);
+    state_.K_F_ext_hat_K = wrench;
     state_.m_ee = behaviour_.m_ee;
     const auto datagram = std::as_bytes(std::span(&state_, 1));
     if (behaviour_.sends_nonsense) socket.send(datagram.first(100), client_);

@@ -26,8 +26,10 @@ FrankaConfig config_for(const FakeRobot& robot) {
   FrankaConfig config;
   config.address = robot.address();
   config.load.mass = 0.35;
+  config.flange = "fr3_link8";
   config.timeouts = {.connect_s = kLong, .answer_s = kLong, .first_state_s = kLong};
   config.state_timeout_s = kLong;
+  config.settle_s = 0.0;
   config.rest_s = 0.005;
   return config;
 }
@@ -92,6 +94,11 @@ TEST(FrankaDevice, SetsLoadAndThresholds) {
   EXPECT_EQ(bench.robot.load().mass, 0.35);
   EXPECT_EQ(bench.robot.collision().upper_force[0], CollisionThresholds().force[0]);
   EXPECT_EQ(bench.robot.collision().lower_torque[6], CollisionThresholds().torque[6]);
+}
+
+TEST(FrankaDevice, SeesTheWeightOfTheToolWithItsSign) {
+  EXPECT_TRUE(Bench().device->has_checked_signs());
+  EXPECT_FALSE(Bench({.weight_per_kg = 0.0F}).device->has_checked_signs());
 }
 
 TEST(FrankaDevice, GivesOneFramePerState) {
@@ -307,6 +314,7 @@ TEST(FrankaDevice, RefusesWhatItCannotUse) {
   expect_says(refusal_of({.m_ee = 0.73F}), "Desk knows an end effector of 0.73 kg");
   expect_says(refusal_of({.K_F_ext = {}}), "exactly zero");
   expect_says(refusal_of({.K_F_ext = {0, 0, 15.0F, 0, 0, 0}}), "15.0 N");
+  expect_says(refusal_of({.weight_per_kg = -9.81F}), "sign or frame of the estimate differ");
   // the estimate of a server that does not subtract gravity, as franky-sim
   Impedance impedance(arm(), {});
   const VectorM weight = impedance.weight(VectorM{{0, 0.028, 0, -2.091, 0, 2.119, 0}});
