@@ -263,10 +263,8 @@ void FrankaDevice::take_answers() noexcept {
   while (session_.receive(answer)) {
     if (answer.header.id == recovery_id_) {
       recovery_id_ = 0;
-      if (answer.status != 0) continue;
-      is_aborted_ = was_not_finite_ = false;
-      errors_.reset();
-      recovered_at_ = state_.message_id;
+      recovery_status_ = answer.status;
+      if (answer.status == 0) forget_faults();
     }
     if (answer.header.id != move_id_) continue;
     const auto status = static_cast<MoveStatus>(answer.status);
@@ -391,11 +389,18 @@ void FrankaDevice::finish_motion() noexcept {
 
 void FrankaDevice::recover() noexcept {
   if (fault_ != FaultCode::kNone || recovery_id_ != 0) return;
-  if (is_aborted_) {
+  if (state_.robot_mode == RobotMode::kReflex) {
     recovery_id_ = session_.send(Command::kAutomaticErrorRecovery, {});
   } else {
-    was_not_finite_ = false;
+    forget_faults();
   }
+}
+
+void FrankaDevice::forget_faults() noexcept {
+  is_aborted_ = was_not_finite_ = false;
+  errors_.reset();
+  move_status_ = MoveStatus::kSuccess;
+  recovered_at_ = state_.message_id;
 }
 
 void FrankaDevice::close(FaultCode) noexcept {
@@ -424,6 +429,9 @@ std::string FrankaDevice::farewell() const {
   if (errors_.any()) words += ": " + to_string(errors_);
   if (move_status_ != MoveStatus::kSuccess) {
     words += fmt::format("; motion {}", to_string(move_status_));
+  }
+  if (recovery_status_ != 0) {
+    words += "; recovery " + answer_words(Command::kAutomaticErrorRecovery, recovery_status_);
   }
   return words;
 }

@@ -93,6 +93,7 @@ class FrankaDevice final : public device::ConnectedDevice {
   void start_motion() noexcept;
   void finish_motion() noexcept;
   void recover() noexcept;
+  void forget_faults() noexcept;
   void send_torques(const CommandFrame& command) noexcept;
 
   FrankaConfig config_;
@@ -118,6 +119,7 @@ class FrankaDevice final : public device::ConnectedDevice {
   bool was_not_finite_ = false;
   ErrorBits errors_;
   MoveStatus move_status_ = MoveStatus::kSuccess;
+  std::uint8_t recovery_status_ = 0;    ///< answer to the last recovery, 0 = it worked
   FaultCode fault_ = FaultCode::kNone;  ///< of the connection, final
   LinkCounts own_;
 };

@@ -30,6 +30,7 @@ struct Behaviour {
   bool sends_states = true;
   bool sends_nonsense = false;  ///< a datagram that is no state before each state
   bool accepts_moves = true;
+  bool recovers = true;
   bool yields = false;                ///< torques move it
   RobotMode mode = RobotMode::kIdle;  ///< at the beginning
   std::array<float, kJoints> tau_ext{};
@@ -200,9 +201,11 @@ class FakeRobot {
         state_.m_load = static_cast<float>(load_.mass);
         break;
       case Command::kAutomaticErrorRecovery:
+        ++recoveries;
+        status = behaviour_.recovers ? 0 : 3;
+        if (!behaviour_.recovers) break;
         state_.errors = {};
         state_.robot_mode = RobotMode::kIdle;
-        ++recoveries;
         break;
     }
     answer(header.command, header.id, std::as_bytes(std::span(&status, 1)));

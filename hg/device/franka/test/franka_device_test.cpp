@@ -214,6 +214,26 @@ TEST(FrankaDevice, ARefusedMotionIsNamed) {
   bench.command.enable = true;
   ASSERT_TRUE(bench.cycle_until([&] { return bench.has(FaultCode::kDriveFault); }));
   expect_says(bench.device->farewell(), "rejected: not possible in the present mode");
+  bench.robot.set({});
+  bench.command.enable = false;
+  bench.command.panel.reset = true;
+  ASSERT_TRUE(bench.cycle_until([&] { return bench.has(FaultCode::kNone); }));
+  EXPECT_EQ(bench.robot.recoveries.load(), 0);  // there is nothing to recover from
+  EXPECT_TRUE(bench.start());
+}
+
+TEST(FrankaDevice, ARecoveryThatFailsIsNamed) {
+  Bench bench(Behaviour{.recovers = false});
+  ASSERT_TRUE(bench.start());
+  bench.robot.reflex(6);
+  ASSERT_TRUE(bench.cycle_until([&] { return bench.has(FaultCode::kDriveFault); }));
+  bench.command.enable = false;
+  bench.command.panel.reset = true;
+  const auto is_told = [&] {
+    return bench.device->farewell().find("recovery must be done by hand") != std::string::npos;
+  };
+  EXPECT_TRUE(bench.cycle_until(is_told));
+  EXPECT_TRUE(bench.has(FaultCode::kDriveFault));
 }
 
 TEST(FrankaDevice, TheUserStopIsAnEmergencyStop) {
