@@ -123,7 +123,7 @@ int identify_inertia(const IdentifyRecordingArguments& arguments) {
   check_writable(arguments.json, kJson);
   std::optional<config::SimulatedDeviceConfig> device;
   if (!arguments.device.empty()) {
-    device = config::load_simulated_device(config::find_device(arguments.device));
+    device = config::load_simulated_device(config::find_device(arguments.device, {}));
   }
   const RecordedInertia result =
       identification::identify_recorded_inertia(arguments.file, std::move(device));

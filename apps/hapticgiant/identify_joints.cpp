@@ -140,7 +140,7 @@ int identify_joints(const IdentifyRecordingArguments& arguments) {
   check_writable(arguments.json, kJson);
   std::optional<config::SimulatedDeviceConfig> device;
   if (!arguments.device.empty()) {
-    device = config::load_simulated_device(config::find_device(arguments.device));
+    device = config::load_simulated_device(config::find_device(arguments.device, {}));
   }
   const RecordedElasticity result =
       identification::identify_recorded_elasticity(arguments.file, std::move(device));
