@@ -81,6 +81,12 @@ void add_recorded(CLI::App& identify, int& exit_code,
 
 }  // namespace
 
+std::optional<config::SimulatedDeviceConfig> given_device(
+    const IdentifyRecordingArguments& arguments) {
+  if (arguments.device.empty()) return {};
+  return config::load_simulated_device(config::find_device(arguments.device, {}));
+}
+
 int identify_payload(const IdentifyArguments& arguments) {
   const config::SimulatedDeviceConfig device =
       config::load_simulated_device(config::find_device(arguments.device, {}));
@@ -127,13 +133,13 @@ void add_identify(CLI::App& app, int& exit_code) {
                "Stiffness and damping of each joint, or the delay of drives that follow positions, "
                "from a recording (docs/concepts/identification.md).",
                "Examples:\n"
-               "  hapticgiant run models/arms/fr3/move_tool.yaml --fast\n"
+               "  hapticgiant run fr3/move_tool --fast\n"
                "  hapticgiant identify joints recordings/latest.mcap");
   add_recorded(*identify, exit_code, identify_inertia, "inertia",
                "Inertial parameters of the links of an arm with joint torque sensors, from a "
                "recording (docs/concepts/identification.md).",
                "Examples:\n"
-               "  hapticgiant run models/arms/fr3/excite.yaml --fast   moves all joints\n"
+               "  hapticgiant run fr3/excite --fast   moves all joints\n"
                "  hapticgiant identify inertia recordings/latest.mcap");
 }
 

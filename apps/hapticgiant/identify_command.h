@@ -5,8 +5,11 @@
 /// identify inertia RECORDING`: inertial parameters of the links.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "hg/config/simulation/simulation.h"
 
 namespace CLI {
 class App;
@@ -32,6 +35,10 @@ int identify_payload(const IdentifyArguments& arguments);
 /// Identifies friction and prints to stdout. Returns the exit code: 0, or 2 when no joint moved
 /// enough.
 int identify_friction(const IdentifyRecordingArguments& arguments);
+
+/// The device that --device names; nothing without it. Throws SetupError.
+std::optional<config::SimulatedDeviceConfig> given_device(
+    const IdentifyRecordingArguments& arguments);
 
 /// Identifies stiffness, damping and delay and prints to stdout. Returns the exit code: 0, or 2
 /// when no joint moved enough.

@@ -17,14 +17,14 @@
 namespace hg::apps {
 namespace {
 
+using identification::Figure;
 using identification::FrictionEstimate;
-using identification::FrictionFigure;
 using identification::JointFriction;
 
 // One line of the table and of the device file.
 struct Line {
   const char* key;
-  FrictionFigure found;
+  Figure found;
   double nominal;
 };
 

@@ -4,16 +4,13 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "hg/commissioning/identification/inertia.h"
-#include "hg/config/shipped_files.h"
 
 namespace hg::apps {
 namespace {
@@ -121,12 +118,8 @@ nlohmann::ordered_json to_json(const InertiaEstimate& found) {
 
 int identify_inertia(const IdentifyRecordingArguments& arguments) {
   check_writable(arguments.json, kJson);
-  std::optional<config::SimulatedDeviceConfig> device;
-  if (!arguments.device.empty()) {
-    device = config::load_simulated_device(config::find_device(arguments.device, {}));
-  }
   const RecordedInertia result =
-      identification::identify_recorded_inertia(arguments.file, std::move(device));
+      identification::identify_recorded_inertia(arguments.file, given_device(arguments));
   const InertiaEstimate& found = result.found;
   print_out(recording::to_text(result.losses));
   print_out("{}: drives on for {:.1f} s; +- is the 95 % interval\n", arguments.file, result.used_s);

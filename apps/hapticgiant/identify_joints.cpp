@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "hg/commissioning/identification/recorded_elasticity.h"
-#include "hg/config/shipped_files.h"
 
 namespace hg::apps {
 namespace {
@@ -138,12 +135,8 @@ bool is_anything_found(const RecordedElasticity& result) {
 
 int identify_joints(const IdentifyRecordingArguments& arguments) {
   check_writable(arguments.json, kJson);
-  std::optional<config::SimulatedDeviceConfig> device;
-  if (!arguments.device.empty()) {
-    device = config::load_simulated_device(config::find_device(arguments.device, {}));
-  }
   const RecordedElasticity result =
-      identification::identify_recorded_elasticity(arguments.file, std::move(device));
+      identification::identify_recorded_elasticity(arguments.file, given_device(arguments));
   print_out(recording::to_text(result.losses));
   print_out("{}: {} joints, drives on for {:.1f} s; +- is the 95 % interval\n", arguments.file,
             result.joints.size(), result.used_s);

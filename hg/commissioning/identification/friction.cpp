@@ -229,12 +229,12 @@ class Decision {
   void report(FrictionEstimate& found) const {
     constexpr double kSureOfCoulomb = 0.3;
     const auto figure = [&](Parameter parameter) {
-      return FrictionFigure{model_.p[parameter], deviations_[parameter],
-                            free_[parameter] && std::isfinite(deviations_[parameter])};
+      return Figure{model_.p[parameter], deviations_[parameter],
+                    free_[parameter] && std::isfinite(deviations_[parameter])};
     };
     const auto of_logarithm = [&](Parameter parameter) {
       const double value = std::exp(model_.p[parameter]);
-      return FrictionFigure{value, value * deviations_[parameter], free_[parameter]};
+      return Figure{value, value * deviations_[parameter], free_[parameter]};
     };
     found.load = figure(kLoad);
     found.viscous = figure(kViscous);

@@ -30,15 +30,13 @@ struct FrictionTrace {
   std::vector<std::size_t> cuts;
 };
 
-using FrictionFigure = Figure;
-
 struct FrictionEstimate {
-  FrictionFigure coulomb;         ///< F, Nm
-  FrictionFigure load;            ///< mu
-  FrictionFigure viscous;         ///< B, Nms/rad
-  FrictionFigure stiction;        ///< s
-  FrictionFigure stribeck_speed;  ///< v_s, rad/s
-  FrictionFigure presliding;      ///< displacement until the last element slips, rad
+  Figure coulomb;         ///< F, Nm
+  Figure load;            ///< mu
+  Figure viscous;         ///< B, Nms/rad
+  Figure stiction;        ///< s
+  Figure stribeck_speed;  ///< v_s, rad/s
+  Figure presliding;      ///< displacement until the last element slips, rad
   /// Number of elements with the best fit; 0 = no presliding was found
   int presliding_elements = 0;
   double residual = 0.0;                     ///< rms of the residual, Nm

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "hg/commissioning/identification/block_regression.h"
 #include "hg/commissioning/identification/inertia_rows.h"
 #include "hg/commissioning/identification/pseudo_inertia.h"
+#include "hg/commissioning/identification/scaled_inverse.h"
 #include "hg/core/error.h"
 
 namespace hg::identification {
@@ -32,10 +32,7 @@ BaseEstimate base_estimate(const Regressed& found, Eigen::Index bases) {
   BaseEstimate result;
   result.x = found.x.head(bases);
   result.covariance = found.inflation * found.inverse.topLeftCorner(bases, bases);
-  const VectorXd size = result.covariance.diagonal().cwiseSqrt().cwiseInverse();
-  const MatrixXd unit = size.asDiagonal() * result.covariance * size.asDiagonal();
-  result.information =
-      size.asDiagonal() * unit.ldlt().solve(MatrixXd::Identity(bases, bases)) * size.asDiagonal();
+  result.information = scaled_inverse(result.covariance);
   return result;
 }
 

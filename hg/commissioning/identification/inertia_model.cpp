@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <random>
 
+#include "hg/core/cross.h"
 #include "hg/core/error.h"
 #include "hg/signals/payload.h"
 
@@ -21,12 +22,6 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double kGravity = 9.81;  // as in the model of the device
-
-Matrix3d cross(const Vector3d& v) {
-  Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 // I v = matrix (I_xx, I_xy, I_yy, I_xz, I_yz, I_zz)
 Eigen::Matrix<double, 3, 6> times_inertia(const Vector3d& v) {
@@ -51,19 +46,24 @@ model::Urdf urdf_of(const config::DeviceConfig& device) {
 
 LinkParameters parameters_of(const model::Inertial& inertial) {
   const Vector3d& c = inertial.p_com;
-  const Matrix3d I = inertial.inertia - inertial.mass * cross(c) * cross(c);
+  const Matrix3d I = inertial.inertia - inertial.mass * cross_matrix(c) * cross_matrix(c);
   LinkParameters p;
   p << inertial.mass, inertial.mass * c, I(0, 0), I(0, 1), I(1, 1), I(0, 2), I(1, 2), I(2, 2);
   return p;
+}
+
+Matrix3d inertia_about_origin(const LinkParameters& p) {
+  Matrix3d I;
+  I << p[4], p[5], p[7], p[5], p[6], p[8], p[7], p[8], p[9];
+  return I;
 }
 
 model::Inertial inertial_of(const LinkParameters& p) {
   model::Inertial inertial;
   inertial.mass = p[0];
   inertial.p_com = p.segment<3>(1) / p[0];
-  Matrix3d I;
-  I << p[4], p[5], p[7], p[5], p[6], p[8], p[7], p[8], p[9];
-  inertial.inertia = I + p[0] * cross(inertial.p_com) * cross(inertial.p_com);
+  inertial.inertia =
+      inertia_about_origin(p) + p[0] * cross_matrix(inertial.p_com) * cross_matrix(inertial.p_com);
   return inertial;
 }
 
@@ -120,9 +120,11 @@ MatrixXd InertiaModel::regressor() const {
     Eigen::Matrix<double, 6, kLinkParameters> wrench =
         Eigen::Matrix<double, 6, kLinkParameters>::Zero();
     wrench.block<3, 1>(0, 0) = m.a;
-    wrench.block<3, 3>(0, 1) = cross(m.alpha) + cross(m.omega) * cross(m.omega);
-    wrench.block<3, 3>(3, 1) = -cross(m.a);
-    wrench.block<3, 6>(3, 4) = times_inertia(m.alpha) + cross(m.omega) * times_inertia(m.omega);
+    wrench.block<3, 3>(0, 1) =
+        cross_matrix(m.alpha) + cross_matrix(m.omega) * cross_matrix(m.omega);
+    wrench.block<3, 3>(3, 1) = -cross_matrix(m.a);
+    wrench.block<3, 6>(3, 4) =
+        times_inertia(m.alpha) + cross_matrix(m.omega) * times_inertia(m.omega);
     const Matrix3d& R = chain_.pose(frames_[i]).R;
     const model::Jacobian& J = chain_.jacobian(frames_[i]);
     MatrixXd J_link(6, J.cols());
@@ -138,7 +140,7 @@ MatrixXd InertiaModel::wrench_columns() const {
   const Matrix3d R_B_S = R_B_H * T_H_S_.R;
   const model::Jacobian& J_H = chain_.jacobian(handle_);
   MatrixXd J_S = J_H;
-  J_S.topRows<3>() -= cross(R_B_H * T_H_S_.p) * J_H.bottomRows<3>();
+  J_S.topRows<3>() -= cross_matrix(R_B_H * T_H_S_.p) * J_H.bottomRows<3>();
   MatrixXd in_S(6, J_S.cols());
   in_S << R_B_S.transpose() * J_S.topRows<3>(), R_B_S.transpose() * J_S.bottomRows<3>();
   return -in_S.middleCols(n_p_, n_m_).transpose();

@@ -20,6 +20,7 @@ inline constexpr Eigen::Index kLinkParameters = 10;
 using LinkParameters = Eigen::Matrix<double, kLinkParameters, 1>;
 
 LinkParameters parameters_of(const model::Inertial& inertial);
+Eigen::Matrix3d inertia_about_origin(const LinkParameters& parameters);
 model::Inertial inertial_of(const LinkParameters& parameters);
 
 /// Name of parameter `i` of a link, such as "m c_x".

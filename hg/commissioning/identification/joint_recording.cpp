@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "hg/commissioning/identification/recorded_device.h"
 #include "hg/core/error.h"
 #include "hg/scenario/recorded/recorded_scenario.h"
 
@@ -41,34 +42,32 @@ class Reader final : public recording::RecordingListener {
 
  private:
   void start() {
-    try {
-      config::SimulatedDeviceConfig recorded = scenario::recorded_scenario(configuration_).device;
-      if (device_) refuse_other(recorded.model);
-      if (!device_) device_ = std::move(recorded);
-    } catch (const SetupError& error) {
-      if (!device_) {
-        throw SetupError(fmt::format(
-            "{}: its configuration is not understood, give the device with --device: {}", file_,
-            error.what()));
-      }
-      if (is_other_) throw;
+    if (device_) {
+      refuse_other();
+    } else {
+      device_ = recorded_device(file_, configuration_);
     }
     joints_.emplace(device_->model);
   }
 
-  void refuse_other(const DeviceModel& recorded) {
-    is_other_ = joint_names(recorded) != joint_names(device_->model);
-    if (!is_other_) return;
+  // A configuration that is not understood names no joints: the given device counts.
+  void refuse_other() const {
+    std::vector<std::string> recorded;
+    try {
+      recorded = joint_names(scenario::recorded_scenario(configuration_).device.model);
+    } catch (const SetupError&) {
+      return;
+    }
+    const std::vector<std::string> given = joint_names(device_->model);
+    if (recorded == given) return;
     throw SetupError(fmt::format("{}: is of another device, with the joints {}; {} has {}", file_,
-                                 fmt::join(joint_names(recorded), ", "), device_->name,
-                                 fmt::join(joint_names(device_->model), ", ")));
+                                 fmt::join(recorded, ", "), device_->name, fmt::join(given, ", ")));
   }
 
   const std::string& file_;
   std::optional<config::SimulatedDeviceConfig> device_;
   std::optional<JointRecording> joints_;
   std::vector<recording::NamedText> configuration_;
-  bool is_other_ = false;
 };
 
 template <typename Moments, typename Vector>

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "hg/commissioning/identification/scaled_inverse.h"
 #include "hg/core/interval.h"
 
 namespace hg::identification {
@@ -58,19 +59,10 @@ Divergence divergence(const VectorXd& p, const VectorXd& nominal) {
   return d;
 }
 
-// Inverse of a positive definite matrix whose rows are of any size.
-MatrixXd inverse_of(const MatrixXd& H) {
-  const VectorXd scale = H.diagonal().cwiseSqrt().cwiseInverse();
-  const MatrixXd scaled = scale.asDiagonal() * H * scale.asDiagonal();
-  return scale.asDiagonal() * scaled.ldlt().solve(MatrixXd::Identity(H.rows(), H.cols())) *
-         scale.asDiagonal();
-}
-
 }  // namespace
 
 Matrix4d pseudo_inertia(const LinkParameters& p) {
-  Eigen::Matrix3d I;
-  I << p[4], p[5], p[7], p[5], p[6], p[8], p[7], p[8], p[9];
+  const Eigen::Matrix3d I = inertia_about_origin(p);
   Matrix4d P;
   P.topLeftCorner<3, 3>() = 0.5 * I.trace() * Eigen::Matrix3d::Identity() - I;
   P.topRightCorner<3, 1>() = p.segment<3>(1);
@@ -91,11 +83,11 @@ ConsistentParameters consistent_parameters(const VectorXd& base, const MatrixXd&
   };
   ConsistentParameters result = {nominal, {}, {}};
   Divergence d = divergence(result.p, nominal);
-  result.prior = inverse_of(kWeight * d.hessian);
+  result.prior = scaled_inverse(kWeight * d.hessian);
   double least = cost(result.p, d);
   for (int round = 0; round < kMostRounds; ++round) {
     const VectorXd gradient = weighted * (combination * result.p - base) + kWeight * d.gradient;
-    const MatrixXd inverse = inverse_of(H_data + kWeight * d.hessian);
+    const MatrixXd inverse = scaled_inverse(H_data + kWeight * d.hessian);
     const VectorXd step = -inverse * gradient;
     const double slope = gradient.dot(step);
     if (-slope < 1e-9) break;
@@ -112,7 +104,7 @@ ConsistentParameters consistent_parameters(const VectorXd& base, const MatrixXd&
     }
     if (length <= 1e-8) break;
   }
-  result.covariance = inverse_of(H_data + kWeight * d.hessian);
+  result.covariance = scaled_inverse(H_data + kWeight * d.hessian);
   return result;
 }
 

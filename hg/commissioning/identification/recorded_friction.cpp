@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "hg/commissioning/identification/friction_traces.h"
+#include "hg/commissioning/identification/recorded_device.h"
 #include "hg/core/error.h"
-#include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::identification {
 namespace {
@@ -14,7 +14,8 @@ namespace {
 // Collects the traces of all joints, with the device of the recording unless another is given.
 class Reader final : public recording::RecordingListener {
  public:
-  explicit Reader(std::optional<config::DeviceConfig> device) : device_(std::move(device)) {}
+  Reader(const std::string& file, std::optional<config::DeviceConfig> device)
+      : file_(file), device_(std::move(device)) {}
 
   void configuration(const recording::NamedText& text) override {
     if (!traces_) configuration_.push_back(text);
@@ -30,18 +31,11 @@ class Reader final : public recording::RecordingListener {
 
  private:
   void start() {
-    if (!device_) {
-      try {
-        device_ = scenario::recorded_scenario(configuration_).device;
-      } catch (const SetupError& error) {
-        throw SetupError(
-            fmt::format("its configuration is not understood, give the device with --device: {}",
-                        error.what()));
-      }
-    }
+    if (!device_) device_ = recorded_device(file_, configuration_);
     traces_.emplace(device_->model, device_->control.loop.current_lag);
   }
 
+  const std::string& file_;
   std::optional<config::DeviceConfig> device_;
   std::optional<FrictionTraces> traces_;
   std::vector<recording::NamedText> configuration_;
@@ -51,7 +45,7 @@ class Reader final : public recording::RecordingListener {
 
 RecordedFriction identify_recorded_friction(const std::string& file,
                                             std::optional<config::DeviceConfig> device) {
-  Reader reader(std::move(device));
+  Reader reader(file, std::move(device));
   RecordedFriction result;
   result.losses = recording::read_recording(file, reader).losses;
   const FrictionTraces& traces = reader.traces();

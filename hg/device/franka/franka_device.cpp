@@ -79,7 +79,7 @@ void FrankaDevice::set_collision(const CollisionThresholds& thresholds) {
   session_.ask(Command::kSetCollisionBehavior, request_of(thresholds), "collision thresholds");
 }
 
-// Recovers from what has stopped the robot before this session.
+// Recovers from what has stopped the robot before this connection.
 void FrankaDevice::await_idle() {
   const std::int64_t deadline = now_ns() + ns(config_.timeouts.first_state_s);
   bool has_state = false;

@@ -84,7 +84,7 @@ simulator::JointEffects bristles(const ActuatorModel& a, double presliding, int 
 }
 
 // Found, and within `share` of the truth and `deviations` of what it says of itself.
-void expect_near(const FrictionFigure& found, double truth, double share, const char* what) {
+void expect_near(const Figure& found, double truth, double share, const char* what) {
   EXPECT_TRUE(found.is_found) << what;
   EXPECT_NEAR(found.value, truth, share * truth) << what << " +- " << found.deviation;
   EXPECT_GT(found.deviation, 0.0) << what;
