@@ -2,8 +2,9 @@
 
     franka_test.py PROGRAM [--minute]
 
-Installs the server into an environment of its own, build/franka_venv (175 MB); where that fails it is
-skipped (exit code 77). With --minute only the loop is measured, for 60 s.
+Real time: for a computer that is left alone (`make franka`), none of `make test`. Installs the server
+into an environment of its own, build/franka_venv (175 MB); where that fails it is skipped (exit code
+77). With --minute only the loop is measured, for 60 s.
 """
 
 import contextlib
@@ -111,6 +112,8 @@ class Franka(unittest.TestCase):
             first = Run(address, 6.5, folder)
             first.wait_for("no start test")  # it has the robot
             code, said, _ = run(address, 1)
+            if first.process.poll() is not None:
+                self.fail("the first has ended: " + first.wait()[1])
             self.assertEqual(code, 2, said)
             self.assertIn("does another program control the robot?", said)
             code, said, summary = first.wait()
