@@ -12,8 +12,8 @@
 namespace hg {
 namespace {
 
+using identification::Figure;
 using identification::FrictionEstimate;
-using identification::FrictionFigure;
 
 std::vector<FrictionEstimate> identified(const std::string& simulation) {
   const config::Scenario scenario =
@@ -39,7 +39,7 @@ const std::vector<double> kCoulomb = {4.0, 4.0, 2.5, 2.5, 1.0, 1.0};
 const std::vector<double> kViscous = {3.0, 3.0, 1.5, 1.5, 0.5, 0.5};
 
 // Within its deviations, or within `share` of the truth, which is what the model leaves out.
-void expect_near(const FrictionFigure& found, double truth, double share, const char* what) {
+void expect_near(const Figure& found, double truth, double share, const char* what) {
   EXPECT_TRUE(found.is_found) << what;
   EXPECT_LT(std::abs(found.value - truth), std::max(3.0 * found.deviation, share * truth))
       << what << " " << found.value << " +- " << found.deviation;
