@@ -101,9 +101,9 @@ class FakeRobot {
 
   std::atomic<int> commands{0};  ///< torques received
   std::atomic<int> motions{0}, recoveries{0}, connections{0};
-  RobotCommand last() {
+  std::array<double, kJoints> last_torques() {
     const std::lock_guard lock(mutex_);
-    return last_;
+    return last_.tau_J_d;
   }
   LoadRequest load() {
     const std::lock_guard lock(mutex_);
@@ -263,11 +263,14 @@ class FakeRobot {
       std::memcpy(&last_, datagram.bytes.data(), sizeof last_);
       ++commands;
       if (state_.robot_mode != RobotMode::kMove) continue;
+      // members of a packed message are not aligned: copied as a whole
+      const std::array<double, kJoints> commanded = last_.tau_J_d;
+      std::array<float, kJoints> tau_d = state_.tau_J_d;
       for (int i = 0; i < kJoints; ++i) {
-        const double step = std::abs(last_.tau_J_d[i] - state_.tau_J_d[i]);
-        largest_step_ = std::max(largest_step_, step);
-        state_.tau_J_d[i] = static_cast<float>(last_.tau_J_d[i]);
+        largest_step_ = std::max(largest_step_, std::abs(commanded[i] - tau_d[i]));
+        tau_d[i] = static_cast<float>(commanded[i]);
       }
+      state_.tau_J_d = tau_d;
       if (behaviour_.yields && last_.torque_command_finished == 0) yield();
       if (last_.torque_command_finished != 0) end_motion(MoveStatus::kSuccess, RobotMode::kIdle);
     }
@@ -275,7 +278,10 @@ class FakeRobot {
 
   // moves as one that yields to torques as honey does
   void yield() {
-    for (int i = 0; i < kJoints; ++i) state_.q[i] += 1e-4F * state_.tau_J_d[i];
+    std::array<float, kJoints> q = state_.q;
+    const std::array<float, kJoints> tau_d = state_.tau_J_d;
+    for (int i = 0; i < kJoints; ++i) q[i] += 1e-4F * tau_d[i];
+    state_.q = q;
   }
 
   // a period is over when the last state was answered, at the latest after 1 ms

@@ -138,11 +138,11 @@ TEST(FrankaDevice, LimitsTheRateOfTorques) {
   bench.is_led = true;
   bench.command.q_m = VectorM{{0.2, 0.028, 0, -2.091, 0, 2.119, 0}};  // far away: 120 Nm are wanted
   ASSERT_TRUE(bench.start());
-  ASSERT_TRUE(bench.cycle_until([&] { return bench.robot.last().tau_J_d[0] > 80.0; }));
+  ASSERT_TRUE(bench.cycle_until([&] { return bench.robot.last_torques()[0] > 80.0; }));
   EXPECT_LT(bench.robot.largest_step(), 1.0);
   EXPECT_GT(bench.robot.largest_step(), 0.9);
   for (int i = 0; i < 20; ++i) bench.cycle();
-  EXPECT_LE(bench.robot.last().tau_J_d[0], 87.0);
+  EXPECT_LE(bench.robot.last_torques()[0], 87.0);
 }
 
 TEST(FrankaDevice, AllocatesNothingInTheLoop) {
@@ -256,7 +256,7 @@ TEST(FrankaDevice, ACommandThatIsNotFiniteIsNotSent) {
   bench.command.q_m[3] = std::numeric_limits<double>::quiet_NaN();
   ASSERT_TRUE(bench.cycle_until([&] { return bench.has(FaultCode::kCommandNotFinite); }));
   EXPECT_TRUE(bench.cycle_until([&] { return !bench.robot.is_moving(); }));
-  for (const double tau : bench.robot.last().tau_J_d) EXPECT_TRUE(std::isfinite(tau));
+  for (const double tau : bench.robot.last_torques()) EXPECT_TRUE(std::isfinite(tau));
   expect_says(bench.device->farewell(), "not finite");
 }
 
