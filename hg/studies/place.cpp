@@ -22,6 +22,7 @@ namespace {
 constexpr double kStep = 0.02;      // m, of straight ways
 constexpr double kFarthest = 0.75;  // m, to either side
 constexpr double kLeast = 0.02;     // m, half an edge of the smallest box
+constexpr double kBraked = 0.007;  // m, beyond the safe distance: what a slow motion needs to brake
 
 // Postures of a device that measurements may use.
 class Reach {
@@ -44,26 +45,31 @@ class Reach {
 
   // Whether there is a margin to all limits, singular postures and collisions.
   bool permits(const Eigen::VectorXd& q) {
-    constexpr double kMargin = 0.05;                     // of a range
-    constexpr double kDexterous = 0.03, kApart = 0.015;  // m/rad, m
+    constexpr double kMargin = 0.05;     // of a range
+    constexpr double kDexterous = 0.03;  // m/rad
     const Eigen::ArrayXd margin = kMargin * (ranges_.upper - ranges_.lower).array();
     if ((q.array() < ranges_.lower.array() + margin).any()) return false;
     if ((q.array() > ranges_.upper.array() - margin).any()) return false;
     if (!checks::permits_virtual_joints(device_.model, q)) return false;
     if (dexterity(q) < kDexterous) return false;  // moves the chain
     if (!checks::permits_boxes(device_.model, chain_)) return false;
-    if (device_.has_floor && chain_.pose(device_.model.handle).p.z() < device_.floor_z + kApart)
+    const double apart = device_.collision.safe_distance + kBraked;
+    if (device_.has_floor && chain_.pose(device_.model.handle).p.z() < device_.floor_z + apart)
       return false;
     for (std::size_t i = 0; i < distances_.size(); ++i) {
       const collision::Pair& pair = device_.collision.pairs.watched[i];
-      if (distances_[i](pose_of(pair.a), pose_of(pair.b)) < kApart) return false;
+      if (distances_[i](pose_of(pair.a), pose_of(pair.b)) < apart) return false;
     }
     return true;
   }
 
+  // The posture that joints to spare are drawn to, as by the control law.
+  void set_goal(const Eigen::VectorXd& q) { goal_ = q; }
+
   // Moves `q` to the near posture with the handle at `T_B_H`; false where there is none.
   bool follow(const Pose& T_B_H, Eigen::VectorXd& q) {
     constexpr int kSteps = 12;
+    constexpr double kDrawn = 0.5;  // of the way to the goal, per step
     constexpr double kReached = 1e-5, kDamping = 1e-6;
     const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(q.size());
     for (int i = 0; i < kSteps; ++i) {
@@ -75,7 +81,9 @@ class Reach {
       if (error.norm() < kReached) return permits(q);
       const Eigen::MatrixXd J = chain_.jacobian(device_.model.handle);
       const Eigen::MatrixXd damped = J * J.transpose() + kDamping * Eigen::MatrixXd::Identity(6, 6);
-      q += J.transpose() * damped.ldlt().solve(error);
+      Eigen::VectorXd free = Eigen::VectorXd::Zero(q.size());
+      if (q.size() > 6) free = kDrawn * (goal_ - q);
+      q += free + J.transpose() * damped.ldlt().solve(error - J * free);
     }
     return false;
   }
@@ -121,7 +129,7 @@ class Reach {
   checks::JointRanges ranges_;
   model::ChainData chain_;
   std::vector<collision::Distance> distances_;
-  Eigen::VectorXd end_;
+  Eigen::VectorXd end_, goal_;
 };
 
 // Half the edges of the box around the pose of `q`, before its corners are tried; the pose moves to
@@ -151,12 +159,15 @@ bool reaches_corners(Reach& reach, const Eigen::VectorXd& q, const Eigen::Vector
 }
 
 // The largest box around a posture that the handle can be led through.
-std::optional<Place> box_around(Reach& reach, Eigen::VectorXd q, int n_m) {
+// `keeps_goal`: joints to spare are drawn to `q`, not to the posture in the middle of the box.
+std::optional<Place> box_around(Reach& reach, Eigen::VectorXd q, int n_m, bool keeps_goal) {
   constexpr double kTurn = 0.3;      // rad
   constexpr double kSmaller = 0.85;  // per try
   if (!reach.permits(q)) return {};
+  reach.set_goal(q);
   std::optional<Eigen::Vector3d> half = spread(reach, q);
   if (!half) return {};
+  if (!keeps_goal) reach.set_goal(q);
   while (!reaches_corners(reach, q, *half, kTurn)) {
     *half *= kSmaller;
     if (half->minCoeff() < kLeast) return {};
@@ -213,13 +224,14 @@ Place place_of(const config::DeviceConfig& device) {
     if (found && (!best.is_found || smallest_edge(*found) > smallest_edge(best))) best = *found;
   };
   const int n_m = device.model.n_m;
-  if (const auto q = own_posture(device.model, reach.ranges())) take(box_around(reach, *q, n_m));
+  if (const auto q = own_posture(device.model, reach.ranges()))
+    take(box_around(reach, *q, n_m, true));
   if (best.is_found && smallest_edge(best) >= kEnough) {
     best.posture.resize(0);
     return best;
   }
   for (const Eigen::VectorXd& q : dexterous_postures(device, reach)) {
-    take(box_around(reach, q, n_m));
+    take(box_around(reach, q, n_m, false));
   }
   if (best.is_found) return best;
   throw SetupError(fmt::format(

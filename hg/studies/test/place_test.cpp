@@ -25,9 +25,10 @@ TEST(Place, OfTheReferenceDeviceIsGivenAndHasRoomForAll) {
   EXPECT_EQ(same.twin.model.q_start, walk.twin.model.q_start);
 }
 
-TEST(Place, OfAnArmIsABoxInWhichItCanHoldTheBody) {
-  const config::Scenario walk =
-      scenario::load({.scenario = "walk", .device = "models/examples/arm.yaml"});
+class PlaceOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(PlaceOf, AnArmIsABoxInWhichItCanHoldTheBody) {
+  const config::Scenario walk = scenario::load({.scenario = "walk", .device = GetParam()});
   const Place place = place_of(walk.device);
   ASSERT_TRUE(place.is_found);
   config::Scenario held = at_place(walk, place);
@@ -42,6 +43,10 @@ TEST(Place, OfAnArmIsABoxInWhichItCanHoldTheBody) {
   EXPECT_EQ(no_room(place, Eigen::Vector3d::UnitY(), 0.1), "");
   EXPECT_TRUE(no_room(place, Eigen::Vector3d::UnitY(), 1.5).starts_with(kNotPossible));
 }
+
+INSTANTIATE_TEST_SUITE_P(SixAndSevenJoints, PlaceOf,
+                         testing::Values("models/examples/arm.yaml",
+                                         "models/arms/xarm7/device.yaml"));
 
 }  // namespace
 }  // namespace hg::studies

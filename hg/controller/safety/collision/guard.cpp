@@ -78,7 +78,8 @@ Braking braking_of(const DeviceModel& device, double gantry) {
   constexpr double kDrive = 0.010;  // s, [HANDBOOK] 6.4
   const int n = device.n_p + device.n_m;
   Braking braking = {.reaction = VectorPM::Constant(n, 2.0 * device.dt() + kDrive),
-                     .deceleration = VectorPM::Constant(n, gantry)};
+                     .deceleration = VectorPM::Constant(n, gantry),
+                     .period = device.dt()};
   for (int i = 0; i < device.n_p; ++i) {
     braking.reaction[i] = 2.0 * device.dt() + device.drive.dead_time + device.drive.lag;
   }
@@ -88,8 +89,10 @@ Braking braking_of(const DeviceModel& device, double gantry) {
   return braking;
 }
 
+int most_distances(double period) noexcept { return std::max(24, static_cast<int>(40e3 * period)); }
+
 Guard::Guard(const CollisionConfig& config, const Braking& braking, const model::ChainModel& chain)
-    : config_(config), braking_(braking) {
+    : config_(config), braking_(braking), most_distances_(most_distances(braking.period)) {
   if (config_.pairs.watched.empty()) return;
   check_collision(config_, braking_, chain);
   if (config_.pairs.watched.size() > kMaxPairs) {
@@ -100,7 +103,8 @@ Guard::Guard(const CollisionConfig& config, const Braking& braking, const model:
   for (const Pair& pair : config_.pairs.watched) {
     distances_.emplace_back(config_.shapes[pair.a], config_.shapes[pair.b]);
   }
-  chain_.emplace(chain);
+  now_.emplace(chain);
+  later_.emplace(chain);
 }
 
 std::vector<std::string> pair_names(const CollisionConfig& config) {
@@ -111,15 +115,18 @@ std::vector<std::string> pair_names(const CollisionConfig& config) {
   return names;
 }
 
+double Guard::distance(int pair, const model::ChainData& chain) noexcept {
+  const auto pose = [&](int frame) { return frame < 0 ? Pose{} : chain.pose(frame); };
+  const Pair& shapes = config_.pairs.watched[pair];
+  return distances_[pair](pose(config_.shapes[shapes.a].frame),
+                          pose(config_.shapes[shapes.b].frame));
+}
+
 double Guard::distance(int pair, const Path& path, double time) noexcept {
   VectorPM q(path.q.size());
   for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = path.position(i, time);
-  chain_->update_poses(q);
-  const auto pose = [&](int shape) {
-    const int frame = config_.shapes[shape].frame;
-    return frame < 0 ? Pose{} : chain_->pose(frame);
-  };
-  return distances_[pair](pose(config_.pairs.watched[pair].a), pose(config_.pairs.watched[pair].b));
+  later_->update_poses(q);
+  return distance(pair, *later_);
 }
 
 // Depth first from the start of the path; `ends` holds the ends of pending intervals.
@@ -130,7 +137,7 @@ void Guard::evaluate(int index, const Path& path, bool is_powered, int& budget,
   };
   const Pair& pair = config_.pairs.watched[index];
   double& allowed = state.allowed[index];
-  Place from = {0.0, distance(index, path, 0.0)};
+  Place from = {0.0, distance(index, *now_)};
   --budget;
   const double accepted = std::min(config_.safe_distance, from.distance - kApproach);
   allowed = is_powered ? std::max(allowed, accepted) : accepted;
@@ -178,7 +185,8 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_powered,
   const auto count = static_cast<int>(config_.pairs.watched.size());
   if (count == 0) return prediction;
   const Path path(braking_, q, dq);
-  const int had_budget = state.count == count ? kMaxDistances : 0;
+  now_->update_poses(q);
+  const int had_budget = state.count == count ? most_distances_ : 0;
   int budget = had_budget;
   if (state.count == count) {
     fade(q, path.stop, state);
@@ -186,9 +194,9 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_powered,
     fading_ = {};
     for (int i = 0; i < count; ++i) {
       state.allowed[i] = is_powered ? config_.safe_distance : 0.0;
-      int first_budget = kMaxDistances;
+      int first_budget = most_distances_;
       evaluate(i, path, is_powered, first_budget, state);
-      prediction.distances += kMaxDistances - first_budget;
+      prediction.distances += most_distances_ - first_budget;
     }
   }
   state.count = count;

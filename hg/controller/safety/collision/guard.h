@@ -12,13 +12,15 @@
 /// e_i = max(|q_i - q'_i|, |s_i - s'_i|), so a bound shrinks by at most sum_i L_i e_i per cycle. It
 /// is recomputed only when little of it is left.
 ///
-/// A cycle computes at most kMaxDistances distances, for the pairs with the smallest bounds first.
-/// The first cycle, with the drives off, may compute that many for each pair. A pair that was not
-/// recomputed and whose bound is used up counts as a collision ahead: overload brakes the device
-/// and never hides a collision. Deterministic; no allocation, noexcept after set-up.
+/// A cycle computes at most most_distances() distances, for the pairs with the smallest bounds
+/// first. The first cycle, with the drives off, may compute that many for each pair. A pair that
+/// was not recomputed and whose bound is used up counts as a collision ahead: overload brakes the
+/// device and never hides a collision. Deterministic; no allocation, noexcept after set-up.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +33,7 @@
 
 namespace hg::collision {
 
-inline constexpr int kMaxPairs = 96;      ///< Largest number of watched pairs; set-up refuses more
-inline constexpr int kMaxDistances = 24;  ///< Largest number of distances computed in a cycle
+inline constexpr int kMaxPairs = 96;  ///< Largest number of watched pairs; set-up refuses more
 /// Pairs that always stay farther apart than the safe distance plus this need not be watched, m.
 inline constexpr double kFarEnough = 0.02;
 
@@ -50,7 +51,13 @@ std::vector<std::string> pair_names(const CollisionConfig& config);
 struct Braking {
   VectorPM reaction;      ///< Reaction time of each joint until it brakes, s
   VectorPM deceleration;  ///< Deceleration of each joint, rad/s^2 or m/s^2, > 0
+  double period = 1e-3;   ///< Time between two predictions, s
 };
+
+/// Largest number of distances computed in a cycle: 40 per millisecond of its `period` (s), at
+/// least
+/// 24. A longer cycle sees more motion, which uses up bounds, and has the time.
+int most_distances(double period) noexcept;
 
 /// Braking of the device's joints: two periods and the dead time of the drives, then the rated
 /// decelerations, of a gantry axis `gantry` (m/s^2 or rad/s^2).
@@ -92,6 +99,7 @@ class Guard {
  private:
   struct Path;  // braking path
 
+  double distance(int pair, const model::ChainData& chain) noexcept;
   double distance(int pair, const Path& path, double time) noexcept;
   void evaluate(int pair, const Path& path, bool is_powered, int& budget,
                 CollisionState& state) noexcept;
@@ -100,7 +108,9 @@ class Guard {
   CollisionConfig config_;
   Braking braking_;
   std::vector<Distance> distances_;
-  std::optional<model::ChainData> chain_;   // empty without shapes
+  std::optional<model::ChainData> now_;    // at time 0 of the path; empty without shapes
+  std::optional<model::ChainData> later_;  // at another time
+  int most_distances_ = 0;
   std::array<double, kMaxPairs> fading_{};  // decrease of each bound since the last cycle, m
 };
 

@@ -168,9 +168,36 @@ TEST(Guard, RemembersBoundsThatHold) {
           << pair_names(device.config)[pair] << " in cycle " << n;
     }
   }
-  EXPECT_LE(worst, kMaxDistances + 1);
+  EXPECT_LE(worst, most_distances(device.braking.period) + 1);
   EXPECT_LT(static_cast<double>(distances) / kCycles, 6.0);
   RecordProperty("distances_per_cycle", std::to_string(static_cast<double>(distances) / kCycles));
+}
+
+// A slow loop sees more motion in a cycle, so bounds last for fewer cycles.
+TEST(Guard, ASlowLoopBrakesNoMoreThanAFastOne) {
+  constexpr int kSlower = 50;
+  const TestDevice device = device_of(folding_urdf());
+  Braking braking = device.braking;
+  braking.period = 1e-3 * kSlower;
+  Guard guard(device.config, braking, device.chain);
+  Judge judge(device);
+  const unsigned seed = 15;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  Wanderer wanderer(device, seed);
+  CollisionState state;
+  int worst = 0;
+  for (int n = 0; n < 5000; ++n) {
+    for (int i = 0; i < kSlower; ++i) wanderer.move();
+    const bool is_first = state.count == 0;
+    const Prediction prediction = guard.step(wanderer.q, wanderer.dq, true, state);
+    if (!is_first) worst = std::max(worst, prediction.distances);
+    if (!prediction.must_brake) continue;
+    const auto pair = static_cast<std::size_t>(prediction.report.pair);
+    EXPECT_LT(judge.along_braking(pair, wanderer.q, wanderer.dq, 120),
+              device.config.safe_distance + 0.02)
+        << pair_names(device.config)[pair] << " in cycle " << n;
+  }
+  EXPECT_LE(worst, most_distances(braking.period) + 1);
 }
 
 TEST(Guard, BrakesInTimeWhenAJointGoesForACollision) {
