@@ -35,8 +35,8 @@ hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
     capacity.levels += 3;
     capacity.rows += 2 * limits;
   } else {
-    capacity.levels += 2;
-    capacity.rows += n_m;
+    capacity.levels += 3;
+    capacity.rows += 2 * n_m;
   }
   if (const int led = led_axes(device, options); led > 0) {
     capacity.variables += led;
@@ -44,6 +44,24 @@ hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
     capacity.rows += 2 * led;
   }
   return capacity;
+}
+
+// 0.2 rad, or where the range is small a tenth of it, away from the ends of joint `i` and of its
+// speed; a goal of the device beyond that is within.
+limits::JointLimits inner_range(const DeviceModel& device, int i) {
+  constexpr double kMargin = 0.2, kShare = 0.1;  // rad or m; of the range
+  constexpr double kSpeed = 0.8, kGentle = 0.5;  // of the joint's own
+  limits::JointLimits limits = device.joint_limits[i];
+  const double margin = std::min(kMargin, kShare * (limits.q_max - limits.q_min));
+  limits.q_min += margin;
+  limits.q_max -= margin;
+  if (device.posture.size() > 0 && std::isfinite(device.posture[i])) {
+    limits.q_min = std::min(limits.q_min, device.posture[i]);
+    limits.q_max = std::max(limits.q_max, device.posture[i]);
+  }
+  limits.dq_max *= kSpeed;
+  limits.ddq_max *= kGentle;
+  return limits;
 }
 
 LimitRow make_row(const limits::JointLimits& limits, double margin, double dt) {
@@ -160,9 +178,19 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   for (int i = 0; i < n_a_; ++i) problem_.add_row(coefficients_, {});
   if (n_g_ > 0) problem_.add_level();
   for (int i = 0; i < n_g_; ++i) problem_.add_bound(n_m_ + n_a_ + i, {});
-  if (n_m_ == 6) return;
+  if (n_m_ > 6) add_posture(device);
+}
+
+// The motion that a joint to spare leaves free keeps all joints away from their ends, as rows that
+// its goals cannot overrule, gently: what these rows ask for is below the twin, and no force.
+void Tasks::add_posture(const DeviceModel& device) {
   problem_.add_level();
   posture_row_ = problem_.rows();
+  for (int i = 0; i < n_m_; ++i) {
+    inner_.push_back(inner_range(device, i));
+    problem_.add_bound(i, {}, weight_of(limit_rows_[i]));
+  }
+  problem_.add_level();
   for (int i = 0; i < n_m_; ++i) problem_.add_bound(i, {});
 }
 
@@ -467,10 +495,14 @@ void Tasks::fill_posture(const DeviceModel& device, const TaskInput& input) noex
   const ReferenceState& reference = input.reference;
   const bool has_goals = device.posture.size() > 0 && !input.is_braked;
   for (int i = 0; i < n_m_; ++i) {
+    const Interval gently =
+        limits::recoverable_bounds(inner_[i], limits::recoverable_options(inner_[i], dt_, dt_),
+                                   reference.q_m[i], reference.dq_m[i], dt_);
+    problem_.set_bounds(posture_row_ + i, input.is_braked ? Interval{} : gently);
     const bool has_goal = has_goals && std::isfinite(device.posture[i]);
     const double error = has_goal ? device.posture[i] - reference.q_m[i] : 0.0;
     const double ddq = options_.kP_posture * error - options_.kD_posture * reference.dq_m[i];
-    problem_.set_bounds(posture_row_ + i, {ddq, ddq});
+    problem_.set_bounds(posture_row_ + n_m_ + i, {ddq, ddq});
   }
 }
 

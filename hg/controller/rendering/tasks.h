@@ -13,7 +13,7 @@
 ///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
 ///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a, ddq_p)
 ///                   aim of the gantry, where the law leads it
-///                   posture, where the manipulator has a joint to spare
+///                   inner ranges, then posture, where the manipulator has a joint to spare
 ///   law paper       dynamics, range and norm of the constraint torques; paper_law.h
 ///
 /// Rows have the weight 1 / rating in law gauss, none in law paper. No allocation after
@@ -162,6 +162,7 @@ class Tasks {
   void fill_gantry(const TaskInput& input) noexcept;
   void fill_stops(const TaskInput& input, const Vector6& bias) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
+  void add_posture(const DeviceModel& device);
   void fill_posture(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_ranges(const TaskInput& input) noexcept;
   void set_limit(int limit, const limits::JointLimits& limits, double q, double dq,
@@ -179,10 +180,11 @@ class Tasks {
   int limit_row_count_ = 0;
   int coupling_row_ = 0;  ///< first row of (12)
   int dynamics_row_ = 0;  ///< first row of Gauss' principle
-  int posture_row_ = 0;   ///< first row of the posture of seven joints
+  int posture_row_ = 0;   ///< first row of the posture of seven joints, its inner ranges first
   hqp::Problem problem_;
   std::vector<LimitRow> limit_rows_;
-  std::vector<double> coefficients_;  ///< scratch, one row
+  std::vector<limits::JointLimits> inner_;  ///< Ranges in which a joint to spare keeps the joints
+  std::vector<double> coefficients_;        ///< scratch, one row
   Vector6 s_ = Vector6::Zero();
   VectorP ddq_p_;         ///< Gantry acceleration in this cycle, without the unknowns
   VectorM known_torque_;  ///< Motor torques in this cycle, without those that accelerate the joints

@@ -193,6 +193,26 @@ TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
   EXPECT_LT(state.reference.dq_m.norm(), 1e-3);
 }
 
+TEST(SevenJoints, TheOneToSpareKeepsAJointFromItsEndWhateverItsGoals) {
+  DeviceModel device = seven_joint_device();
+  VectorM goal = reachable_goal(device);
+  Eigen::Index joint = 0;
+  (goal - kPosture).cwiseAbs().maxCoeff(&joint);
+  const double side = goal[joint] > kPosture[joint] ? 1.0 : -1.0;
+  const double end = goal[joint] + 0.05 * side;  // 0.2 rad before it is short of the goal
+  ASSERT_GT(std::abs(end - kPosture[joint]), 0.2);
+  limits::JointLimits& limits = device.joint_limits[joint];
+  limits = {.q_min = end, .q_max = end, .dq_max = 2.0, .ddq_max = 10.0};
+  (side > 0.0 ? limits.q_min : limits.q_max) -= 4.0 * side;
+  goal[joint] = std::numeric_limits<double>::quiet_NaN();
+  device.posture = goal;
+  Rendering rendering(device, free_body(), {});
+  RenderingState state = rendering.start(kPosture);
+  play_at_rest(rendering, state, 3.0);
+  EXPECT_NEAR(std::abs(end - state.reference.q_m[joint]), 0.2, 2e-3);
+  EXPECT_LT(state.reference.dq_m.norm(), 1e-3);
+}
+
 TEST(SevenJoints, InAStopIdleMotionComesToRestShortOfItsGoal) {
   DeviceModel device = seven_joint_device();
   const VectorM goal = device.posture = reachable_goal(device);
