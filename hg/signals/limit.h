@@ -48,6 +48,7 @@ enum class LimitCause : std::uint8_t {
   kFriction = 6,       ///< Coulomb friction holds the joint
   kContradiction = 7,  ///< limits of the joint contradict: held between them or at the lock
   kTorque = 8,         ///< the motor is at the largest torque available to the law
+  kTorqueRate = 9,     ///< the motor's torque cannot change faster, while there is more of it
 };
 
 std::string_view to_string(LimitKind kind) noexcept;

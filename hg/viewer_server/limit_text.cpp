@@ -43,6 +43,8 @@ std::string reason(const LimitReport& report) {
       return "limits contradict each other";
     case LimitCause::kTorque:
       return "all its torque";
+    case LimitCause::kTorqueRate:
+      return "its torque is building up";
     case LimitCause::kNone:
     case LimitCause::kPosition:
       break;

@@ -36,6 +36,7 @@ const CAUSES: Record<ActiveLimit["cause"], string> = {
   friction: "held by friction",
   contradiction: "held between limits that contradict each other",
   torque: "has no more torque",
+  torque_rate: "its torque is building up",
 };
 
 // "end of its range, joint of the device"

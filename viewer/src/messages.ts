@@ -176,7 +176,7 @@ export interface FeltLimit {
 export interface ActiveLimit {
   index: number; // index in Scene.limits
   state: "inactive" | "lower" | "upper" | "violated";
-  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque";
+  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque" | "torque_rate";
   excess: number; // distance outside the configured range, rad or m
   reaction: number; // constraint force in the quantity's own coordinate, Nm or N
   text: string;

@@ -50,12 +50,20 @@ bool is_upper_side(hqp::RowState state, double reaction) noexcept {
   return false;
 }
 
+// a bound on the torque is approached; `row.q` is the torque
+LimitCause cause_of_motor(const LimitRow& row, bool is_upper) noexcept {
+  constexpr double kNear = 0.05;  // of the whole range
+  const double left = is_upper ? row.torque.ub - row.q : row.q - row.torque.lb;
+  const bool is_at_end = left <= kNear * (row.torque.ub - row.torque.lb);
+  return is_at_end ? LimitCause::kTorque : LimitCause::kTorqueRate;
+}
+
 // rating of the limited quantity that gives the acting bound
 LimitCause cause_of(const LimitRow& row, Interval ddq, hqp::RowState state, double reaction,
                     double dt) noexcept {
   if (state == hqp::RowState::kInactive) return LimitCause::kNone;
-  if (row.is_motor) return LimitCause::kTorque;
   const bool is_upper = is_upper_side(state, reaction);
+  if (row.is_motor) return cause_of_motor(row, is_upper);
   const LimitCause held_by = is_upper ? row.held_by.upper : row.held_by.lower;
   const bool holds_always = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
   if (holds_always) return held_by;

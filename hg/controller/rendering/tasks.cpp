@@ -364,10 +364,11 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     if (joint_braking_) {
       lasting_[i] = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     }
+    LimitRow& limit = limit_rows_[first_motor_ + i];
+    limit.torque = torque;
     if (input.motor_torque.size() > 0) {
       torque = reached_torque(torque, input.motor_torque[i], dt_);
     }
-    LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     limit.inertia = inertia;

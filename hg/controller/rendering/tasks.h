@@ -50,6 +50,7 @@ struct LimitRow {
   /// Row of a motor torque, as an acceleration of its joint; `q` is then the motor's torque.
   bool is_motor = false;
   double inertia = 0.0;  ///< Inertia that this motor moves, kg m^2 or kg
+  Interval torque;       ///< Torques of this motor that the law has in this cycle, Nm or N
   /// Bounds R are used in this cycle. With bounds paper only for a twin joint that may be beyond
   /// limits which were not there before: from outside, bounds A let it coast away.
   bool is_recoverable = true;

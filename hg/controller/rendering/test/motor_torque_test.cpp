@@ -126,6 +126,25 @@ TEST(MotorRows, AMotorGivesNoMoreThanItsShareAndIsNamed) {
   EXPECT_GT(largest, 0.7);
 }
 
+TEST(MotorRows, ATorqueThatBuildsUpIsNotNamedAllOfIt) {
+  Pulled twin(true);
+  const LimitCatalogue catalogue = make_catalogue(twin.rendering.device(), twin.rendering.twin());
+  twin.pull(Vector6::Zero());
+  bool was_named = false;
+  for (int k = 0; k < 3; ++k) {
+    twin.pull(force(0.0, 120.0, 0.0));
+    ASSERT_FALSE(HasFatalFailure());
+    for (std::size_t i = 0; i < catalogue.size(); ++i) {
+      const LimitReport& limit = twin.result.limits[i];
+      if (catalogue[i].kind != LimitKind::kMotor || limit.state == LimitState::kInactive) continue;
+      was_named = true;
+      EXPECT_LT(std::abs(limit.position), 0.5 * kMotor.torque_max);
+      EXPECT_EQ(limit.cause, LimitCause::kTorqueRate) << catalogue[i].name;
+    }
+  }
+  EXPECT_TRUE(was_named);
+}
+
 TEST(MotorRows, RatingsCapAccelerationsOnlyWithoutMotorModel) {
   const auto largest_acceleration = [](bool knows_motors) {
     Pulled twin(knows_motors);
