@@ -1,12 +1,10 @@
 #include "hg/viewer_server/meshes.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
-#include <sstream>
-#include <system_error>
 #include <utility>
 
+#include "hg/core/mesh_file.h"
 #include "hg/core/open_file.h"
 
 namespace hg::viewer_server {
@@ -14,44 +12,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kPackage = "package://";
-constexpr std::string_view kFile = "file://";
 constexpr std::string_view kMesh = "<mesh";
 constexpr std::string_view kAttribute = "filename=";
 
-// folders that may contain a package
-std::vector<fs::path> package_folders(const fs::path& urdf) {
-  std::vector<fs::path> folders;
-  std::error_code error;
-  const fs::path start = fs::absolute(urdf, error).parent_path();
-  for (fs::path folder = start; folder.has_relative_path(); folder = folder.parent_path()) {
-    folders.push_back(folder.parent_path());
-  }
-  const char* listed = std::getenv("ROS_PACKAGE_PATH");
-  std::istringstream list(listed == nullptr ? "" : listed);
-  for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);
-  return folders;
-}
-
 // file that a URDF refers to by `name`; empty when there is none that a page can draw
-fs::path find_mesh(const fs::path& urdf, std::string_view name) {
-  std::vector<fs::path> candidates;
-  if (name.starts_with(kPackage)) {
-    for (const fs::path& folder : package_folders(urdf)) {
-      candidates.push_back(folder / name.substr(kPackage.size()));
-    }
-  } else if (name.starts_with(kFile)) {
-    candidates.emplace_back(name.substr(kFile.size()));
-  } else {
-    candidates.push_back(urdf.parent_path() / name);
-  }
-  for (const fs::path& file : candidates) {
-    std::error_code error;
-    const std::string extension = file.extension().string();
-    const bool is_drawable = extension == ".stl" || extension == ".STL" || extension == ".dae";
-    if (is_drawable && fs::is_regular_file(file, error)) return file;
-  }
-  return {};
+fs::path find_drawable(const fs::path& urdf, std::string_view name) {
+  const fs::path file = find_mesh(urdf, name);
+  const std::string extension = file.extension().string();
+  const bool is_drawable = extension == ".stl" || extension == ".STL" || extension == ".dae";
+  return is_drawable ? file : fs::path();
 }
 
 // a name of a mesh in the text of a URDF
@@ -85,7 +54,7 @@ std::string with_meshes(const fs::path& urdf, const std::string& text, std::stri
   for (const auto& [begin, end] : mesh_names(text)) {
     const std::string name = text.substr(begin, end - begin);
     const auto [known, is_new] = addresses.try_emplace(name, name);
-    const fs::path file = is_new ? find_mesh(urdf, name) : fs::path();
+    const fs::path file = is_new ? find_drawable(urdf, name) : fs::path();
     if (!file.empty()) {
       const std::string extension = file.extension() == ".dae" ? ".dae" : ".stl";
       known->second = std::string(folder) + std::to_string(addresses.size()) + extension;
@@ -102,7 +71,7 @@ std::vector<std::string> missing_meshes(const fs::path& urdf, const std::string&
   for (const auto& [begin, end] : mesh_names(text)) {
     std::string name = text.substr(begin, end - begin);
     const bool is_known = std::ranges::find(missing, name) != missing.end();
-    if (!is_known && find_mesh(urdf, name).empty()) missing.push_back(std::move(name));
+    if (!is_known && find_drawable(urdf, name).empty()) missing.push_back(std::move(name));
   }
   return missing;
 }
