@@ -5,13 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "hg/config/device_collision.h"
 #include "hg/config/device_schema.h"
 #include "hg/config/loader.h"
 #include "hg/config/tool.h"
 #include "hg/controller/safety/stopping.h"
 #include "hg/core/error.h"
 #include "hg/core/index.h"
-#include "hg/model/urdf_parts.h"
 
 namespace hg::config {
 namespace {
@@ -204,29 +204,6 @@ void state_stopping(DeviceConfig& device) {
   state(monitor.turn_stop_distance, gantry);
 }
 
-// Fills the collision model from the collision elements of the URDF.
-void watch_collisions(const UrdfText& urdf, DeviceConfig& device) {
-  const model::ChainOptions& options = device.chain_options;
-  const model::ChainModel& chain = device.model.chain;
-  collision::Geometry geometry = collision::read_geometry(
-      model::serial_part(model::read_urdf_text(urdf.text, urdf.file.generic_string()),
-                         options.root_link, options.tip_link),
-      chain);
-  device.unknown_links = std::move(geometry.links_without);
-  if (options.tool) device.unknown_links.push_back(options.tool->handle);
-  if (geometry.shapes.empty()) return;
-
-  collision::CollisionConfig& collision = device.collision;
-  collision.shapes = std::move(geometry.shapes);
-  if (device.has_floor) collision.shapes.push_back(collision::floor_at(device.floor_z));
-  std::vector<Interval> range = device.model.gantry_range;
-  for (const limits::JointLimits& joint : device.model.joint_limits) {
-    range.push_back({joint.q_min, joint.q_max});
-  }
-  collision.pairs = collision::choose_pairs(collision.shapes, chain, range,
-                                            collision.safe_distance + collision::kFarEnough);
-}
-
 }  // namespace
 
 void settle_law(DeviceConfig& device) {
@@ -290,7 +267,7 @@ DeviceConfig load_device(const std::filesystem::path& path, SourceReader& reader
   take_model(std::move(*chain), draft);
   state_stopping(device);
   settle_law(device);
-  if (draft.watches_collisions) watch_collisions(*urdf, device);
+  if (draft.watches_collisions) watch_collisions(*urdf, draft);
   device.sources = reader.since(first_source);
   device.places = std::move(file.places);
   return std::move(device);

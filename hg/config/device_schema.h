@@ -21,6 +21,20 @@ struct DeviceJoint {
   std::optional<ActuatorModel> actuator;
 };
 
+/// A capsule of device.yaml around the shape of a link and of what is fixed to it.
+struct LinkCapsule {
+  std::string name;
+  int link = -1;
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< Ends of its segment in the link, m
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();
+  double radius = 0.0;  ///< m
+};
+
+/// Two links, or else two capsules, that are not watched.
+struct UnwatchedPair {
+  std::vector<int> links, capsules;
+};
+
 /// A device in the making: what is known of it so far, and the names and parts it is made from.
 struct DeviceDraft {
   /// Its chain comes last
@@ -37,6 +51,8 @@ struct DeviceDraft {
   std::vector<std::string> manipulator_names;
   Placement sensor;
   bool watches_collisions = true;
+  std::vector<LinkCapsule> capsules;
+  std::vector<UnwatchedPair> unwatched;
 };
 
 /// Whether start posture and gantry target have a closed form.
@@ -422,6 +438,45 @@ void describe_prepositioning(V& v, DeviceDraft& d) {
 }
 
 template <class V>
+void describe(V& v, LinkCapsule& capsule, const std::vector<std::string>& links) {
+  v.words("name", capsule.name, "shown where it is the nearest to another shape", Need::kRequired);
+  v.name("link", capsule.link, links, "a link of the URDF",
+         "it moves with this link; the URDF's shapes of what is fixed to it do not count then",
+         Need::kRequired);
+  v.vector("from_m", capsule.from, kAnyNumber, "one end of its segment, in the link");
+  v.vector("to_m", capsule.to, kAnyNumber, "the other end");
+  v.number("radius_m", capsule.radius, kPositive, "around the segment", Need::kRequired);
+}
+
+template <class V>
+void describe(V& v, UnwatchedPair& pair, const DeviceDraft& d) {
+  std::vector<std::string> capsules;
+  for (const LinkCapsule& capsule : d.capsules) capsules.push_back(capsule.name);
+  v.names("links", pair.links, d.link_names, "a link of the URDF",
+          "two links, each with all that is fixed to it");
+  v.names("capsules", pair.capsules, capsules, "the name of a capsule", "or two capsules");
+  v.rule(v.is_given("links") != v.is_given("capsules"), "", "needs either links or capsules");
+  for (const auto& [key, names] : {std::pair("links", &pair.links), {"capsules", &pair.capsules}}) {
+    v.rule(names->size() == 2 || !v.is_given(key), key, "must be two",
+           std::to_string(names->size()));
+  }
+}
+
+template <class V>
+void describe_collision(V& v, DeviceDraft& d) {
+  v.flag("is_watched", d.watches_collisions,
+         "stop before the device hits itself, its frame or the floor");
+  v.number("safe_distance_m", d.device.collision.safe_distance, kPositive,
+           "between any two parts while the device brakes");
+  v.list(
+      "capsules", [&](auto& child) { describe(child, d.capsules.emplace_back(), d.link_names); },
+      "shapes in place of meshes: 'hapticgiant new device' fits them");
+  v.list(
+      "unwatched", [&](auto& child) { describe(child, d.unwatched.emplace_back(), d); },
+      "pairs that are not watched, because they never touch, or leave no room to move");
+}
+
+template <class V>
 void describe_behaviour(V& v, DeviceDraft& d) {
   for (const char* key : {"drive", "prepositioning"}) {
     v.rule(!d.has_joints || !d.gantry.empty() || !v.is_given(key), key,
@@ -478,14 +533,9 @@ void describe_behaviour(V& v, DeviceDraft& d) {
       },
       "contact anywhere along the arm, docs/concepts/compliance.md");
   v.group(
-      "collision",
-      [&](auto& child) {
-        child.flag("is_watched", d.watches_collisions,
-                   "stop before the device hits itself, its frame or the floor");
-        child.number("safe_distance_m", d.device.collision.safe_distance, kPositive,
-                     "between any two parts while the device brakes");
-      },
-      "self-collision, from the collision elements of the URDF; docs/concepts/collision.md");
+      "collision", [&](auto& child) { describe_collision(child, d); },
+      "self-collision, from the collision elements of the URDF and the capsules given here; "
+      "docs/concepts/collision.md");
   for (double* distance :
        {&d.device.monitor.stop_distance, &d.device.monitor.slide_stop_distance,
         &d.device.monitor.gantry_stop_distance, &d.device.monitor.turn_stop_distance}) {

@@ -18,21 +18,28 @@ void inspect_collisions(const config::DeviceConfig& device, Collector& out) {
           : fmt::format("not monitored: {}", fmt::join(device.unknown_links, ", "));
   if (config.shapes.empty()) {
     if (unknown.empty()) return;  // switched off
+    const bool has_meshes = std::ranges::any_of(device.sources, [](const auto& source) {
+      return source.content.find("<mesh") != std::string::npos;
+    });
     out.add(Severity::kWarning, "collision", unknown,
-            "give the links <collision> elements that are spheres, cylinders or boxes: meshes do "
-            "not count");
+            has_meshes ? "the meshes of the URDF do not count here: 'hapticgiant new device' fits "
+                         "capsules to them, to be copied from its file"
+                       : "give the links <collision> elements that are spheres, cylinders or "
+                         "boxes");
     return;
   }
   const auto count = [&](collision::Exclusion reason) {
     return std::ranges::count(config.pairs.excluded, reason, &collision::Excluded::reason);
   };
+  const auto given = count(collision::Exclusion::kGiven);
   out.add(Severity::kNote, "collision",
           fmt::format("{} pairs of {} shapes are watched; left out: {} of neighbours, {} that "
-                      "always touch, {} that never come within {:g} mm{}",
+                      "always touch, {} that never come within {:g} mm{}{}",
                       config.pairs.watched.size(), config.shapes.size(),
                       count(collision::Exclusion::kNeighbours),
                       count(collision::Exclusion::kAlways), count(collision::Exclusion::kNever),
                       1e3 * (config.safe_distance + collision::kFarEnough),
+                      given == 0 ? "" : fmt::format(", {} named by collision.unwatched", given),
                       unknown.empty() ? "" : "; " + unknown),
           "");
 }

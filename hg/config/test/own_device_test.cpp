@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "hg/config/device.h"
+#include "hg/controller/safety/collision/guard.h"
 #include "hg/core/test/message_of.h"
 
 namespace hg::config {
@@ -235,6 +237,41 @@ TEST(OwnDevice, JointsThatMimicOthersAreRefused) {
   const std::string all = message("handle: l7\n", urdf);
   EXPECT_NE(all.find("urdf: a device has no joints that mimic others, got 'j4'"), std::string::npos)
       << all;
+}
+
+// Capsules on l2, l5 and l7, and what is left unwatched of them: all can touch.
+std::string capsules(const std::string& unwatched) {
+  std::string text = "handle: l7\nroot_link: l1\ncollision:\n  capsules:\n";
+  for (const char* capsule :
+       {"name: low, link: l2", "name: mid, link: l5", "name: end, link: l7"}) {
+    text += std::string("    - {") + capsule + ", to_m: [0, 0, 0.08], radius_m: 0.04}\n";
+  }
+  return text + unwatched;
+}
+
+std::vector<std::string> watched(const std::string& unwatched) {
+  SourceReader reader = reader_of(capsules(unwatched), arm_urdf("revolute"), kTool);
+  return collision::pair_names(load_device("device.yaml", reader).collision);
+}
+
+TEST(OwnDevice, CapsulesAreWatchedButForNamedPairs) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(watched(""), (Names{"low - mid", "low - end", "mid - end"}));
+  EXPECT_EQ(watched("  unwatched: [{links: [l7, l5]}]\n"), (Names{"low - mid", "low - end"}));
+  EXPECT_EQ(watched("  unwatched: [{capsules: [end, low]}, {capsules: [low, mid]}]\n"),
+            Names{"mid - end"});
+  // a link before the root of the chain
+  EXPECT_EQ(watched("  unwatched: [{links: [l0, l5]}]\n").size(), 3u);
+}
+
+TEST(OwnDevice, UnwatchedPairsAreTwoLinksOrTwoCapsules) {
+  EXPECT_EQ(message(capsules("  unwatched: [{links: [l5]}]\n")),
+            "device.yaml:11:23: collision.unwatched[0].links: must be two, got 1");
+  EXPECT_EQ(message(capsules("  unwatched: [{capsules: [low, med]}]\n")),
+            "device.yaml:11:32: collision.unwatched[0].capsules[1]: must be the name of a capsule, "
+            "got 'med', did you mean 'mid'?");
+  EXPECT_EQ(message(capsules("  unwatched: [{}]\n")),
+            "device.yaml:11:15: collision.unwatched[0]: needs either links or capsules");
 }
 
 std::string message_of_list(const std::string& manipulator) {

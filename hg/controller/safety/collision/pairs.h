@@ -26,6 +26,7 @@ enum class Exclusion : std::uint8_t {
   kNeighbours,  ///< only one joint is between them: they touch there by design
   kAlways,      ///< touch in every posture
   kNever,       ///< never come near each other within the range of the joints
+  kGiven,       ///< left out by the file of the device
 };
 
 struct Excluded {
