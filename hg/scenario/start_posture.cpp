@@ -8,6 +8,7 @@
 #include <string>
 
 #include "hg/controller/safety/collision/distance.h"
+#include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/error.h"
 #include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
@@ -136,7 +137,9 @@ std::string joints_at_limits(const model::ChainModel& chain, const model::Invers
   return names.empty() ? "the arm is stretched or folded" : "at their limits: " + names;
 }
 
-Start numeric_start(const DeviceModel& device, const config::Twin& twin) {
+Start numeric_start(const config::DeviceConfig& config, const config::Twin& twin) {
+  const DeviceModel& device = config.model;
+  const collision::Nearest shapes(config.collision.shapes, config.collision.pairs.watched);
   const int n_p = device.n_p, n = device.chain.nv();
   Start start;
   start.T_B_H = handle_start(twin.model);
@@ -155,7 +158,9 @@ Start numeric_start(const DeviceModel& device, const config::Twin& twin) {
   if (device.posture.size() > 0) problem.goal.tail(device.n_m) = device.posture;
 
   model::ChainData chain(device.chain);
-  problem.permits = [&](const Eigen::VectorXd& q) { return !find_violation(device, chain, q); };
+  problem.permits = [&](const Eigen::VectorXd& q) {
+    return !find_violation(device, chain, q) && shapes.distance(chain) > 0.0;
+  };
   const model::InverseResult found = model::inverse_kinematics(device.chain, problem);
   if (!found.is_solved) {
     const Eigen::Vector3d& p = start.T_B_H.p;
@@ -181,8 +186,8 @@ Pose handle_start(const rendering::TwinModel& twin) {
 }
 
 Start find_start(const config::DeviceConfig& device, const config::Twin& twin) {
-  Start start = device.model.has_closed_form ? closed_form_start(device, twin)
-                                             : numeric_start(device.model, twin);
+  Start start =
+      device.model.has_closed_form ? closed_form_start(device, twin) : numeric_start(device, twin);
   check_limits(device, twin, start);
   check_floor(device, twin, start);
   return start;
