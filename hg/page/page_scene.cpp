@@ -139,6 +139,21 @@ viewer_server::SceneSurface scene_surface(const surfaces::Surface& surface) {
   return scene;
 }
 
+// The shapes of the device itself: the page has the floor already.
+std::vector<viewer_server::SceneShape> scene_shapes(const config::DeviceConfig& device) {
+  std::vector<viewer_server::SceneShape> shapes;
+  for (const collision::Shape& shape : device.collision.shapes) {
+    if (shape.is_surrounding) continue;
+    shapes.push_back({.name = shape.name,
+                      .link = device.model.chain.frame_names()[shape.frame],
+                      .pose = shape.T_frame_shape,
+                      .radius = shape.radius,
+                      .length = 2.0 * shape.half_length,
+                      .size = 2.0 * shape.half_edges});
+  }
+  return shapes;
+}
+
 Environment environment_of(config::Surroundings surroundings) {
   switch (surroundings) {
     case config::Surroundings::kRoom:
@@ -203,6 +218,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   for (const surfaces::Surface& surface : scenario.surfaces) {
     scene.surfaces.push_back(scene_surface(surface));
   }
+  scene.shapes = scene_shapes(scenario.device);
   return scene;
 }
 

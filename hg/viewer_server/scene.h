@@ -64,6 +64,16 @@ struct SceneSurface {
   std::vector<double> triangles;  ///< mesh only: 9 coordinates each, m
 };
 
+/// A shape of the device by which collisions with itself are foreseen: a capsule along its z axis,
+/// or a box.
+struct SceneShape {
+  std::string name;
+  std::string link;                                ///< link of the device's URDF that it moves with
+  Pose pose;                                       ///< pose in the link
+  double radius = 0.0, length = 0.0;               ///< of a capsule, length without its ends, m
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< of a box, m; zero for a capsule
+};
+
 enum class Source : std::uint8_t { kRun, kRecording };
 
 struct Choice {
@@ -103,6 +113,7 @@ struct Scene {
   int gantry_joints = 0;        ///< number of gantry joints, the first ones of the device
   Environment environment = Environment::kRoom;
   std::vector<SceneSurface> surfaces;
+  std::vector<SceneShape> shapes;
   Choices choices;
   std::vector<Setting> settings;
   std::vector<CommandName> commands;  ///< accepted commands

@@ -27,6 +27,7 @@ void fields(Archive& a, T& scene) {
   a("box", scene.box);
   a("environment", scene.environment, "surroundings of the twin");
   a("surfaces", scene.surfaces);
+  a("shapes", scene.shapes, "of the device, watched for collisions with itself");
   a("choices", scene.choices);
   a("settings", scene.settings);
   a("commands", scene.commands, "accepted commands");

@@ -39,6 +39,9 @@ inline constexpr Interface kInterface<Eigen::AlignedBox3d> = {
 template <>
 inline constexpr Interface kInterface<SceneSurface> = {"SceneSurface", "a virtual surface"};
 template <>
+inline constexpr Interface kInterface<SceneShape> = {
+    "SceneShape", "a shape by which collisions of the device with itself are foreseen"};
+template <>
 inline constexpr Interface kInterface<Choice> = {"Choice", "one option"};
 template <>
 inline constexpr Interface kInterface<Choices> = {"Choices", "options and the chosen ones"};
@@ -102,6 +105,17 @@ void fields(Archive& a, T& surface) {
   a("quaternion_B", quaternion(surface.pose.R));
   a("size_m", surface.size, "size of the bounding box; zero for a plane");
   a("triangles_m", surface.triangles, "triangles of a mesh, 9 coordinates each; else empty");
+}
+
+template <typename Archive, Is<SceneShape> T>
+void fields(Archive& a, T& shape) {
+  a("name", shape.name);
+  a("link", shape.link, "link of the device's URDF that it moves with");
+  a("p_link_m", shape.pose.p, "position of the centre");
+  a("quaternion_link", quaternion(shape.pose.R));
+  a("radius_m", shape.radius, "of a capsule along z");
+  a("length_m", shape.length, "of a capsule, without its ends");
+  a("size_m", shape.size, "of a box; zero for a capsule");
 }
 
 template <typename Archive, Is<Choice> T>

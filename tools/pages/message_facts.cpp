@@ -124,7 +124,7 @@ Json all() {
 
 Json message_facts() {
   return all<Scene, SceneChain, SceneJoint, SceneFollower, SceneLimitMessage, Eigen::AlignedBox3d,
-             SceneSurface, Choices, Choice, Setting, FrameMessage, FeltLimitMessage,
+             SceneSurface, SceneShape, Choices, Choice, Setting, FrameMessage, FeltLimitMessage,
              ActiveLimitMessage, ContactReport, HandBudget, Vector6, Singularity, RunState,
              SafetyMessage, Ghost, HandMessage, HoldMessage, CommandMessage, WelcomeMessage,
              AnswerMessage, ValuesMessage, EventMessage>();

@@ -23,6 +23,7 @@ export interface Scene {
   box: SceneBox;
   environment: "room" | "door" | "excavator"; // surroundings of the twin
   surfaces: SceneSurface[];
+  shapes: SceneShape[]; // of the device, watched for collisions with itself
   choices: Choices;
   settings: Setting[];
   commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop")[]; // accepted commands
@@ -85,6 +86,17 @@ export interface SceneSurface {
   quaternion_B: Quaternion;
   size_m: Vec3; // size of the bounding box; zero for a plane
   triangles_m: number[]; // triangles of a mesh, 9 coordinates each; else empty
+}
+
+// a shape by which collisions of the device with itself are foreseen
+export interface SceneShape {
+  name: string;
+  link: string; // link of the device's URDF that it moves with
+  p_link_m: Vec3; // position of the centre
+  quaternion_link: Quaternion;
+  radius_m: number; // of a capsule along z
+  length_m: number; // of a capsule, without its ends
+  size_m: Vec3; // of a box; zero for a capsule
 }
 
 // options and the chosen ones

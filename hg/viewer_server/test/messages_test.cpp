@@ -96,6 +96,7 @@ Scene make_scene() {
   scene.choices = {.scenario = "door", .scenarios = {{"door", "Door"}}};
   scene.settings = {{.name = "hinge.damping", .group = "hinge", .max = 10.0, .value = kInfinity}};
   scene.surfaces = {{.name = "table", .shape = SurfaceShape::kMesh, .triangles = {1.0}}};
+  scene.shapes = {{.name = "hand_1", .link = "hand", .radius = 0.05, .length = 0.2}};
   scene.commands = {CommandName::kPause, CommandName::kSet};
   scene.twin.joints = {{"free", JointType::kFloating},
                        {"glide x", JointType::kPrismatic, "glide", Eigen::Vector3d::UnitY()}};
@@ -187,6 +188,8 @@ TEST(EncodeScene, HasTheFieldsOfTheTypeScriptSide) {
   EXPECT_EQ(json["limits"][2]["unit"], "m");
   EXPECT_EQ(json["device"]["joints"][1]["q_min"], -1.0);
   EXPECT_TRUE(json["device"]["joints"][1]["q_max"].is_null());
+  EXPECT_EQ(json["shapes"][0]["link"], "hand");
+  EXPECT_EQ(json["shapes"][0]["length_m"], 0.2);
   EXPECT_EQ(json["commands"], Json({"pause", "set"}));
   EXPECT_TRUE(json["settings"][0]["value"].is_null());
 }

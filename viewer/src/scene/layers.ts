@@ -12,6 +12,7 @@ export const LAYERS = {
   torques: { title: "Joint torques", is_on: true },
   trails: { title: "Trails of handle and elbow", is_on: true },
   box: { title: "Box of the handle", is_on: true },
+  shapes: { title: "Self-collision shapes", is_on: false },
   scanner: { title: "Scanner zone (only drawn)", is_on: false },
 } as const;
 

@@ -6,6 +6,7 @@ import { limit_closeness } from "../limit_words";
 import type { Frame, Scene, Vec3 } from "../messages";
 import { ELBOW_COLOR, FORCE_COLOR, type Theme } from "../theme";
 import { type ChainView, load_chain } from "./chain_view";
+import { add_shapes } from "./collision_shapes";
 import { dispose_of } from "./dispose";
 import { foot_of_arm } from "./first_view";
 import { Ghost } from "./ghost";
@@ -39,6 +40,7 @@ export class World {
   private readonly surroundings: Surroundings;
   private readonly surfaces: SurfacesView;
   private readonly scanner: Group;
+  private readonly shapes: Object3D[];
   private readonly ghost: Ghost;
 
   private constructor(
@@ -52,6 +54,7 @@ export class World {
     const lowest = new Box3().setFromObject(device.placement).min.z;
     this.surroundings = surroundings_of(scene, lowest);
     this.surfaces = new SurfacesView(scene.surfaces);
+    this.shapes = add_shapes(scene.shapes, device);
     this.scanner = scanner_zone(scene.box, scene.floor_z_m);
     this.ghost = new Ghost(scene);
     this.gauges = gauges_of(scene, device);
@@ -83,6 +86,7 @@ export class World {
       ["torques", this.gauges.map((gauge) => gauge.view.torque_ring)],
       ["trails", [this.trails]],
       ["box", [this.stage.box_view]],
+      ["shapes", this.shapes],
       ["scanner", [this.scanner]],
     ];
     for (const [layer, objects] of parts) {

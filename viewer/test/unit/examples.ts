@@ -53,6 +53,7 @@ export const scene: Scene = {
   box: { min_m: [-1, -1, -1], max_m: [1, 1, 0] },
   environment: "door",
   surfaces: [],
+  shapes: [],
   choices: {
     scenario: "door",
     scenarios: [],
