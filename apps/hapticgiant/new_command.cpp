@@ -65,8 +65,9 @@ int new_device(const NewArguments& arguments) {
   const fs::path simulation = output.parent_path() / (output.stem().string() + "_simulation.yaml");
   const generator::Drives drives = drives_named(arguments.drives);
   if (drives != generator::Drives::kIdeal) check_new(arguments, simulation);
-  const generator::DeviceFiles files = generator::draft_device(
-      device_part(arguments), output.parent_path(), drives, simulation.filename().string());
+  const generator::DeviceFiles files =
+      generator::draft_device(device_part(arguments), output.parent_path(), drives,
+                              simulation.filename().string(), progress_of("self-collision"));
   if (!files.simulation.empty()) {
     write_output(simulation.string(), files.simulation);
     print_out("{} written: its simulated drives and sensors, typical ones ([A]: assumed).\n",
@@ -77,6 +78,7 @@ int new_device(const NewArguments& arguments) {
         "ideal drives\n");
   }
   write_output(output.string(), files.device);
+  for (const std::string& line : files.news) print_out("note        {}\n", line);
   print_out(
       "{0} written. Next:\n"
       "  hapticgiant check {0}\n"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,8 +11,10 @@
 #include "hg/commissioning/generator/drives.h"
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
+#include "hg/commissioning/generator/self_collision.h"
 #include "hg/config/actuator_library.h"
 #include "hg/config/shipped_files.h"
+#include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/error.h"
 #include "hg/model/chain_data.h"
 
@@ -21,6 +24,7 @@ namespace {
 constexpr int kPostures = 2000;
 constexpr double kTableHeight = 0.75;    // m, of what a standing arm stands on
 constexpr double kTable = 0.05;          // m, handles stay above the plane of the root link by it
+constexpr double kClear = 0.1;           // m, desired between parts of the arm in its posture
 constexpr double kSingularMargin = 0.2;  // rad, kept from a singular value
 constexpr double kRampTime = 0.2;        // s, from rest to full speed where no rating is known
 constexpr double kDefaultSpeed = 1.5;    // rad/s or m/s where the URDF has none
@@ -33,6 +37,7 @@ struct DeviceDraft {
   std::vector<Interval> ranges;  ///< sampled and written: the URDF's without singular values
   std::vector<SingularValue> singular;
   Eigen::VectorXd posture;
+  SelfCollision shapes;
 };
 
 const model::Joint& joint(const DeviceDraft& d, int i) { return d.chain.model().joints()[i]; }
@@ -85,7 +90,9 @@ bool stands(DeviceDraft& d) {
 // the most dexterous of many postures, not too near to the ends of the joints
 Eigen::VectorXd best_posture(DeviceDraft& d) {
   PostureSampler sampler(d.ranges);
+  const collision::Nearest shapes(d.shapes.shapes, d.shapes.pairs.watched);
   Eigen::VectorXd best = sampler.draw();
+  constexpr double kTouching = 1e-3;  // worth of a posture in which parts of the arm touch
   double most = -1.0;
   for (int k = 0; k < kPostures; ++k) {
     const Eigen::VectorXd q = sampler.draw();
@@ -96,7 +103,10 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
       nearest = std::min(nearest, 1.0 - std::abs(share));
       sum += 1.0 - share * share;
     }
-    const double value = dexterity(d.chain, d.handle, d.n_p, q) * std::sqrt(nearest) * sum;
+    double value = dexterity(d.chain, d.handle, d.n_p, q) * std::sqrt(nearest) * sum;
+    if (value > most) {
+      value *= std::clamp(shapes.distance(d.chain) / kClear, kTouching, 1.0);
+    }
     if (value > most && is_usable(d)) {
       most = value;
       best = q;
@@ -312,9 +322,13 @@ std::string drive_lines(const std::vector<DrivenJoint>& joints, Drives drives,
 }  // namespace
 
 DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& folder, Drives drives,
-                         const std::string& simulation_file) {
-  DeviceDraft d{
-      .chain = model::ChainData(read_part(part)), .ranges = {}, .singular = {}, .posture = {}};
+                         const std::string& simulation_file,
+                         const std::function<void(std::size_t, std::size_t)>& progress) {
+  DeviceDraft d{.chain = model::ChainData(read_part(part)),
+                .ranges = {},
+                .singular = {},
+                .posture = {},
+                .shapes = {}};
   d.n_p = gantry_joints(d.chain.model(), part.urdf.generic_string());
   d.handle = held_frame(d.chain.model());
   d.ranges = joint_ranges(d.chain.model());
@@ -324,6 +338,8 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
       d.ranges[i] = intersect(d.ranges[i], {-M_PI, M_PI});
   }
   d.stands = stands(d);
+  d.shapes = fit_self_collision(part, d.chain.model(), d.ranges,
+                                d.stands ? std::optional(-kTableHeight) : std::nullopt, progress);
   d.singular = singular_values(d.chain.model(), d.handle, d.n_p, d.ranges);
   d.posture = best_posture(d);
   leave_singularities(d);
@@ -349,9 +365,13 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
   if (drives != Drives::kIdeal) joints = driven_joints(d);
   if (joints.empty()) drives = Drives::kIdeal;
   text += drive_lines(joints, drives, simulation_file);
-  text += joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach);
-  if (drives == Drives::kIdeal) return {text, ""};
-  return {text, simulation_yaml(d.chain.model().name(), joints, drives)};
+  text += joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach) +
+          collision_lines(d.shapes);
+  DeviceFiles files = {.device = text, .simulation = {}, .news = news_of(d.shapes)};
+  if (drives != Drives::kIdeal) {
+    files.simulation = simulation_yaml(d.chain.model().name(), joints, drives);
+  }
+  return files;
 }
 
 }  // namespace hg::generator

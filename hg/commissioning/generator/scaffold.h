@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "hg/commissioning/generator/chain_part.h"
 #include "hg/config/simulation/simulation.h"
@@ -25,12 +26,16 @@ enum class Drives {
 struct DeviceFiles {
   std::string device;
   std::string simulation;
+  std::vector<std::string> news = {};  ///< What a user should know, one line each
 };
 
 /// A device.yaml that will stand in `folder`, its simulation beside it in `simulation_file`.
 /// Leading prismatic joints become the gantry; six or seven joints after them are the manipulator.
+/// Capsules are fitted to the meshes of the links, which takes seconds; `progress`, if given, is
+/// called after each step of that with the number of steps and the most.
 DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& folder, Drives drives,
-                         const std::string& simulation_file);
+                         const std::string& simulation_file,
+                         const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 /// Text of a twin.yaml, and what a user should know of its trial on the device; empty: all is well.
 struct TwinDraft {

@@ -13,7 +13,9 @@
 #include "hg/commissioning/generator/postures.h"
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/config/twin.h"
+#include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/error.h"
+#include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
@@ -77,11 +79,15 @@ Pose tip(Mechanism& d, const Eigen::VectorXd& q) {
   return d.chain.pose(d.end_effector);
 }
 
+constexpr double kShapeRoom = 0.005;  // m, beyond the safe distance between shapes of the device
+
 // tests whether the device can hold its handle at a pose
 class Reach {
  public:
   explicit Reach(const config::DeviceConfig& device)
       : device_(device),
+        chain_(device.model.chain),
+        shapes_(device.collision.shapes, device.collision.pairs.watched),
         twin_{.name = "draft",
               .model = {.chain = model::ChainModel::free_body({}),
                         .end_effector = 0,
@@ -92,14 +98,23 @@ class Reach {
     q.head<3>() = T_B_H.p;
     q.segment<4>(3) = Eigen::Quaterniond(T_B_H.R).normalized().coeffs();
     try {
-      return scenario::find_start(device_, twin_);
+      const scenario::Start start = scenario::find_start(device_, twin_);
+      if (is_clear(start)) return start;
     } catch (const SetupError&) {
-      return {};
     }
+    return {};
   }
 
  private:
+  // whether all watched shapes of the device have some room to move
+  bool is_clear(const scenario::Start& start) {
+    chain_.update_poses(stacked(start.q_p, start.q_m));
+    return shapes_.distance(chain_) > device_.collision.safe_distance + kShapeRoom;
+  }
+
   const config::DeviceConfig& device_;
+  model::ChainData chain_;
+  const collision::Nearest shapes_;
   config::Twin twin_;
 };
 
