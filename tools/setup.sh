@@ -52,7 +52,7 @@ for package in ca-certificates libyaml-cpp-dev libcli11-dev libfmt-dev \
 done
 if [ "$purpose" = test ]; then
   need clang-format clang-format
-  for package in libgtest-dev librapidcheck-dev chromium; do need "$package"; done
+  for package in libgtest-dev librapidcheck-dev chromium iproute2; do need "$package"; done
   "$(find_python)" -c 'import os, sysconfig
 os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need python3-dev
 fi

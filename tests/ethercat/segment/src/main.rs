@@ -1,0 +1,148 @@
+//! A simulated EtherCAT segment: answers the frames of a master on a network interface as slaves in
+//! a line would, and makes faults on purpose (docs/reference/ethercat_segment.md).
+//!
+//! segment INTERFACE LAYOUT
+//!
+//! Commands come by standard input, whose end ends the program.
+
+mod clock;
+mod commands;
+mod device;
+mod dictionary;
+mod drive;
+mod esc;
+mod layout;
+mod line;
+mod link;
+mod mailbox;
+mod motor;
+mod registers;
+mod sensors;
+mod sii;
+mod slave;
+
+use std::collections::VecDeque;
+use std::io::{self, Read, Write};
+use std::time::{Duration, Instant};
+
+use line::{Fate, Line};
+use link::Link;
+
+const LOOK: Duration = Duration::from_millis(5); // at watchdogs, where no frames come
+
+struct Segment {
+    line: Line,
+    link: Link,
+    started: Instant,
+    late: VecDeque<(Instant, Vec<u8>)>,
+    typed: Vec<u8>, // an unfinished line of standard input
+}
+
+impl Segment {
+    fn now_ns(&self) -> u64 {
+        self.started.elapsed().as_nanos() as u64
+    }
+
+    fn run(&mut self) -> Result<(), String> {
+        loop {
+            let (has_frames, has_input) = self.wait();
+            self.line.watch(self.now_ns());
+            if has_input && !self.obey()? {
+                return Ok(());
+            }
+            if has_frames {
+                self.answer().map_err(|error| format!("the interface: {error}"))?;
+            }
+            self.send_late().map_err(|error| format!("the interface: {error}"))?;
+        }
+    }
+
+    fn wait(&self) -> (bool, bool) {
+        let now = Instant::now();
+        let next = self.late.iter().map(|(time, _)| time.saturating_duration_since(now)).min();
+        let timeout = next.unwrap_or(LOOK).min(LOOK);
+        let mut files = [self.link.descriptor(), 0].map(|fd| libc::pollfd {
+            fd,
+            events: libc::POLLIN,
+            revents: 0,
+        });
+        let timeout = libc::timespec { tv_sec: 0, tv_nsec: timeout.as_nanos() as i64 };
+        // SAFETY: two files are given, and the time lives as long as the call
+        unsafe { libc::ppoll(files.as_mut_ptr(), 2, &timeout, std::ptr::null()) };
+        (files[0].revents != 0, files[1].revents != 0)
+    }
+
+    fn answer(&mut self) -> io::Result<()> {
+        let now_ns = self.now_ns();
+        while let Some(frame) = self.link.receive()? {
+            match self.line.pass(frame, now_ns) {
+                Fate::Lost => {}
+                Fate::Late(us) => {
+                    let due = Instant::now() + Duration::from_micros(us);
+                    self.late.push_back((due, frame.to_vec()));
+                }
+                Fate::Answered => {
+                    let answer = frame.to_vec();
+                    self.link.send(&answer)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn send_late(&mut self) -> io::Result<()> {
+        let now = Instant::now();
+        while self.late.front().is_some_and(|(time, _)| *time <= now) {
+            if let Some((_, frame)) = self.late.pop_front() {
+                self.link.send(&frame)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Executes what was typed; false: that was the end.
+    fn obey(&mut self) -> Result<bool, String> {
+        let mut bytes = [0; 4096];
+        let count = io::stdin().lock().read(&mut bytes).map_err(|error| error.to_string())?;
+        self.typed.extend(&bytes[..count]);
+        while let Some(end) = self.typed.iter().position(|&byte| byte == b'\n') {
+            let line: Vec<u8> = self.typed.drain(..=end).collect();
+            let command = String::from_utf8_lossy(&line);
+            let now_ns = self.now_ns();
+            let answer = commands::execute(&mut self.line, command.trim(), now_ns);
+            say(&answer)?;
+        }
+        Ok(count > 0)
+    }
+}
+
+fn say(text: &str) -> Result<(), String> {
+    let mut out = io::stdout().lock();
+    writeln!(out, "{text}").and_then(|()| out.flush()).map_err(|error| error.to_string())
+}
+
+fn start() -> Result<(), String> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [interface, file] = &arguments[..] else {
+        return Err("expected: segment INTERFACE LAYOUT".to_string());
+    };
+    let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
+    let slaves = layout::read(&text).map_err(|problem| format!("{file}: {problem}"))?;
+    let link = Link::open(interface).map_err(|error| format!("{interface}: {error}"))?;
+    say(&format!("{} slaves on {interface}", slaves.len()))?;
+    let mut segment = Segment {
+        line: Line::new(slaves),
+        link,
+        started: Instant::now(),
+        late: VecDeque::new(),
+        typed: Vec::new(),
+    };
+    segment.run()
+}
+
+fn main() {
+    if let Err(problem) = start() {
+        eprintln!("segment: {problem}");
+        std::process::exit(2);
+    }
+}
