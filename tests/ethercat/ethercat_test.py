@@ -444,8 +444,20 @@ class Frames(unittest.TestCase):
         for control, errors in ((b"\x01\x02", 0), (b"\x00\x02", 0x60)):
             self.write(panel, 0x0502, control + (4).to_bytes(4, "little") + b"\x34\x12")
             self.assertEqual(self.read(panel, 0x0503, 1), errors)
-        self.write(panel, 0x0502, b"\x00\x01" + (4).to_bytes(4, "little"))
-        self.assertEqual(self.read(panel, 0x0508, 2), 0x1234)
+        self.assertEqual(self.read_eeprom(panel, 4), 0x1234)
+
+    def read_eeprom(self, i, word):
+        self.write(i, 0x0502, b"\x00\x01" + word.to_bytes(4, "little"))
+        return self.read(i, 0x0508, 2)
+
+    def test_the_eeprom_has_its_checksum(self):
+        head = b"".join(self.read_eeprom(0, word).to_bytes(2, "little") for word in range(8))
+        crc = 0xFF  # polynomial x^8 + x^2 + x + 1
+        for byte in head[:14]:
+            crc ^= byte
+            for _ in range(8):
+                crc = (crc << 1) ^ (0x107 if crc & 0x80 else 0)
+        self.assertEqual(head[14], crc)
 
 
 class Words(unittest.TestCase):

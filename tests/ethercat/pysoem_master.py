@@ -17,7 +17,12 @@ PATIENCE_US = 5_000_000
 
 class SoemMaster:
     def __init__(self, interface):
+        # its own are for real slaves: a busy computer answers later
+        timeouts = pysoem.settings.timeouts
+        timeouts.ret, timeouts.safe, timeouts.eeprom = 300_000, 1_000_000, 1_000_000
+        timeouts.tx_mailbox = timeouts.rx_mailbox = timeouts.state = PATIENCE_US
         self.master = pysoem.Master()
+        self.master.sdo_read_timeout = self.master.sdo_write_timeout = PATIENCE_US
         self.master.open(interface)
 
     def scan(self):
@@ -32,7 +37,7 @@ class SoemMaster:
     def register_of(self, slave, address, size):
         """A register as a number; 0: the slave does not have it."""
         try:
-            return int.from_bytes(slave._fprd(address, size), "little")
+            return int.from_bytes(slave._fprd(address, size, PATIENCE_US), "little")
         except pysoem.WkcError:
             return 0
 
@@ -84,7 +89,7 @@ class SoemMaster:
         states = []
         for slave in self.master.slaves:
             try:
-                status, _, code = (int.from_bytes(slave._fprd(address, 2), "little")
+                status, _, code = (int.from_bytes(slave._fprd(address, 2, PATIENCE_US), "little")
                                    for address in (0x0130, 0x0132, 0x0134))
                 states.append([status & 0x1F, code])
             except pysoem.WkcError:
@@ -92,7 +97,8 @@ class SoemMaster:
         return states
 
     def register(self, i, address, data):
-        self.master.slaves[int(i)]._fpwr(int(address, 0), bytes.fromhex(data))
+        self.master.slaves[int(i)]._fpwr(int(address, 0), bytes.fromhex(data),
+                                                  PATIENCE_US)
         return {}
 
 
