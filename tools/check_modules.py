@@ -64,7 +64,7 @@ def module_of(modules, parts):
     return None
 
 
-KNOWN_FOLDERS = ["mcap_sink", "counting_malloc"]  # with targets of their own
+KNOWN_FOLDERS = ["mcap_sink", "bus_master", "counting_malloc"]  # with targets of their own
 
 
 def check_includes(modules):

@@ -66,9 +66,9 @@ if [ "$purpose" = sanitize ] && ! sanitizers_work; then
   for package in clang-22 libclang-rt-22-dev libomp-22-dev; do need "$package"; done
 fi
 
-# Recordings are written by a small Rust library. Debian's plain cargo may be too old for it; CMake
+# Recordings and EtherCAT need a small Rust library. Debian's plain cargo may be too old for it; CMake
 # tries the same places.
-least_rust=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' hg/recording/mcap_sink/Cargo.toml)
+least_rust=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' rust/Cargo.toml)
 rust_works() {
   local cargo version
   for cargo in $(type -aP cargo) /usr/bin/cargo; do
@@ -102,7 +102,7 @@ if [ "$purpose" = sanitize ] && ! sanitizers_work && ! SANITIZER_CXX='' sanitize
   exit 1
 fi
 if ! rust_works; then
-  say "recording will be off: no cargo with rustc $least_rust or newer (Debian: cargo-web rustc-web)"
+  say "recording and EtherCAT will be off: no cargo with rustc $least_rust or newer (Debian: cargo-web rustc-web)"
   [ "$purpose" != test ] || exit 1
 fi
 

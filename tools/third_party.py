@@ -20,7 +20,7 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "THIRD_PARTY.md"
-SINK = ROOT / "hg/recording/mcap_sink"
+RUST = ROOT / "rust"
 
 # what a program that links all of it may be given away with
 ALLOWED = {"0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause",
@@ -74,7 +74,7 @@ def wheel_names():
 
 
 def crate_names():
-    packages = tomllib.loads((SINK / "Cargo.lock").read_text())["package"]
+    packages = tomllib.loads((RUST / "Cargo.lock").read_text())["package"]
     return sorted((package["name"], package["version"]) for package in packages
                   if "source" in package)
 
@@ -140,7 +140,7 @@ def wheel_rows():
 def crate_rows():
     done = subprocess.run(
         ["cargo", "metadata", "--format-version", "1", "--offline", "--locked", "--manifest-path",
-         SINK / "Cargo.toml"], capture_output=True, text=True, check=True)
+         RUST / "Cargo.toml"], capture_output=True, text=True, check=True)
     for package in sorted(json.loads(done.stdout)["packages"],
                           key=lambda package: (package["name"], package["version"])):
         if package["source"] is None:
@@ -208,7 +208,7 @@ def faults():
 def audit():
     """What advisory databases say; False after an advisory."""
     is_fine = True
-    tools = [("cargo audit", ["cargo", "audit"], SINK, "cargo-audit"),
+    tools = [("cargo audit", ["cargo", "audit"], RUST, "cargo-audit"),
              ("npm audit", ["npm", "audit", "--omit=dev"], ROOT / "viewer", "npm")]
     for name, command, folder, program in tools:
         if shutil.which(program) is None:

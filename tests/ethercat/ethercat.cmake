@@ -1,4 +1,5 @@
-# The simulated EtherCAT segment, a program in Rust, and what judges it: two masters of others.
+# The simulated EtherCAT segment, a program in Rust, what judges it, two masters of others, and what
+# `hapticgiant bus` finds on it.
 # Without cargo there is none of it; without the crates of one master the other one judges alone.
 
 # hg_rust_program(RESULT FOLDER LEAST_RUST): a program of tests/ethercat/FOLDER, and in RESULT where
@@ -23,24 +24,25 @@ function(hg_rust_program result folder least)
     return()
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${source}/src/*.rs)
-  set(program ${PROJECT_SOURCE_DIR}/build/ethercat/release/${folder})
-  add_custom_command(OUTPUT ${program}
+  set(file ${PROJECT_SOURCE_DIR}/build/ethercat/release/${folder})
+  add_custom_command(OUTPUT ${file}
     COMMAND ${environment} ${cargo} build --release --locked --offline --quiet
     WORKING_DIRECTORY ${source}
     DEPENDS ${sources} ${source}/Cargo.toml ${source}/Cargo.lock
-      ${PROJECT_SOURCE_DIR}/tests/ethercat/segment/src/link.rs
+      ${PROJECT_SOURCE_DIR}/hg/device/ethercat/bus_master/src/link.rs
+      ${PROJECT_SOURCE_DIR}/hg/device/ethercat/bus_master/src/pump.rs
     COMMENT "Building ${folder} (Rust)"
     VERBATIM)
-  add_custom_target(${folder} ALL DEPENDS ${program})
-  set(${result} ${program} PARENT_SCOPE)
+  add_custom_target(${folder} ALL DEPENDS ${file})
+  set(${result} ${file} PARENT_SCOPE)
 endfunction()
 
 if(cargo AND HG_TESTS)
   hg_rust_program(segment_program segment 1.81)
   hg_rust_program(ethercrab_program ethercrab_master 1.85)
   if(segment_program)
-    hg_python_test(ethercat tests/ethercat/ethercat_test.py ${segment_program} ${ethercrab_program}
+    hg_python_test(ethercat_bus tests/ethercat/ethercat_test.py ${program} ${segment_program} ${ethercrab_program}
       TIMEOUT 300)
-    set_tests_properties(ethercat PROPERTIES SKIP_RETURN_CODE 77)
+    set_tests_properties(ethercat_bus PROPERTIES SKIP_RETURN_CODE 77)
   endif()
 endif()

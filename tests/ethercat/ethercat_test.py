@@ -1,6 +1,7 @@
-"""The simulated EtherCAT segment, judged by two masters that are not ours: ethercrab and SOEM.
+"""The simulated EtherCAT segment, judged by two masters that are not ours, ethercrab and SOEM, and
+`hapticgiant bus` on it.
 
-    ethercat_test.py SEGMENT [ETHERCRAB_MASTER]
+    ethercat_test.py PROGRAM SEGMENT [ETHERCRAB_MASTER]
 
 Both masters obey the same commands, one a line, and answer in JSON:
 
@@ -44,7 +45,7 @@ TURN = {name: 65536 if name in ("axis_5", "axis_6") else 1048576 for name in AXE
 COUNTER = 6 * 3 + 2 * 1 + 3  # drives and I/O read and write, sensors are read
 SAFE_OP_ERROR = 0x14
 WATCHDOG = 0x001B
-SEGMENT = ETHERCRAB = None
+PROGRAM = SEGMENT = ETHERCRAB = None
 
 
 def number(data):
@@ -460,6 +461,47 @@ class Frames(unittest.TestCase):
         self.assertEqual(head[14], crc)
 
 
+class Bus(unittest.TestCase):
+    """`hapticgiant bus` on the segment."""
+
+    def scan(self, interface=bus.MASTER_END):
+        """Exit code and what it said."""
+        tried = subprocess.run([PROGRAM, "bus", "scan", interface], capture_output=True, text=True,
+                               timeout=100)
+        return tried.returncode, tried.stdout + tried.stderr
+
+    def test_scan_lists_the_slaves(self):
+        segment = bus.Segment(SEGMENT)
+        code, said = self.scan()
+        segment.close()
+        self.assertEqual(code, 0, said)
+        lines = said.splitlines()
+        self.assertEqual((lines[0], len(lines)), ("9 slaves on master0", 12))
+        for i, words in ((0, "1 0x1000 0x00ffff00 0x00000101 1 1 0 ns PRE-OP CiA 402 drive"),
+                         (4, "5 0x1004 0x00ffff01 0x00000205 7 5 1380 ns PRE-OP CiA 402 drive"),
+                         (7, "8 0x1007 0x00ffff00 0x00000302 1 8 2415 ns PRE-OP force sensor"),
+                         (8, "9 0x1008 0x00ffff00 0x00000401 1 9 - PRE-OP digital I/O")):
+            found, wanted = lines[3 + i].split(), words.split()
+            if "ns" in wanted:  # a rounded half
+                self.assertAlmostEqual(int(found.pop(6)), int(wanted.pop(6)), delta=2)
+            self.assertEqual(found, wanted)
+
+    def test_scan_names_what_is_wrong(self):
+        code, said = self.scan("nowhere0")
+        self.assertEqual((code, said.strip()), (2, "nowhere0: No such device (os error 19)"))
+        code, said = self.scan()  # nobody there
+        self.assertEqual(code, 2)
+        self.assertIn("master0: no slave answers: is the interface up", said)
+        segment = bus.Segment(SEGMENT)
+        segment.tell("refuse axis_2 0x0016")
+        code, said = self.scan()
+        self.assertEqual(code, 2)
+        self.assertIn("slave 2 of 9 (0x1001) stays in INIT: AL status code 0x0016, ", said)
+        segment.tell("refuse axis_2 0")
+        self.assertEqual(self.scan()[0], 0)
+        segment.close()
+
+
 class Words(unittest.TestCase):
     """Commands and files of people who make mistakes."""
 
@@ -520,14 +562,14 @@ def make_environment():
 
 
 def main():
-    global SEGMENT, ETHERCRAB
+    global PROGRAM, SEGMENT, ETHERCRAB
     if bus.INSIDE not in os.environ:
         os.environ["HG_ETHERCAT_NO_SOEM"] = make_environment()
         print(f"ethercat: skipped, {bus.enter_namespace()}")
         return SKIPPED
     bus.make_interfaces()
-    programs = [word for word in sys.argv[1:3] if not word.startswith("-") and "/" in word]
-    SEGMENT, ETHERCRAB = (programs + [None])[:2]
+    programs = [word for word in sys.argv[1:4] if not word.startswith("-") and "/" in word]
+    PROGRAM, SEGMENT, ETHERCRAB = (programs + [None])[:3]
     result = unittest.main(argv=[sys.argv[0], *sys.argv[1 + len(programs):]], exit=False).result
     if not result.wasSuccessful():
         return 1

@@ -1,5 +1,4 @@
-/// C interface of the official MCAP writer and reader (crate `mcap`), the only use of Rust in this
-/// program.
+/// C interface of the official MCAP writer and reader (crate `mcap`).
 ///
 /// One handle writes one file and serves one thread. The first error persists: every later call
 /// returns false and has no effect, mcap_sink_error() gives the reason. Strings are UTF-8,

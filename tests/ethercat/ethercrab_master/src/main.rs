@@ -3,10 +3,6 @@
 //!
 //! ethercrab_master INTERFACE
 
-#[path = "../../segment/src/link.rs"]
-mod link;
-mod pump;
-
 use std::io::{BufRead, Write};
 use std::time::Duration;
 
@@ -16,7 +12,8 @@ use ethercrab::{
     DcSync, MainDevice, MainDeviceConfig, PduStorage, SubDeviceGroup, SubDeviceRef, Timeouts,
 };
 
-use pump::{now_ns, Pump};
+use bus_master::link::Link;
+use bus_master::pump::{now_ns, Pump};
 
 const MOST_SLAVES: usize = 16;
 const MOST_BYTES: usize = 1024;
@@ -55,7 +52,7 @@ macro_rules! with_group {
 
 fn main() {
     let interface = std::env::args().nth(1).expect("expected: ethercrab_master INTERFACE");
-    let link = link::Link::open(&interface).expect("the interface");
+    let link = Link::open(&interface).expect("the interface");
     let (tx, rx, frames) = FRAMES.try_split().expect("the only user");
     let second = Duration::from_secs(1);
     let timeouts = Timeouts {

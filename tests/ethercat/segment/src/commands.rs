@@ -6,7 +6,7 @@ use crate::line::Line;
 use crate::registers::TIME_DELAY;
 use crate::slave::{INIT, PRE_OP, SAFE_OP};
 
-const COMMANDS: &str = "lose, late, miscount, fall, open, close, trip, set, show";
+const COMMANDS: &str = "lose, late, miscount, fall, refuse, open, close, trip, set, show";
 
 pub fn execute(line: &mut Line, command: &str, now_ns: u64) -> String {
     match run(line, command, now_ns) {
@@ -37,6 +37,10 @@ fn run(line: &mut Line, command: &str, now_ns: u64) -> Result<String, String> {
             };
             let i = find(line, name)?;
             line.slaves[i].fall(state, code_of(code)?);
+        }
+        ["refuse", name, code] => {
+            let i = find(line, name)?;
+            line.slaves[i].refusal = code_of(code)?;
         }
         ["open", name] => {
             let i = find(line, name)?;

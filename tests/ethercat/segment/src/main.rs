@@ -13,6 +13,7 @@ mod drive;
 mod esc;
 mod layout;
 mod line;
+#[path = "../../../../hg/device/ethercat/bus_master/src/link.rs"]
 mod link;
 mod mailbox;
 mod motor;

@@ -41,6 +41,8 @@ pub struct Slave {
     last_mail: Vec<u8>,
     waiting: Vec<Vec<u8>>, // mails for the master
     op_asked_ns: Option<u64>,
+    /// AL status code with which it refuses to leave INIT; 0: it does not.
+    pub refusal: u16,
     /// Datagrams of process data that get no working counter from this slave.
     pub uncounted: u32,
 }
@@ -66,6 +68,7 @@ impl Slave {
             last_mail: Vec::new(),
             waiting: Vec::new(),
             op_asked_ns: None,
+            refusal: code::NONE,
             uncounted: 0,
         }
     }
@@ -208,6 +211,9 @@ impl Slave {
     }
 
     fn check_mailbox(&self) -> u16 {
+        if self.refusal != code::NONE {
+            return self.refusal;
+        }
         if !self.has_mailbox {
             return code::NONE;
         }
