@@ -7,8 +7,9 @@
 #include <memory>
 #include <vector>
 
+#include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
-#include "hg/device/ethercat/bus_scan.h"
 
 namespace hg::apps {
 namespace {
@@ -30,6 +31,47 @@ void bus_scan(const std::string& interface_name) {
   for (std::size_t i = 0; i < slaves.size(); ++i) print(i + 1, slaves[i]);
 }
 
+int bus_watch(const std::string& interface_name, const ethercat::BusWatchOptions& options) {
+  const ethercat::BusWatchResult result = ethercat::watch_bus(
+      interface_name, options, watch_interruption(), [](double time_s, const std::string& words) {
+        print_out(fmt::format("{:9.3f} s  {}\n", time_s, words));
+      });
+  print_out(fmt::format("{} exchanges, {} without an answer, {} incomplete\n", result.exchanges,
+                        result.lost, result.incomplete));
+  return result.lost + result.incomplete > 0 ? 1 : 0;
+}
+
+namespace {
+
+void add_watch(CLI::App& bus, int& exit_code) {
+  struct Arguments {
+    std::string interface_name;
+    ethercat::BusWatchOptions options;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* watch = bus.add_subcommand(
+      "watch", "Exchanges process data at 1 kHz, and names the slaves that drop out.");
+  watch->footer(
+      "All outputs are zero: drives stay off. Ctrl-C ends it. Exit code 1: an exchange was lost or "
+      "incomplete.\n"
+      "Example:\n"
+      "  hapticgiant bus watch eth1 --seconds 600");
+  watch->add_option("INTERFACE", arguments->interface_name, "as in scan")->required();
+  watch->add_option("--seconds", arguments->options.seconds, "duration")
+      ->check(number_that("from 0.1 to 1000000", [](double v) { return v >= 0.1 && v <= 1e6; }))
+      ->capture_default_str();
+  watch
+      ->add_option("--watchdog-ms", arguments->options.watchdog_ms,
+                   "time after which a slave without outputs leaves OP")
+      ->check(whole_number(1, 6553))
+      ->capture_default_str();
+  watch->callback([arguments, &exit_code] {
+    exit_code = bus_watch(arguments->interface_name, arguments->options);
+  });
+}
+
+}  // namespace
+
 void add_bus(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("bus", "Looks at the slaves of an EtherCAT bus.");
   command->require_subcommand(1);
@@ -47,6 +89,7 @@ void add_bus(CLI::App& app, int& exit_code) {
     bus_scan(*interface_name);
     exit_code = 0;
   });
+  add_watch(*command, exit_code);
 }
 
 }  // namespace hg::apps

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "hg/device/ethercat/bus_scan.h"
+
 namespace CLI {
 class App;
 }
@@ -12,6 +14,10 @@ namespace hg::apps {
 /// Takes all slaves behind a network interface to PRE-OP and prints what they are. Throws
 /// SetupError.
 void bus_scan(const std::string& interface_name);
+
+/// Exchanges process data and prints what goes wrong. Exit code: 0 nothing, 1 an exchange was lost
+/// or incomplete. Throws SetupError.
+int bus_watch(const std::string& interface_name, const ethercat::BusWatchOptions& options);
 
 /// Adds the subcommand to the program; running it sets `exit_code`.
 void add_bus(CLI::App& app, int& exit_code);

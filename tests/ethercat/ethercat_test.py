@@ -22,6 +22,7 @@ skipped (exit code 77), and so is a master that cannot be installed.
 import math
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -499,6 +500,47 @@ class Bus(unittest.TestCase):
         self.assertIn("slave 2 of 9 (0x1001) stays in INIT: AL status code 0x0016, ", said)
         segment.tell("refuse axis_2 0")
         self.assertEqual(self.scan()[0], 0)
+        segment.close()
+
+
+    def test_watch_names_slaves_that_drop_out(self):
+        segment = bus.Segment(SEGMENT)
+        watch = subprocess.Popen([PROGRAM, "bus", "watch", bus.MASTER_END, "--seconds", "1000",
+                                  "--watchdog-ms", "6553"], stdout=subprocess.PIPE, text=True)
+
+        def expect(words):
+            # a busy computer may answer late in between
+            for line in watch.stdout:
+                if words in line:
+                    return line
+            self.fail("never said: " + words)
+
+        expect("9 slaves in OP, working counter 23")
+        self.assertTrue(all(slave["status"] == 8 for slave in segment.show()))
+        for command, words in (("miscount axis_3 40", "working counter 20 of 23\n"),
+                               ("lose 40", "no answer"),
+                               ("fall axis_2 safeop 0x001B",
+                                "working counter 21 of 23; slave 2 (0x1001, CiA 402 drive): "
+                                "SAFE-OP + error, AL status code 0x001b"),
+                               ("open wrist", "; slave 9 (0x1008, digital I/O): does not answer")):
+            segment.tell(command)
+            expect(words)
+        watch.send_signal(signal.SIGINT)
+        said, _ = watch.communicate(timeout=60)
+        self.assertEqual(watch.returncode, 1, said)
+        self.assertRegex(said, r"\d+ exchanges, \d+ without an answer, \d+ incomplete")
+        wire = bus.Wire()
+        self.assertEqual(wire.exchange(FPRD, (0x1000, 0x0420), b"\0\0"), (b"\xfa\xff", 1))
+        wire.close()
+        segment.close()
+
+    def test_watch_counts_and_ends(self):
+        segment = bus.Segment(SEGMENT)
+        tried = subprocess.run([PROGRAM, "bus", "watch", bus.MASTER_END, "--seconds", "0.1"],
+                               capture_output=True, text=True, timeout=100)
+        self.assertIn(tried.returncode, (0, 1), tried.stderr)
+        is_clean = ", 0 without an answer, 0 incomplete" in tried.stdout
+        self.assertEqual(tried.returncode == 0, is_clean, tried.stdout)
         segment.close()
 
 

@@ -41,6 +41,18 @@ size_t bus_master_scan(bus_master* master);
 /// One of the slaves of the last scan, in the order of the cable. False: there is none.
 bool bus_master_slave(const bus_master* master, size_t index, bus_slave* slave);
 
+/// Takes all slaves of the last scan to OP, with outputs of zero: drives stay off. Those with
+/// outputs get a watchdog, which is read back. Returns the working counter that an exchange has
+/// when all slaves take part; 0 after an error.
+uint16_t bus_master_start(bus_master* master, uint32_t watchdog_ms);
+
+/// Exchanges process data once, and keeps the clocks together. Returns the working counter; -1: no
+/// answer within this time.
+int32_t bus_master_exchange(bus_master* master, uint32_t patience_us);
+
+/// Reads AL status and AL status code of a slave of the last scan. False: it does not answer.
+bool bus_master_status(bus_master* master, size_t index, uint8_t* status, uint16_t* code);
+
 /// Closes the interface.
 void bus_master_free(bus_master* master);
 

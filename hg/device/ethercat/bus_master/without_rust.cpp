@@ -16,4 +16,10 @@ size_t bus_master_scan(bus_master*) { return 0; }
 
 bool bus_master_slave(const bus_master*, size_t, bus_slave*) { return false; }
 
+uint16_t bus_master_start(bus_master*, uint32_t) { return 0; }
+
+int32_t bus_master_exchange(bus_master*, uint32_t) { return -1; }
+
+bool bus_master_status(bus_master*, size_t, uint8_t*, uint16_t*) { return false; }
+
 void bus_master_free(bus_master*) {}

@@ -10,7 +10,11 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::time::Duration;
 
 use ethercrab::error::{Error, Item};
-use ethercrab::{AlStatusCode, Command, MainDevice, MainDeviceConfig, PduStorage, Timeouts};
+use ethercrab::subdevice_group::{Op, PreOp};
+use ethercrab::{
+    AlStatusCode, Command, DefaultLock, MainDevice, MainDeviceConfig, PduStorage, SubDeviceGroup,
+    Timeouts,
+};
 
 use link::Link;
 use pump::{now_ns, Pump};
@@ -21,11 +25,15 @@ const FRAMES: usize = 16;
 const FRAME_BYTES: usize = PduStorage::element_size(1100);
 const FIRST_ADDRESS: u16 = 0x1000; // that ethercrab gives to slaves
 const NAME_BYTES: usize = 64;
+const WATCHDOG_DIVIDER: u16 = 0x0400;
+const WATCHDOG_TIME: u16 = 0x0420;
+const WATCHDOG_TICK: u16 = 2498; // 100 us
 const AL_STATUS: u16 = 0x0130;
 const AL_STATUS_CODE: u16 = 0x0134;
 const ERROR_FLAG: u16 = 0x10;
 const SECOND: Duration = Duration::from_secs(1);
 const ANSWER: Duration = Duration::from_millis(500); // of one frame or one step
+const TO_OP: Duration = Duration::from_secs(10); // ETG.1020
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// One slave as in `bus_master.h`.
@@ -52,10 +60,20 @@ pub struct bus_master {
     error: CString,
 }
 
+type Group<S> = SubDeviceGroup<MOST_SLAVES, MOST_BYTES, DefaultLock, S>;
+
+enum Stage {
+    Unknown,
+    PreOp(Group<PreOp>),
+    Op(Group<Op>),
+}
+
 struct Bus {
     pump: Pump,
     device: &'static MainDevice<'static>,
     interface: String,
+    stage: Stage,
+    expected: u16, // working counter of an exchange
 }
 
 impl Bus {
@@ -80,7 +98,13 @@ impl Bus {
         };
         let config = MainDeviceConfig { dc_static_sync_iterations: 1000, ..Default::default() };
         let device = Box::leak(Box::new(MainDevice::new(frames, timeouts, config)));
-        Ok(Bus { pump: Pump { link, tx, rx }, device, interface: interface.to_string() })
+        Ok(Bus {
+            pump: Pump { link, tx, rx },
+            device,
+            interface: interface.to_string(),
+            stage: Stage::Unknown,
+            expected: 0,
+        })
     }
 
     fn scan(&mut self) -> Result<Vec<bus_slave>, String> {
@@ -115,7 +139,74 @@ impl Bus {
                 status: (status & 0x1F) as u8,
             });
         }
+        self.stage = Stage::PreOp(group);
         Ok(slaves)
+    }
+
+    fn start(&mut self, watchdog_ms: u32) -> Result<(), String> {
+        let Stage::PreOp(group) = std::mem::replace(&mut self.stage, Stage::Unknown) else {
+            return Err(format!("{}: scan comes before start", self.interface));
+        };
+        let device = self.device;
+        let to_safe_op = async { group.into_pre_op_pdi(device).await?.into_safe_op(device).await };
+        let group = match self.pump.run(to_safe_op, PATIENCE) {
+            Some(Ok(group)) => group,
+            Some(Err(error)) => return Err(self.explain(&error.to_string())),
+            None => return Err(self.explain("no end of the way to SAFE-OP")),
+        };
+        self.expected = 0;
+        let mut watched = Vec::new();
+        for slave in group.iter(device) {
+            let (outputs, inputs) = (slave.outputs_raw().len(), slave.inputs_raw().len());
+            self.expected += u16::from(inputs > 0) + if outputs > 0 { 2 } else { 0 };
+            if outputs > 0 {
+                watched.push(slave.configured_address());
+            }
+        }
+        for address in watched {
+            self.set_watchdog(address, watchdog_ms)?;
+        }
+        let to_op = async {
+            let group = group.request_into_op(device).await?;
+            while !group.tx_rx_sync_system_time(device).await?.all_op() {}
+            Ok::<_, Error>(group)
+        };
+        match self.pump.run(to_op, TO_OP) {
+            Some(Ok(group)) => self.stage = Stage::Op(group),
+            Some(Err(error)) => return Err(self.explain(&error.to_string())),
+            None => return Err(self.explain("no end of the way to OP")),
+        }
+        Ok(())
+    }
+
+    /// Sets the watchdog of process data and reads it back.
+    fn set_watchdog(&mut self, address: u16, watchdog_ms: u32) -> Result<(), String> {
+        let ticks = u16::try_from(watchdog_ms * 10)
+            .map_err(|_| format!("watchdog: at most 6553 ms, got {watchdog_ms}"))?;
+        let device = self.device;
+        let set = async {
+            for (register, value) in [(WATCHDOG_DIVIDER, WATCHDOG_TICK), (WATCHDOG_TIME, ticks)] {
+                Command::fpwr(address, register).send(device, value).await?;
+                if Command::fprd(address, register).receive::<u16>(device).await? != value {
+                    return Ok(false);
+                }
+            }
+            Ok::<_, Error>(true)
+        };
+        match self.pump.run(set, PATIENCE) {
+            Some(Ok(true)) => Ok(()),
+            Some(Err(error)) => Err(format!("slave {address:#06x}: watchdog: {error}")),
+            _ => Err(format!("slave {address:#06x}: its watchdog cannot be set")),
+        }
+    }
+
+    /// Working counter of one exchange of process data; None: no answer in time.
+    fn exchange(&mut self, patience: Duration) -> Option<u16> {
+        let Stage::Op(group) = &self.stage else { return None };
+        match self.pump.run(group.tx_rx_sync_system_time(self.device), patience) {
+            Some(Ok(response)) => Some(response.working_counter),
+            _ => None,
+        }
     }
 
     fn expect_someone(&mut self) -> Result<(), String> {
@@ -249,6 +340,54 @@ pub unsafe extern "C" fn bus_master_slave(
         *slave = *found;
     }
     found.is_some()
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_start(master: *mut bus_master, watchdog_ms: u32) -> u16 {
+    let master = &mut *master;
+    let Some(bus) = &mut master.open else { return 0 };
+    match guarded(|| bus.start(watchdog_ms)) {
+        Ok(()) => bus.expected,
+        Err(message) => {
+            master.fail(message);
+            0
+        }
+    }
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_exchange(master: *mut bus_master, patience_us: u32) -> i32 {
+    let Some(bus) = &mut (*master).open else { return -1 };
+    let patience = Duration::from_micros(u64::from(patience_us));
+    let counter = catch_unwind(AssertUnwindSafe(|| bus.exchange(patience)));
+    counter.ok().flatten().map_or(-1, i32::from)
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`; `status` and `code` point to numbers.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_status(
+    master: *mut bus_master,
+    index: usize,
+    status: *mut u8,
+    code: *mut u16,
+) -> bool {
+    let master = &mut *master;
+    let (Some(bus), Some(slave)) = (&mut master.open, master.slaves.get(index)) else {
+        return false;
+    };
+    match guarded(|| bus.status(slave.address)) {
+        Ok((found, found_code)) => {
+            *status = (found & 0x1F) as u8;
+            *code = found_code;
+            true
+        }
+        Err(_) => false,
+    }
 }
 
 /// # Safety
