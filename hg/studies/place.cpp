@@ -22,7 +22,6 @@ namespace {
 constexpr double kStep = 0.02;      // m, of straight ways
 constexpr double kFarthest = 0.75;  // m, to either side
 constexpr double kLeast = 0.02;     // m, half an edge of the smallest box
-constexpr double kBraked = 0.007;  // m, beyond the safe distance: what a slow motion needs to brake
 
 // Postures of a device that measurements may use.
 class Reach {
@@ -53,7 +52,7 @@ class Reach {
     if (!checks::permits_virtual_joints(device_.model, q)) return false;
     if (dexterity(q) < kDexterous) return false;  // moves the chain
     if (!checks::permits_boxes(device_.model, chain_)) return false;
-    const double apart = device_.collision.safe_distance + kBraked;
+    const double apart = device_.collision.safe_distance;
     if (device_.has_floor && chain_.pose(device_.model.handle).p.z() < device_.floor_z + apart)
       return false;
     for (std::size_t i = 0; i < distances_.size(); ++i) {

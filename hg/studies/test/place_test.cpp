@@ -45,7 +45,7 @@ TEST_P(PlaceOf, AnArmIsABoxInWhichItCanHoldTheBody) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SixAndSevenJoints, PlaceOf,
-                         testing::Values("models/examples/arm.yaml",
+                         testing::Values("models/examples/arm.yaml", "models/arms/ur5e/device.yaml",
                                          "models/arms/xarm7/device.yaml"));
 
 }  // namespace
