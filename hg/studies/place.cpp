@@ -11,7 +11,7 @@
 
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/generator/postures.h"
-#include "hg/controller/safety/collision/distance.h"
+#include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/error.h"
 #include "hg/model/chain_data.h"
 #include "hg/studies/changes.h"
@@ -27,11 +27,10 @@ constexpr double kLeast = 0.02;     // m, half an edge of the smallest box
 class Reach {
  public:
   explicit Reach(const config::DeviceConfig& device)
-      : device_(device), ranges_(checks::joint_ranges(device)), chain_(device.model.chain) {
-    for (const collision::Pair& pair : device.collision.pairs.watched) {
-      distances_.emplace_back(device.collision.shapes[pair.a], device.collision.shapes[pair.b]);
-    }
-  }
+      : device_(device),
+        ranges_(checks::joint_ranges(device)),
+        chain_(device.model.chain),
+        shapes_(device.collision.shapes, device.collision.pairs.watched) {}
 
   const checks::JointRanges& ranges() const { return ranges_; }
   Pose handle(const Eigen::VectorXd& q) {
@@ -55,11 +54,7 @@ class Reach {
     const double apart = device_.collision.safe_distance;
     if (device_.has_floor && chain_.pose(device_.model.handle).p.z() < device_.floor_z + apart)
       return false;
-    for (std::size_t i = 0; i < distances_.size(); ++i) {
-      const collision::Pair& pair = device_.collision.pairs.watched[i];
-      if (distances_[i](pose_of(pair.a), pose_of(pair.b)) < apart) return false;
-    }
-    return true;
+    return shapes_.distance(chain_) >= apart;
   }
 
   // The posture that joints to spare are drawn to, as by the control law.
@@ -119,15 +114,10 @@ class Reach {
   }
 
  private:
-  Pose pose_of(std::size_t shape) const {
-    const int frame = device_.collision.shapes[shape].frame;
-    return frame < 0 ? Pose{} : chain_.pose(frame);
-  }
-
   const config::DeviceConfig& device_;
   checks::JointRanges ranges_;
   model::ChainData chain_;
-  std::vector<collision::Distance> distances_;
+  const collision::Nearest shapes_;
   Eigen::VectorXd end_, goal_;
 };
 

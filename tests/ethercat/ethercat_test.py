@@ -35,6 +35,9 @@ from bus import (APRD, APRW, APWR, ARMW, BRD, BRW, BWR, CONTROL, CST, CSV, ERROR
                  TARGET_TORQUE, TARGET_VELOCITY, TORQUE, VELOCITY)
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "packages"))
+from environment import make_environment  # noqa: E402
+
 VENV = ROOT / "build" / "ethercat_venv"
 PYTHON = VENV / "bin" / "python"
 REQUIREMENTS = ROOT / "tools" / "requirements-ethercat.txt"
@@ -585,28 +588,10 @@ class Words(unittest.TestCase):
         self.assertEqual(bus.undocumented(PAGE.read_text(), commands), [])
 
 
-def make_environment():
-    """Installs pysoem where its requirements have changed; why not, or nothing."""
-    wanted, made = REQUIREMENTS.read_text(), VENV / "requirements.txt"
-    if made.exists() and made.read_text() == wanted:
-        return ""
-    try:
-        subprocess.run([sys.executable, "-m", "venv", "--clear", VENV], check=True,
-                       capture_output=True, text=True)
-        subprocess.run([PYTHON, "-m", "pip", "install", "--quiet", "--retries", "1", "--timeout",
-                        "15", "--requirement", REQUIREMENTS], check=True, capture_output=True,
-                       text=True)
-    except (OSError, subprocess.CalledProcessError) as error:
-        words = (getattr(error, "stderr", "") or str(error)).strip()
-        return words.splitlines()[-1]
-    made.write_text(wanted)
-    return ""
-
-
 def main():
     global PROGRAM, SEGMENT, ETHERCRAB
     if bus.INSIDE not in os.environ:
-        os.environ["HG_ETHERCAT_NO_SOEM"] = make_environment()
+        os.environ["HG_ETHERCAT_NO_SOEM"] = make_environment(VENV, REQUIREMENTS)
         print(f"ethercat: skipped, {bus.enter_namespace()}")
         return SKIPPED
     bus.make_interfaces()

@@ -20,6 +20,9 @@ import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "packages"))
+from environment import make_environment  # noqa: E402
+
 VENV = ROOT / "build" / "franka_venv"
 PYTHON = VENV / "bin" / "python"
 REQUIREMENTS = ROOT / "tools" / "requirements-franka.txt"
@@ -191,27 +194,9 @@ def minute():
           f"{link['held']}, answers late {link['late']}, exit code {code}")
 
 
-def make_environment():
-    """Installs the server where its requirements have changed; why not, or nothing."""
-    wanted, made = REQUIREMENTS.read_text(), VENV / "requirements.txt"
-    if made.exists() and made.read_text() == wanted:
-        return ""
-    try:
-        subprocess.run([sys.executable, "-m", "venv", "--clear", VENV], check=True,
-                       capture_output=True, text=True)
-        subprocess.run([PYTHON, "-m", "pip", "install", "--quiet", "--retries", "1", "--timeout",
-                        "15", "--requirement", REQUIREMENTS], check=True, capture_output=True,
-                       text=True)
-    except (OSError, subprocess.CalledProcessError) as error:
-        words = (getattr(error, "stderr", "") or str(error)).strip()
-        return words.splitlines()[-1]
-    made.write_text(wanted)
-    return ""
-
-
 if __name__ == "__main__":
     PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
-    if why := make_environment():
+    if why := make_environment(VENV, REQUIREMENTS):
         print(f"franka: skipped, {VENV} cannot be made: {why}")
         sys.exit(SKIPPED)
     if "--minute" in sys.argv:
