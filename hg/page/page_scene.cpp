@@ -49,6 +49,7 @@ void add_limits(const limits::JointLimits& limits, viewer_server::SceneJoint& jo
 
 viewer_server::SceneChain device_chain(const config::DeviceConfig& device) {
   viewer_server::SceneChain chain;
+  chain.name = device.name;
   chain.urdf = device.urdf;
   for (const model::Joint& joint : device.model.chain.joints()) {
     chain.joints.push_back(scene_joint(joint));
@@ -92,6 +93,7 @@ std::vector<viewer_server::SceneFollower> followers_of(const model::ChainModel& 
 
 viewer_server::SceneChain twin_chain(const config::Twin& twin) {
   viewer_server::SceneChain chain;
+  chain.name = twin.name;
   chain.urdf = twin.urdf;
   chain.urdf_text = drawn_urdf(twin);
   chain.T_B_root = twin.T_B_root;

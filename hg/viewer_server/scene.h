@@ -41,6 +41,7 @@ struct SceneFollower {
 };
 
 struct SceneChain {
+  std::string name;                      ///< name for people
   std::filesystem::path urdf;            ///< empty: the page draws a plain body at the handle
   std::string address;                   ///< address of the URDF on the server, filled by it
   std::string urdf_text;                 ///< text of a recorded URDF; empty: the file is read

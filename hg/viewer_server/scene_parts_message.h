@@ -73,6 +73,7 @@ void fields(Archive& a, T& follower) {
 
 template <typename Archive, Is<SceneChain> T>
 void fields(Archive& a, T& chain) {
+  a("name", chain.name, "name for people");
   a("urdf", chain.urdf.empty() ? "" : chain.address, "address of the file, empty = none");
   a("p_B_root_m", chain.T_B_root.p);
   a("quaternion_B_root", quaternion(chain.T_B_root.R));

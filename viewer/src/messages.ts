@@ -33,6 +33,7 @@ export interface Scene {
 
 // a robot or a twin
 export interface SceneChain {
+  name: string; // name for people
   urdf: string; // address of the file, empty = none
   p_B_root_m: Vec3;
   quaternion_B_root: Quaternion;

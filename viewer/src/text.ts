@@ -3,6 +3,22 @@
 import type { Link } from "./data/freshness";
 import type { Frame, Scene, SceneJoint } from "./messages";
 
+// "Drawer, Franka FR3": what is rendered, and by which device.
+export function heading_text({ title, device }: Scene): string {
+  const is_named = device.name === "" || title.includes(device.name);
+  return with_capital(is_named ? title : `${title}, ${device.name}`);
+}
+
+// "as in the scenario (cupboard)", or the twin that was chosen instead: "Drawer".
+export function twin_text({ choices, twin }: Scene): string {
+  if (choices.twin !== "") return with_capital(twin.name);
+  return twin.name === "" ? "as in the scenario" : `as in the scenario (${twin.name})`;
+}
+
+function with_capital(text: string): string {
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
 export function time_text(time_s: number): string {
   const tenths = Math.round(10 * time_s);
   const seconds = ((tenths % 600) / 10).toFixed(1).padStart(4, "0");

@@ -10,7 +10,7 @@ import { fill_choice } from "./panels/change";
 import type { Cameras, View } from "./scene/cameras";
 import { VIEWS } from "./scene/cameras";
 import { LAYERS, LAYER_NAMES, type Layers } from "./scene/layers";
-import { mode_text, note_text, time_text } from "./text";
+import { heading_text, mode_text, note_text, time_text } from "./text";
 import { choose_theme, current_theme, on_theme_change } from "./theme";
 
 const RUN_SPEEDS = [0.1, 0.25, 0.5, 1];
@@ -65,18 +65,11 @@ export class Toolbar {
   }
 
   load(scene: Scene): void {
-    document.title = `${scene.title} - HapticGiant`;
+    const heading = heading_text(scene);
+    document.title = heading;
     const { scenario, scenarios } = scene.choices;
-    fill_choice(
-      this.scenario,
-      scenarios.length > 0 ? scenarios : [{ name: scenario, title: scene.title }],
-      scenario,
-    );
-    const twin = scene.choices.twins.find(({ name }) => name !== "" && name === scene.choices.twin);
-    const chosen = this.scenario.selectedOptions[0]!;
-    const is_file = scene.choices.twin.endsWith(".yaml");
-    if (is_file) chosen.text = scene.title; // what the scenario had is not there
-    else if (twin) chosen.text += `, twin: ${twin.title}`;
+    fill_choice(this.scenario, scenarios, scenario);
+    this.scenario.selectedOptions[0]!.text = this.scenario.title = heading;
     const speeds = scene.source === "recording" ? RECORDING_SPEEDS : RUN_SPEEDS;
     this.speed.replaceChildren(...speeds.map((s) => new Option(`${s} \u00d7`, String(s))));
     for (const [commands, part] of this.by_command) {

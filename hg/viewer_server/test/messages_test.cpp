@@ -89,6 +89,7 @@ void expect_type(const Json& json, std::string type, const std::string& item) {
 Scene make_scene() {
   Scene scene;
   scene.title = "Door";
+  scene.device.name = "Arm";
   scene.device.urdf = "device.urdf";
   scene.device.joints = {{"ppu1", JointType::kPrismatic}, {"m1", JointType::kRevolute}};
   scene.device.joints[1].range = {-1.0, kInfinity};
@@ -181,6 +182,7 @@ TEST(MessagesTs, HasTheFieldsThatAreChosenByName) {
 TEST(EncodeScene, HasTheFieldsOfTheTypeScriptSide) {
   const Json json = Json::parse(encode_scene(make_scene(), 60.0));
   expect_interface(json, "Scene", "scene");
+  EXPECT_EQ(json["device"]["name"], "Arm");
   EXPECT_EQ(json["device"]["urdf"], kDeviceAddress);
   EXPECT_EQ(json["twin"]["urdf"], "");
   EXPECT_EQ(json["twin"]["joints"][0]["type"], "floating");

@@ -19,7 +19,7 @@ const KEYS: Record<string, DragMode> = {
 };
 
 const OWN_SPACE = "button, summary, input"; // the space bar works them
-const LABEL_FLIPS_AT = 0.7; // share of the scene's width
+const LABEL_AWAY = 26; // px, from the handle
 
 export function has_lever(scene: Scene): boolean {
   return scene.twin.joints.some((joint) => /lever|handle|latch/i.test(joint.name));
@@ -28,6 +28,12 @@ export function has_lever(scene: Scene): boolean {
 export function grip_text(scene: Scene): string {
   if (has_lever(scene)) return "Drag me: push the door open";
   return scene.environment === "excavator" ? "Drag me: dig" : "Drag me";
+}
+
+// The side of the handle at `x` where its label is not cut off by the edge of the scene, px.
+export function label_side(x: number, label_width: number, width: number): "left" | "right" {
+  const fits = x + LABEL_AWAY + label_width <= width;
+  return fits || x < 0.5 * width ? "right" : "left";
 }
 
 export class HandControls {
@@ -74,7 +80,7 @@ export class HandControls {
     if (handle_px) {
       const area = grip.parentElement!.getBoundingClientRect();
       const [x, y] = [handle_px.x - area.left, handle_px.y - area.top];
-      grip.dataset.side = x > LABEL_FLIPS_AT * area.width ? "left" : "right";
+      grip.dataset.side = label_side(x, element("grip-text").offsetWidth, area.width);
       grip.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     }
     grip.dataset.held = String(this.drag.is_dragging);

@@ -4,7 +4,7 @@
 import type { Commands, Refusal } from "../data/commands";
 import type { Choice, Scene, Setting, Values } from "../messages";
 import { make } from "../page";
-import { unit_text } from "../text";
+import { twin_text, unit_text } from "../text";
 import { limited, number_text, place_of, value_at } from "./slider";
 
 const CHOICES = [
@@ -56,6 +56,7 @@ export class ChangePanel {
       const select = make("select");
       select.id = `choose-${command}`;
       fill_choice(select, choices, scene.choices[command]);
+      if (command === "twin") select.selectedOptions[0]!.text = twin_text(scene);
       select.addEventListener("change", () => this.commands.send(command, select.value));
       this.section.append(make("label", "field", make("span", "", title), select));
     }

@@ -26,6 +26,7 @@ export const scene: Scene = {
   begin_s: 0,
   duration_s: 0,
   device: {
+    name: "HapticGiant",
     urdf: "",
     p_B_root_m: [0, 0, 0],
     quaternion_B_root: [0, 0, 0, 1],
@@ -37,6 +38,7 @@ export const scene: Scene = {
     followers: [],
   },
   twin: {
+    name: "door",
     urdf: "",
     p_B_root_m: [0, 0, 0],
     quaternion_B_root: [0, 0, 0, 1],

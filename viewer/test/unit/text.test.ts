@@ -3,14 +3,37 @@ import { describe, expect, it } from "vitest";
 import {
   effort_text,
   felt_text,
+  heading_text,
   is_pushing,
   joint_text,
   note_text,
   share_between,
   time_text,
+  twin_text,
   unit_text,
 } from "../../src/text";
 import { frame, scene } from "./examples";
+
+describe("names of device and twin", () => {
+  const chosen = (twin: string, name: string, title: string) => ({
+    ...scene,
+    title,
+    device: { ...scene.device, name: "Franka FR3" },
+    twin: { ...scene.twin, name },
+    choices: { ...scene.choices, twin },
+  });
+
+  it("are in the heading, the device once", () => {
+    expect(heading_text(chosen("fr3/drawer", "drawer", "drawer"))).toBe("Drawer, Franka FR3");
+    const title = "Cupboard, Franka FR3";
+    expect(heading_text(chosen("", "cupboard", title))).toBe(title);
+  });
+
+  it("are in the choice of the twin", () => {
+    expect(twin_text(chosen("", "cupboard", ""))).toBe("as in the scenario (cupboard)");
+    expect(twin_text(chosen("my/gate_twin.yaml", "gate", "gate"))).toBe("Gate");
+  });
+});
 
 describe("time_text", () => {
   it("shows minutes, seconds and tenths", () => {
