@@ -32,10 +32,10 @@ export class ForceArrow {
     this.group.add(this.shaft, this.head);
   }
 
-  // Shows `value` with `metres_per_unit`; nothing below `smallest`.
-  show(p_B: Vec3, value: Vec3, metres_per_unit: number, smallest: number): void {
+  // Shows `value` with `metres_per_unit`; nothing below `smallest`, and no longer than `longest` (m).
+  show(p_B: Vec3, value: Vec3, metres_per_unit: number, smallest: number, longest: number): void {
     const vector = new Vector3(...value);
-    const length = metres_per_unit * vector.length();
+    const length = Math.min(longest, metres_per_unit * vector.length());
     this.group.visible = vector.length() > smallest;
     if (!this.group.visible) return;
     this.group.position.set(...p_B);

@@ -5,6 +5,7 @@ import { Group, Mesh, SphereGeometry, Vector3 } from "three";
 
 import type { Vec3 } from "../messages";
 import { FORCE_COLOR, TARGET_COLOR, TORQUE_COLOR } from "../theme";
+import type { ArrowSize } from "./arrow_size";
 import { Bar, ForceArrow, TorqueArrow } from "./arrows";
 import { glowing } from "./materials";
 
@@ -23,11 +24,12 @@ export class HandleView {
   private readonly rail: Bar;
   private readonly target: Mesh;
 
-  constructor() {
+  constructor(private readonly size: ArrowSize) {
     const material = glowing(TARGET_COLOR);
     this.band = new Bar(0.005, material);
     this.rail = new Bar(0.002, material);
     this.target = new Mesh(new SphereGeometry(0.03, 24, 16), material);
+    for (const { group } of [this.torque, this.force]) group.scale.setScalar(size.share);
     this.arrows.add(this.torque.group, this.force.group);
     this.pull.add(this.band.mesh, this.rail.mesh, this.target);
     for (const [order, parts] of [this.pull, this.arrows].entries()) {
@@ -36,7 +38,9 @@ export class HandleView {
   }
 
   show_wrench(p_B: Vec3, force_N: Vec3, torque_Nm: Vec3): void {
-    this.force.show(p_B, force_N, METRES_PER_NEWTON, SMALLEST_FORCE);
+    const { share, longest_m } = this.size; // lengths of a group are multiplied by its scale
+    const scale = METRES_PER_NEWTON / share;
+    this.force.show(p_B, force_N, scale, SMALLEST_FORCE, longest_m / share);
     this.torque.show(p_B, torque_Nm, RADIANS_PER_NEWTON_METRE, SMALLEST_TORQUE);
   }
 

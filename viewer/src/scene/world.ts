@@ -5,6 +5,7 @@ import { Box3, Group, type Object3D, Quaternion, Vector3 } from "three";
 import { limit_closeness } from "../limit_words";
 import type { Frame, Scene, Vec3 } from "../messages";
 import { ELBOW_COLOR, FORCE_COLOR, type Theme } from "../theme";
+import { arrow_size } from "./arrow_size";
 import { type ChainView, load_chain } from "./chain_view";
 import { add_shapes } from "./collision_shapes";
 import { dispose_of } from "./dispose";
@@ -32,7 +33,7 @@ interface Gauge {
 export class World {
   readonly root = new Group();
   readonly person: Person;
-  private readonly handle = new HandleView();
+  private readonly handle: HandleView;
   private readonly handle_trail = new Trail(FORCE_COLOR);
   private readonly elbow_trail = new Trail(ELBOW_COLOR);
   private readonly trails = new Group();
@@ -50,6 +51,8 @@ export class World {
     private readonly stage: Stage,
     private readonly layers: Layers,
   ) {
+    const joints = scene.device.joints.map(({ name }) => device.joint(name));
+    this.handle = new HandleView(arrow_size(joints.filter((joint) => joint !== null)));
     this.person = new Person(scene.floor_z_m, foot_of_arm(scene));
     const lowest = new Box3().setFromObject(device.placement).min.z;
     this.surroundings = surroundings_of(scene, lowest);
