@@ -3,9 +3,9 @@
 import { MathUtils, type PerspectiveCamera, Sphere, Vector3 } from "three";
 
 import type { Frame, Scene } from "../messages";
+import { STAND_BACK, STAND_LEFT } from "./person";
 
-const HEAD = 1.75; // m above the floor
-const STANDING_BACK = 0.6; // m, of a person from the handle
+const HEAD = 1.8; // m above the floor
 const LOOKING_DOWN = 0.3; // slope
 
 export interface Sight {
@@ -22,7 +22,8 @@ export function foot_of_arm(scene: Scene): Vector3 | null {
 export function what_matters(scene: Scene, frame: Frame, foot: Vector3): Vector3[] {
   const handle = new Vector3(...frame.p_B_H_m);
   const away = handle.clone().sub(foot).setZ(0).normalize();
-  const person = handle.clone().addScaledVector(away, STANDING_BACK);
+  const left = new Vector3(away.y, -away.x, 0); // of the person, who faces the arm
+  const person = handle.clone().addScaledVector(away, STAND_BACK).addScaledVector(left, STAND_LEFT);
   return [
     handle,
     foot,
