@@ -1,8 +1,9 @@
-import { PerspectiveCamera, type Vector3 } from "three";
+import { Mesh, PerspectiveCamera, Quaternion, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { Frame, Scene } from "../../src/messages";
 import { foot_of_arm, sight_of, what_matters } from "../../src/scene/first_view";
+import { Person } from "../../src/scene/person";
 
 function arm(handle: number[], twin: number[]): { scene: Scene; frame: Frame } {
   const scene = {
@@ -14,14 +15,30 @@ function arm(handle: number[], twin: number[]): { scene: Scene; frame: Frame } {
   return { scene, frame: { p_B_H_m: handle } as unknown as Frame };
 }
 
-function seen(places: Vector3[], aspect: number): Vector3[] {
+// Where the parts of the person who holds the handle reach to.
+function outline_of_person(scene: Scene, frame: Frame, foot: Vector3): Vector3[] {
+  const person = new Person(scene.floor_z_m, foot);
+  person.pose(new Vector3(...frame.p_B_H_m), new Quaternion());
+  person.group.updateMatrixWorld(true);
+  const points: Vector3[] = [];
+  person.group.traverse((part) => {
+    if (!(part instanceof Mesh)) return;
+    const shape = part.geometry.getAttribute("position");
+    for (let i = 0; i < shape.count; i++) {
+      points.push(new Vector3().fromBufferAttribute(shape, i).applyMatrix4(part.matrixWorld));
+    }
+  });
+  return points;
+}
+
+function seen(places: Vector3[], aspect: number, shown = places): Vector3[] {
   const camera = new PerspectiveCamera(40, aspect, 0.05);
   camera.up.set(0, 0, 1);
   const { from, at } = sight_of(places, camera);
   camera.position.copy(from);
   camera.lookAt(at);
   camera.updateMatrixWorld();
-  return places.map((place) => place.clone().project(camera));
+  return shown.map((place) => place.clone().project(camera));
 }
 
 describe("the first view of an arm", () => {
@@ -37,6 +54,15 @@ describe("the first view of an arm", () => {
       const most = Math.max(...pixels.flatMap(({ x, y }) => [Math.abs(x), Math.abs(y)]));
       expect(most).toBeLessThan(1);
       expect(most).toBeGreaterThan(0.5); // and fills it
+    }
+  });
+
+  it.each([1.3, 0.6])("has the person from head to foot in the picture, %f times as wide", (aspect) => {
+    for (const { scene, frame } of arms) {
+      const foot = foot_of_arm(scene)!;
+      const person = outline_of_person(scene, frame, foot);
+      const pixels = seen(what_matters(scene, frame, foot), aspect, person);
+      expect(Math.max(...pixels.map(({ x, y }) => Math.max(Math.abs(x), Math.abs(y))))).toBeLessThan(1);
     }
   });
 
