@@ -183,7 +183,8 @@ class Page {
     const { scene } = this.store;
     const foot = scene && foot_of_arm(scene);
     if (!scene || !foot) return this.cameras.look_at(frame.p_B_H_m);
-    this.cameras.begin_with(sight_of(what_matters(scene, frame, foot), this.stage.camera));
+    const places = what_matters(scene, frame, foot);
+    this.cameras.begin_with(() => sight_of(places, this.stage.camera));
   }
 
   private draw(now_ms: number): void {

@@ -27,7 +27,8 @@ export class Cameras {
   private low = new Vector3();
   private high = new Vector3();
   private seen_first = new Vector3(); // what the first view turns to
-  private first_from: Vector3 | null = null; // where it is taken from; null: beside the box
+  private first_sight: (() => Sight) | null = null; // null: from beside the box
+  private is_moved = false; // away from the first view
 
   constructor(
     private readonly camera: PerspectiveCamera,
@@ -39,6 +40,7 @@ export class Cameras {
     this.controls.maxPolarAngle = 0.53 * Math.PI; // not from below the floor
     this.controls.minDistance = 0.4;
     this.controls.maxDistance = 14;
+    this.controls.addEventListener("start", () => (this.is_moved = true));
   }
 
   get current(): View {
@@ -53,10 +55,10 @@ export class Cameras {
     this.choose("orbit");
   }
 
-  // Begins with a view of all that matters, instead of one into the box.
-  begin_with({ from, at }: Sight): void {
-    this.first_from = from;
-    this.seen_first.copy(at);
+  // Begins with a view of all that matters, instead of one into the box. It is taken again when the
+  // size of the picture changes, until the user moves the camera.
+  begin_with(sight: () => Sight): void {
+    this.first_sight = sight;
     this.choose(this.view);
   }
 
@@ -68,6 +70,7 @@ export class Cameras {
 
   choose(view: View): void {
     this.view = view;
+    this.is_moved = false;
     this.camera.up.set(0, 0, 1);
     this.camera.near = NEAR;
     this.controls.enabled = view !== "first person";
@@ -85,7 +88,6 @@ export class Cameras {
       const away = Math.max(SMALLEST_AWAY, 0.62 * size.y);
       this.controls.target.copy(this.seen_first);
       this.camera.position.set(center.x + 0.6 * size.x, this.low.y - away, center.z + EYE_ABOVE);
-      if (this.first_from) this.camera.position.copy(this.first_from);
     }
     this.resize();
     this.controls.update();
@@ -96,6 +98,14 @@ export class Cameras {
     const all = this.camera.aspect > 1 ? wide : tall;
     this.camera.fov = this.view === "first person" ? first_person : all;
     this.camera.updateProjectionMatrix();
+    if (!this.is_moved && this.controls.enabled) this.take_first_sight(); // not during a drag
+  }
+
+  private take_first_sight(): void {
+    if (!this.first_sight || this.view === "top") return;
+    const { from, at } = this.first_sight();
+    this.camera.position.copy(from);
+    this.controls.target.copy(at);
   }
 
   update(handle_B: Vec3, eyes: Eyes): void {
@@ -105,6 +115,7 @@ export class Cameras {
       return;
     }
     if (this.view === "follow") {
+      this.is_moved = true;
       const step = new Vector3(...handle_B).sub(this.controls.target).multiplyScalar(FOLLOW_SHARE);
       this.controls.target.add(step);
       this.camera.position.add(step);

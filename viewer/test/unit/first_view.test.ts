@@ -2,6 +2,7 @@ import { Mesh, PerspectiveCamera, Quaternion, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { Frame, Scene } from "../../src/messages";
+import { Cameras } from "../../src/scene/cameras";
 import { foot_of_arm, sight_of, what_matters } from "../../src/scene/first_view";
 import { Person } from "../../src/scene/person";
 
@@ -75,5 +76,26 @@ describe("the first view of an arm", () => {
     const { scene, frame } = arms[1]!;
     const [handle, foot] = seen(what_matters(scene, frame, foot_of_arm(scene)!), 1.5);
     expect(Math.abs(handle!.x - foot!.x)).toBeGreaterThan(0.2);
+  });
+
+  it("fits a picture of another size, until one moves the camera", () => {
+    const { scene, frame } = arms[0]!;
+    const places = what_matters(scene, frame, foot_of_arm(scene)!);
+    const camera = new PerspectiveCamera(40, 0.9, 0.05);
+    const cameras = new Cameras(camera, null as unknown as HTMLCanvasElement);
+    const resize = (aspect: number): number => {
+      camera.aspect = aspect;
+      cameras.resize();
+      cameras.controls.update();
+      camera.updateMatrixWorld();
+      const pixels = places.map((place) => place.clone().project(camera));
+      return Math.max(...pixels.flatMap(({ x, y }) => [Math.abs(x), Math.abs(y)]));
+    };
+    cameras.begin_with(() => sight_of(places, camera));
+    for (const aspect of [0.9, 1.15, 2, 0.5]) expect(resize(aspect)).toBeLessThan(1);
+    cameras.controls.dispatchEvent({ type: "start" });
+    const seen_from = camera.position.clone();
+    resize(2);
+    expect(camera.position.distanceTo(seen_from)).toBeLessThan(1e-9);
   });
 });
