@@ -49,8 +49,12 @@ export function kind_text(kind: SceneLimit["kind"]): string {
 }
 
 export function distance_text(distance: number, unit: SceneLimit["unit"]): string {
-  if (unit === "m") return `${(100 * distance).toFixed(distance < 0.1 ? 1 : 0)} cm`;
-  return `${((180 * distance) / Math.PI).toFixed(1)}\u00b0`;
+  if (unit === "m") return `${unsigned_zero((100 * distance).toFixed(distance < 0.1 ? 1 : 0))} cm`;
+  return `${unsigned_zero(((180 * distance) / Math.PI).toFixed(1))}\u00b0`;
+}
+
+function unsigned_zero(number: string): string {
+  return Number(number) === 0 ? number.replace("-", "") : number;
 }
 
 export function reaction_text(reaction: number, unit: SceneLimit["unit"]): string {

@@ -45,6 +45,8 @@ describe("words", () => {
     expect(reaction_text(-12.34, "m")).toBe("12 N");
     expect(reaction_text(1.25, "rad")).toBe("1.3 Nm");
     expect(distance_text(0.05, "m")).toBe("5.0 cm");
+    expect(distance_text(-0.0002, "m")).toBe("0.0 cm");
+    expect(distance_text(-0.012, "m")).toBe("-1.2 cm");
     expect(distance_text(Math.PI / 4, "rad")).toBe("45.0\u00b0");
   });
 });
