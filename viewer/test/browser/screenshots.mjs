@@ -1,4 +1,4 @@
-// Makes the pictures of the page in docs/images: door.png and viewer_*.png.
+// Makes the pictures of the page in docs/images: door.png, own_arm.png and viewer_*.png.
 //
 //   npm run screenshots [-- PROGRAM [NAME...]]      default: ../build/release/hapticgiant, all
 import { dirname, resolve } from "node:path";
@@ -35,10 +35,11 @@ async function open_door(page, take) {
 
 // Takes the picture when `test(frame)` holds, however slowly the machine draws: the script begins
 // again, because it has played on while the page was opened, and stands still for the picture.
-async function take_when(page, test, take) {
+async function take_when(page, test, take, speed = "1") {
   const { run } = await frame_of(page);
   await page.keyboard.press("r");
   await comes_true(page, (f) => f.run !== run);
+  await page.selectOption("#speed", speed);
   await drawn(page);
   await comes_true(page, test);
   await page.click("#pause");
@@ -58,6 +59,11 @@ async function touch_table(page, take) {
   await take_when(page, presses, take);
 }
 
+// While the person pulls, so that the arrow is seen; slowly, because that is soon over.
+function pull(page, take) {
+  return take_when(page, (f) => Math.hypot(...f.force_N) > 8, take, "0.1");
+}
+
 const PICTURES = [
   { name: "door", args: ["door", "--user", "mouse"], play: open_door },
   { name: "viewer_excavator", args: ["excavator"], plots: true, play: at(13) },
@@ -70,6 +76,7 @@ const PICTURES = [
     play: open_door,
   },
   { name: "viewer_surfaces", args: ["surfaces"], play: touch_table },
+  { name: "own_arm", args: ["ur10e/open_drawer"], play: pull },
   { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: at(13) },
 ];
 
