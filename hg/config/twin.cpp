@@ -203,6 +203,7 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
                          .dofs = {},
                          .locks = draft.locks,
                          .conditional_limits = draft.conditional_limits,
+                         .spheres = draft.spheres,
                          .w_ref = w_ref,
                          .mass_scale = draft.mass_scale},
                .sources = reader.since(first_source),

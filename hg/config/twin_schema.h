@@ -55,6 +55,7 @@ struct TwinDraft {
   int end_effector = -1;
   std::vector<rendering::Lock> locks;
   std::vector<rendering::ConditionalLimit> conditional_limits;
+  std::vector<rendering::CollisionSphere> spheres;
 
   const TwinJoint& scalar_joint(int index) const { return joints[scalar_joints[index]]; }
 };
@@ -369,6 +370,14 @@ void describe(V& v, TwinJoint& joint) {
 }
 
 template <class V>
+void describe(V& v, rendering::CollisionSphere& sphere, const std::vector<std::string>& links) {
+  v.name("link", sphere.frame, links, "a link of the URDF", "the link that carries it",
+         Need::kRequired);
+  v.vector("centre_m", sphere.p, kAnyNumber, "in the frame of the link");
+  v.number("radius_m", sphere.radius, kNotNegative, "of the sphere; 0 is a corner");
+}
+
+template <class V>
 void describe_joints(V& v, TwinDraft& d) {
   v.name("end_effector", d.end_effector, d.frame_names, "a link of the URDF",
          "frame E, held by the user", Need::kRequired);
@@ -377,6 +386,12 @@ void describe_joints(V& v, TwinDraft& d) {
       [&](auto& child, int index) { describe(child, d.joints[index]); },
       "limits, forces and start; limits, damping and friction that are not given are taken from "
       "the URDF");
+  v.list(
+      "collision_spheres",
+      [&](auto& child) { describe(child, d.spheres.emplace_back(), d.frame_names); },
+      "spheres on links of the twin that surfaces with 'contact: stop' keep out, as they keep the "
+      "end effector out; at most 8");
+  v.rule(d.spheres.size() <= rendering::kMaxSpheres, "collision_spheres", "at most 8 are possible");
   describe_reference_wrench(v, d.force_ref, d.torque_ref);
   describe_mass_scale(v, d.mass_scale);
   if (!v.covers(!d.scalar_joints.empty())) return;

@@ -1,5 +1,7 @@
 #include "hg/config/simulation/scenario.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,6 +11,7 @@
 #include "hg/config/simulation/scenario_schema.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/controller/rendering/surfaces/cast.h"
+#include "hg/controller/rendering/surfaces/nearest.h"
 #include "hg/core/error.h"
 #include "hg/model/chain_data.h"
 
@@ -48,6 +51,28 @@ EventNames names_of(const DeviceConfig& device, const Twin& twin, const LimitCat
   return names;
 }
 
+// Whether a sphere of a twin at its start is inside of a surface.
+bool is_inside(const surfaces::Surface& surface, const Eigen::Vector3d& centre, double radius) {
+  bool is_near = surfaces::is_inside(surface, centre);
+  surfaces::for_each_facing(surface, centre, radius, [&](const surfaces::Facing& facing) {
+    is_near = is_near || (facing.distance >= 0.0 && facing.distance < radius);
+  });
+  return is_near;
+}
+
+void check_spheres(Loader& loader, const surfaces::Surface& surface,
+                   const rendering::TwinModel& twin, const model::ChainData& start) {
+  if (surface.contact != surfaces::Contact::kStop) return;
+  for (const rendering::CollisionSphere& sphere : twin.spheres) {
+    const Pose& T_B_link = start.pose(sphere.frame);
+    const Eigen::Vector3d centre = T_B_link.p + T_B_link.R * sphere.p;
+    loader.rule(!is_inside(surface, centre, sphere.radius), "surfaces",
+                "a collision sphere of the twin must not start inside of one",
+                fmt::format("'{}' around that of link '{}'", surface.name,
+                            twin.chain.frame_names()[sphere.frame]));
+  }
+}
+
 std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
                                              const rendering::TwinModel& twin) {
   std::vector<SurfaceDraft> drafts;
@@ -68,6 +93,7 @@ std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
     loader.rule(!surfaces::is_inside(surfaces.back(), start), "surfaces",
                 "the end effector of the twin must not start inside of one",
                 "'" + draft.surface.name + "' around it");
+    check_spheres(loader, surfaces.back(), twin, chain);
   }
   try {
     surfaces::check_surfaces(surfaces);

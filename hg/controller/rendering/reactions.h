@@ -69,7 +69,7 @@ class Reactions {
   VectorA torque(int limit) const noexcept;
   void report_felt(const MatrixA& L, LawResult& result) const noexcept;
 
-  static constexpr int kMaxReactions = kMaxLimits + surfaces::kMostFacing;
+  static constexpr int kMaxReactions = kMaxLimits + kMostStops;
 
   int n_m_, n_a_, device_limits_;
   int count_;  ///< Number of limits and stops

@@ -136,19 +136,31 @@ void check_stops(const DeviceModel& device, const RenderingOptions& options) {
   }
 }
 
+// A sphere inside of a stop may ask for any turn of a free body where its lever is short and the
+// device holds the end effector back. The limit is beyond what a hand does.
+TwinModel with_turning_limit(TwinModel twin) {
+  constexpr double kFastest = 500.0;  // rad/s^2
+  if (twin.spheres.empty()) return twin;
+  for (TwinDof& dof : twin.dofs) {
+    const bool turns_freely = dof.q_index < 0 && dof.is_angle;
+    if (turns_freely) dof.limits.ddq_max = std::min(dof.limits.ddq_max, kFastest);
+  }
+  return twin;
+}
+
 }  // namespace
 
 Rendering::Rendering(DeviceModel device, TwinModel twin, const RenderingOptions& options,
                      surfaces::Environment environment)
     : device_((check_rendering(device, twin, options), std::move(device))),
-      twin_(std::move(twin)),
+      twin_(with_turning_limit(std::move(twin))),
       device_now_(device_.chain),
       twin_now_(twin_.chain),
       options_(options),
       dt_(device_.dt()),
       environment_(std::move(environment)),
       stop_rating_(stop_rating(device_)),
-      tasks_(device_, twin_, options_, environment_.has_stops()),
+      tasks_(device_, twin_, options_, stop_count(environment_, twin_)),
       reactions_(device_, twin_, tasks_.stop_count()),
       L_(twin_.chain.nv(), twin_.chain.nv()),
       J_H_(6, device_.chain.nv()),
@@ -269,7 +281,9 @@ void Rendering::feel_surfaces(const LawInput& input, RenderingState& state,
                               LawResult& result) noexcept {
   const Eigen::Vector3d p_E = twin_now_.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
-  if (environment_.has_stops()) stops_ = environment_.stops(p_E, v_E, stop_rating_);
+  if (environment_.has_stops()) {
+    stops_ = find_stops(environment_, twin_, twin_now_, state.twin.dq_a, stop_rating_);
+  }
   Eigen::Vector3d push = input.robot.w_H.head<3>();
   if (!environment_.surfaces().empty()) push += push_of_twin(result.budget);
   const double mass_scale =
@@ -280,15 +294,16 @@ void Rendering::feel_surfaces(const LawInput& input, RenderingState& state,
   result.budget.surface.noalias() -= J_a_.topRows<3>().transpose() * result.contact.force;
 }
 
-// The reactions of stops are forces of their surfaces.
+// The reactions of stops are forces of their surfaces, and those in front of the end effector are
+// on the handle.
 void Rendering::add_stops(ContactReport& contact) const noexcept {
   const int first = device_.limit_count() + twin_.chain.nv();
   double most = contact.force.norm();
   for (int i = 0; i < tasks_.stop_count(); ++i) {
-    const surfaces::Facing& stop = stops_[i];
+    const Stop& stop = stops_[i];
     const double force = reactions_.of(first + i);
     if (stop.surface < 0 || force == 0.0) continue;
-    contact.force += force * stop.normal;
+    if (i < surfaces::kMostFacing) contact.force += force * stop.normal;
     if (force <= most) continue;
     most = force;
     contact.surface = stop.surface;

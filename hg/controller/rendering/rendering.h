@@ -150,7 +150,7 @@ class Rendering {
   surfaces::Environment environment_;
   double stop_rating_;
   Tasks tasks_;
-  std::array<surfaces::Facing, surfaces::kMostFacing> stops_;  ///< Stops in this cycle
+  Stops stops_;  ///< Stops in this cycle
   Reactions reactions_;
   // of this cycle: M_a = L L^T, the Jacobians of handle (gantry first) and end effector
   MatrixA L_;

@@ -95,13 +95,13 @@ bool brakes_together(const DeviceModel& device, const RenderingOptions& options)
 }
 
 Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOptions& options,
-             bool has_stops)
+             int stops)
     : options_(options),
       dt_(device.dt()),
       n_m_(device.n_m),
       n_a_(twin.chain.nv()),
       n_g_(led_axes(device, options)),
-      stop_count_(has_stops ? surfaces::kMostFacing : 0),
+      stop_count_(stops),
       has_torques_(!device.motors().empty()),
       first_motor_(n_m_ + static_cast<int>(device.virtual_joints.size())),
       problem_(capacity_of(device, twin, options, stop_count_)),
@@ -223,7 +223,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   if (has_torques_) fill_motors(device, input);
   if (joint_braking_) brake_together();
   fill_twin_limits(twin, input);
-  if (stop_count_ > 0) fill_stops(input, input.twin_chain.bias_acceleration(twin.end_effector));
+  if (stop_count_ > 0) fill_stops(input);
 
   const VectorA tau = input.tau - input.twin_chain.c();
   if (paper_) {
@@ -456,23 +456,20 @@ void Tasks::fill_gantry(const TaskInput& input) noexcept {
 
 // The distance d of E to a plane in front of it, d'' = n^T (J_a ddq_a + dJ_a dq_a): the solid
 // curves away from its plane, so that this is the least.
-void Tasks::fill_stops(const TaskInput& input, const Vector6& bias) noexcept {
+void Tasks::fill_stops(const TaskInput& input) noexcept {
   const int first = static_cast<int>(limit_rows_.size()) - stop_count_;
-  const auto J = input.J_a.topRows<3>();
-  const Eigen::Vector3d velocity = J * input.twin.dq_a;
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < stop_count_; ++i) {
-    const surfaces::Facing& stop = input.stops[i];
+    const Stop& stop = input.stops[i];
     if (stop.surface < 0) {
       limit_rows_[first + i].ddq = {};
       problem_.set_bounds(first_limit_row() + first + i, {});
       continue;
     }
-    row.segment(n_m_, n_a_) = J.transpose() * stop.normal;
+    row.segment(n_m_, n_a_) = stop.row;
     problem_.set_row(first_limit_row() + first + i, coefficients_);
-    set_limit(first + i, limit_rows_[first + i].limits, stop.distance, stop.normal.dot(velocity),
-              stop.normal.dot(bias.head<3>()));
+    set_limit(first + i, limit_rows_[first + i].limits, stop.distance, stop.speed, stop.bias);
   }
 }
 

@@ -26,7 +26,7 @@
 #include "hg/controller/rendering/joint_braking.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/paper_law.h"
-#include "hg/controller/rendering/surfaces/nearest.h"
+#include "hg/controller/rendering/stops.h"
 #include "hg/controller/rendering/twin_forces.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/hqp/problem.h"
@@ -77,7 +77,7 @@ struct TaskInput {
   const model::Jacobian& J_H;        ///< Jacobian of the handle, gantry first
   const model::Jacobian& J_a;        ///< Jacobian of the twin's end effector
   ConstraintDirections& directions;  ///< Directions for J_H and J_a; found by law paper
-  const std::array<surfaces::Facing, surfaces::kMostFacing>& stops;
+  const Stops& stops;                ///< Virtual surfaces in front of the twin
   VectorA tau;  ///< Sum of all torques on the twin that are not constraints, without c_a
   /// Largest speed of H along each axis of B, where the device limits H, m/s.
   double handle_speed = kInfinity;
@@ -98,9 +98,9 @@ bool brakes_together(const DeviceModel& device, const RenderingOptions& options)
 
 class Tasks {
  public:
-  /// `has_stops`: there are virtual surfaces that the end effector of the twin must not enter.
+  /// `stops`: number of virtual surfaces that can act at a time and must not be entered.
   Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOptions& options,
-        bool has_stops = false);
+        int stops = 0);
 
   /// Writes all rows. `device` and `twin` are the models given to the constructor.
   void fill(const DeviceModel& device, const TwinModel& twin, const TaskInput& input) noexcept;
@@ -161,7 +161,7 @@ class Tasks {
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
   bool keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept;
   void fill_gantry(const TaskInput& input) noexcept;
-  void fill_stops(const TaskInput& input, const Vector6& bias) noexcept;
+  void fill_stops(const TaskInput& input) noexcept;
   void fill_dynamics(const MatrixA& L, const VectorA& tau) noexcept;
   void add_posture(const DeviceModel& device);
   void fill_posture(const DeviceModel& device, const TaskInput& input) noexcept;

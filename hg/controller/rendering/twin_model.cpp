@@ -28,6 +28,8 @@ void check_twin_model(const TwinModel& twin) {
   require(std::ssize(twin.locks) <= kMaxLocks, ": at most " + std::to_string(kMaxLocks) + " locks");
   require(std::ssize(twin.conditional_limits) <= kMaxConditionalLimits,
           ": at most " + std::to_string(kMaxConditionalLimits) + " conditional limits");
+  require(std::ssize(twin.spheres) <= kMaxSpheres,
+          ": at most " + std::to_string(kMaxSpheres) + " collision spheres");
   require(kMassScale.contains(twin.mass_scale), ": mass_scale must be 0.1..10");
 }
 

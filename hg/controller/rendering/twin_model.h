@@ -48,6 +48,7 @@ struct JointCondition {
   Interval range;  ///< Condition is true while the position is inside
 };
 
+inline constexpr int kMaxSpheres = 8;
 inline constexpr int kMaxLocks = 4;
 inline constexpr int kMaxConditionalLimits = 4;
 inline constexpr Interval kMassScale = {0.1, 10.0};  ///< Range of TwinModel::mass_scale
@@ -80,6 +81,13 @@ struct ConditionalLimit {
   std::vector<JointCondition> conditions;
 };
 
+/// A sphere fixed to a link, which surfaces that are stops keep out.
+struct CollisionSphere {
+  int frame = -1;                               ///< Index of the link's frame
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< Centre in that frame, m
+  double radius = 0.0;                          ///< m, >= 0
+};
+
 struct TwinModel {
   model::ChainModel chain;
   int end_effector = -1;      ///< Index of frame E
@@ -87,6 +95,7 @@ struct TwinModel {
   std::vector<TwinDof> dofs;  ///< Degrees of freedom, one per velocity of the chain
   std::vector<Lock> locks;    ///< at most kMaxLocks
   std::vector<ConditionalLimit> conditional_limits;  ///< at most kMaxConditionalLimits
+  std::vector<CollisionSphere> spheres;              ///< at most kMaxSpheres
   Vector6 w_ref = Vector6::Zero();  ///< reference wrench of [HG] (9), at E, resolved in B
   double mass_scale = 1.0;          ///< Factor of all masses, 0.1..10
 };

@@ -139,12 +139,12 @@ void Environment::give_way(const ContactReport& contact, double missing, const V
 }
 
 std::array<Facing, kMostFacing> Environment::stops(const Vector3d& position,
-                                                   const Vector3d& velocity,
-                                                   double ddq_max) const noexcept {
+                                                   const Vector3d& velocity, double ddq_max,
+                                                   double radius) const noexcept {
   FacingPlanes planes;
   if (!position.allFinite() || !velocity.allFinite()) return planes.planes();
   const auto way = [&](double speed) { return speed * std::abs(speed) / (2.0 * ddq_max); };
-  const double reach = kNear + 2.0 * way(velocity.norm());
+  const double reach = radius + kNear + 2.0 * way(velocity.norm());
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     if (surfaces_[i].contact != Contact::kStop) continue;
     const Surface& surface = surfaces_[i];

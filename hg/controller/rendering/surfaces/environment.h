@@ -72,10 +72,11 @@ class Environment {
   /// Whether some surfaces act as stops. Those exert no force.
   bool has_stops() const noexcept { return has_stops_; }
   /// Planes of stop surfaces with the smallest margin for a handle with this `velocity` that brakes
-  /// with `ddq_max` (m/s^2). Unused entries, and planes too far to matter, have no surface.
+  /// with `ddq_max` (m/s^2). Unused entries, and planes too far to matter, have no surface. Around
+  /// the handle is a sphere of `radius` (m); distances are those of its centre.
   std::array<Facing, kMostFacing> stops(const Eigen::Vector3d& position,
-                                        const Eigen::Vector3d& velocity,
-                                        double ddq_max) const noexcept;
+                                        const Eigen::Vector3d& velocity, double ddq_max,
+                                        double radius = 0.0) const noexcept;
 
   /// Computes the contact force. `position` and `velocity` of the handle at the begin of a sample,
   /// `push` (N): all other forces on it. The spring is evaluated in the middle of the sample, where

@@ -1,0 +1,40 @@
+/// Virtual surfaces that are stops, as rows of the law: what the twin must not move into them.
+///
+/// The end effector E and spheres fixed to links of the twin meet such surfaces. For each plane in
+/// front of one of them a row says how its distance changes, d'' = row ddq_a + bias. SI units.
+#pragma once
+
+#include <array>
+
+#include "hg/controller/rendering/surfaces/environment.h"
+#include "hg/controller/rendering/twin_model.h"
+#include "hg/model/chain_data.h"
+
+namespace hg::rendering {
+
+/// Rows of all spheres together, those with the least margin to brake
+inline constexpr int kMostSphereStops = 4;
+inline constexpr int kMostStops = surfaces::kMostFacing + kMostSphereStops;
+
+/// A point of the twin in front of a stop.
+struct Stop {
+  int surface = -1;  ///< Index of the surface; -1: none, all else is unused
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Outward normal of the surface, unit
+  double distance = kInfinity;                       ///< Along the normal, m; negative inside
+  double speed = 0.0;                                ///< Away from the surface, m/s
+  VectorA row;                                       ///< Speed per joint speed of the twin
+  double bias = 0.0;                                 ///< Acceleration at ddq_a = 0, m/s^2
+};
+
+/// Stops of E first, then those of spheres, in the order of TwinModel::spheres.
+using Stops = std::array<Stop, kMostStops>;
+
+/// Number of stops that can act: none without surfaces that are stops.
+int stop_count(const surfaces::Environment& environment, const TwinModel& twin) noexcept;
+
+/// The stops of `chain`, the state of `twin` after update(), at the joint speeds `dq_a`, for a
+/// twin that brakes with `rating` (m/s^2).
+Stops find_stops(const surfaces::Environment& environment, const TwinModel& twin,
+                 const model::ChainData& chain, const VectorA& dq_a, double rating) noexcept;
+
+}  // namespace hg::rendering
