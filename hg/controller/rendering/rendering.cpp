@@ -282,7 +282,7 @@ void Rendering::feel_surfaces(const LawInput& input, RenderingState& state,
   const Eigen::Vector3d p_E = twin_now_.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
   if (environment_.has_stops()) {
-    stops_ = find_stops(environment_, twin_, twin_now_, state.twin.dq_a, stop_rating_);
+    stops_ = find_stops(environment_, {twin_, twin_now_, L_}, stop_rating_);
   }
   Eigen::Vector3d push = input.robot.w_H.head<3>();
   if (!environment_.surfaces().empty()) push += push_of_twin(result.budget);

@@ -35,33 +35,61 @@ double counted(double bias, double distance) noexcept {
   return bias < 0.0 ? bias * std::clamp(1.0 + distance / kFading, 0.0, 1.0) : bias;
 }
 
-Stop stop_of(const model::ChainData& chain, const Point& point, const surfaces::Facing& facing,
-             double radius) noexcept {
+VectorA row_of(const model::ChainData& chain, const Point& point, const Vector3d& n) noexcept {
   const auto& J = chain.jacobian(point.frame);
+  return J.topRows<3>().transpose() * n + J.bottomRows<3>().transpose() * point.lever.cross(n);
+}
+
+// The acceleration along `row` with which a point brakes when a force pushes it, so that the end
+// effector keeps to `rating` and every joint to its own.
+double rating_along(const TwinNow& twin, const VectorA& row, double rating) noexcept {
+  constexpr double kFixed = 1e-12;  // 1/kg
+  const auto factor = twin.L.triangularView<Eigen::Lower>();
+  VectorA ddq = row;
+  factor.solveInPlace(ddq);
+  const double mobility = ddq.squaredNorm();
+  if (mobility < kFixed) return rating;
+  factor.transpose().solveInPlace(ddq);
+  const Vector3d of_E = twin.chain.jacobian(twin.model.end_effector).topRows<3>() * ddq;
+  double force = rating / std::max(mobility, of_E.cwiseAbs().maxCoeff());
+  for (int i = 0; i < ddq.size(); ++i) {
+    force = std::min(force, twin.model.dofs[i].limits.ddq_max / std::abs(ddq[i]));
+  }
+  return force * mobility;
+}
+
+// That along the motion of a point.
+double rating_of(const TwinNow& twin, const Point& point, double rating) noexcept {
+  const double speed = point.v.norm();
+  if (speed == 0.0) return rating;
+  return rating_along(twin, row_of(twin.chain, point, point.v / speed), rating);
+}
+
+Stop stop_of(const TwinNow& twin, const Point& point, const surfaces::Facing& facing, double radius,
+             double rating) noexcept {
   const Vector3d& n = facing.normal;
-  const double distance = facing.distance - radius;
-  return {
-      .surface = facing.surface,
-      .normal = n,
-      .distance = distance,
-      .speed = n.dot(point.v),
-      .row = J.topRows<3>().transpose() * n + J.bottomRows<3>().transpose() * point.lever.cross(n),
-      .bias = counted(n.dot(point.bias), distance)};
+  const VectorA row = row_of(twin.chain, point, n);
+  return {.surface = facing.surface,
+          .normal = n,
+          .distance = facing.distance - radius,
+          .speed = n.dot(point.v),
+          .row = row,
+          .bias = n.dot(point.bias),
+          .rating = rating_along(twin, row, rating)};
 }
 
 // How far away it would come to rest, m.
-double margin(const Stop& stop, double rating) noexcept {
-  return stop.distance + stop.speed * std::abs(stop.speed) / (2.0 * rating);
+double margin(const Stop& stop) noexcept {
+  return stop.distance + stop.speed * std::abs(stop.speed) / (2.0 * stop.rating);
 }
 
 // Keeps the stops with the least margin, in their order.
-void keep(const Stop& stop, double rating, std::span<Stop> kept) noexcept {
+void keep(const Stop& stop, std::span<Stop> kept) noexcept {
   const auto unused = std::ranges::find(kept, -1, &Stop::surface);
   auto last = unused;
   if (unused == kept.end()) {
-    const auto farthest = std::ranges::max_element(
-        kept, {}, [&](const Stop& other) { return margin(other, rating); });
-    if (margin(*farthest, rating) <= margin(stop, rating)) return;
+    const auto farthest = std::ranges::max_element(kept, {}, margin);
+    if (margin(*farthest) <= margin(stop)) return;
     std::rotate(farthest, farthest + 1, kept.end());
     last = kept.end() - 1;
   }
@@ -75,31 +103,23 @@ int stop_count(const surfaces::Environment& environment, const TwinModel& twin) 
   return twin.spheres.empty() ? surfaces::kMostFacing : kMostStops;
 }
 
-Stops find_stops(const surfaces::Environment& environment, const TwinModel& twin,
-                 const model::ChainData& chain, const VectorA& dq_a, double rating) noexcept {
+Stops find_stops(const surfaces::Environment& environment, const TwinNow& twin,
+                 double rating) noexcept {
   Stops stops;
-  const int E = twin.end_effector;
-  const auto J = chain.jacobian(E).topRows<3>();
-  const Vector3d v_E = J * dq_a, bias = chain.bias_acceleration(E).head<3>();
-  const auto facing = environment.stops(chain.pose(E).p, v_E, rating);
+  const Point E = point_on(twin.chain, twin.model.end_effector, Vector3d::Zero());
+  const auto facing = environment.stops(E.p, E.v, rating_of(twin, E, rating));
   for (std::size_t i = 0; i < facing.size(); ++i) {
-    if (facing[i].surface < 0) continue;
-    const Vector3d& n = facing[i].normal;
-    stops[i] = {.surface = facing[i].surface,
-                .normal = n,
-                .distance = facing[i].distance,
-                .speed = n.dot(v_E),
-                .row = J.transpose() * n,
-                .bias = n.dot(bias)};
+    if (facing[i].surface >= 0) stops[i] = stop_of(twin, E, facing[i], 0.0, rating);
   }
   const std::span<Stop> of_spheres = std::span(stops).subspan(surfaces::kMostFacing);
-  for (const CollisionSphere& sphere : twin.spheres) {
-    const Point point = point_on(chain, sphere.frame, sphere.p);
+  for (const CollisionSphere& sphere : twin.model.spheres) {
+    const Point point = point_on(twin.chain, sphere.frame, sphere.p);
     for (const surfaces::Facing& found :
-         environment.stops(point.p, point.v, rating, sphere.radius)) {
-      if (found.surface >= 0) {
-        keep(stop_of(chain, point, found, sphere.radius), rating, of_spheres);
-      }
+         environment.stops(point.p, point.v, rating_of(twin, point, rating), sphere.radius)) {
+      if (found.surface < 0) continue;
+      Stop stop = stop_of(twin, point, found, sphere.radius, rating);
+      stop.bias = counted(stop.bias, stop.distance);
+      keep(stop, of_spheres);
     }
   }
   return stops;

@@ -24,6 +24,14 @@ struct Stop {
   double speed = 0.0;                                ///< Away from the surface, m/s
   VectorA row;                                       ///< Speed per joint speed of the twin
   double bias = 0.0;                                 ///< Acceleration at ddq_a = 0, m/s^2
+  double rating = kInfinity;                         ///< Acceleration with which it brakes, m/s^2
+};
+
+/// A twin in a cycle.
+struct TwinNow {
+  const TwinModel& model;
+  const model::ChainData& chain;  ///< after update()
+  const MatrixA& L;               ///< M_a = L L^T
 };
 
 /// Stops of E first, then those of spheres, in the order of TwinModel::spheres.
@@ -32,9 +40,9 @@ using Stops = std::array<Stop, kMostStops>;
 /// Number of stops that can act: none without surfaces that are stops.
 int stop_count(const surfaces::Environment& environment, const TwinModel& twin) noexcept;
 
-/// The stops of `chain`, the state of `twin` after update(), at the joint speeds `dq_a`, for a
-/// twin that brakes with `rating` (m/s^2).
-Stops find_stops(const surfaces::Environment& environment, const TwinModel& twin,
-                 const model::ChainData& chain, const VectorA& dq_a, double rating) noexcept;
+/// The stops of a twin whose end effector brakes with at most `rating` (m/s^2) along each axis of
+/// B. A point brakes as hard as end effector and joints, which follow it, can.
+Stops find_stops(const surfaces::Environment& environment, const TwinNow& twin,
+                 double rating) noexcept;
 
 }  // namespace hg::rendering

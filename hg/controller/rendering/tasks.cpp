@@ -469,7 +469,9 @@ void Tasks::fill_stops(const TaskInput& input) noexcept {
     }
     row.segment(n_m_, n_a_) = stop.row;
     problem_.set_row(first_limit_row() + first + i, coefficients_);
-    set_limit(first + i, limit_rows_[first + i].limits, stop.distance, stop.speed, stop.bias);
+    limits::JointLimits limits = limit_rows_[first + i].limits;
+    limits.ddq_max = stop.rating;
+    set_limit(first + i, limits, stop.distance, stop.speed, stop.bias);
   }
 }
 

@@ -192,6 +192,44 @@ TEST(StopSurface, NeedsALawThatSupportsIt) {
             std::string::npos);
 }
 
+// A door at 1.4 rad/s whose hinge brakes with 3 rad/s^2 hits a post; a hand keeps pushing. A point
+// `from_hinge` metres from the hinge brakes with as little as 3 rad/s^2 give it there.
+double depth_in_post(double from_hinge) {
+  constexpr double kRadius = 0.02, kAhead = 0.5;  // m, share of the distance to the hinge
+  TwinModel twin = door();
+  twin.dofs[0].limits = {.q_min = 0.0, .q_max = 1.75, .dq_max = 1.4, .ddq_max = 3.0};
+  twin.dofs[1].limits.q_max = 0.0;
+  const int leaf = twin.chain.frame("leaf");
+  twin.spheres = {{.frame = leaf, .p = {from_hinge, 0.0, 0.0}, .radius = kRadius}};
+  const double face = kAhead * from_hinge + kRadius;
+  const Vector3d size(0.1, 1.0, 1.0);
+  Rendering rendering(
+      device_with(3.0), twin, without_synchronisation(),
+      surfaces::Environment({stop(surfaces::Box{size}, {from_hinge, face + 0.5 * size.y(), 0.0})},
+                            kDt, {kMass, kMass}));
+  RenderingState state = rendering.start(kPosture);
+  state.twin.dq_a[0] = 1.4;
+  LawResult result;
+  double deepest = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+    const Vector6 push = 10.0 * Vector6::Unit(1);
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, push);
+    EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    rendering.integrate(state);
+    deepest = std::max(deepest, from_hinge * std::sin(state.twin.q_a[0]) + kRadius - face);
+  }
+  EXPECT_EQ(result.contact.surface, 0);
+  EXPECT_LT(std::abs(state.twin.dq_a[0]), 1e-6);
+  return deepest;
+}
+
+TEST(StopSurface, ASphereNearAHingeBrakesAsTheHingeCan) {
+  for (const double from_hinge : {0.05, 0.1, 0.2}) {
+    EXPECT_LT(depth_in_post(from_hinge), 1e-4) << from_hinge;  // 9 to 26 mm with 3 m/s^2
+  }
+}
+
 // A free body that carries a sphere beside its end effector, above a floor that is a stop.
 struct Carrying {
   static constexpr double kRadius = 0.05;
