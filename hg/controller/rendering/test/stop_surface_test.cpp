@@ -7,6 +7,7 @@
 #include <random>
 
 #include "hg/controller/rendering/test/playing.h"
+#include "hg/core/allocation_counter.h"
 #include "hg/core/test/message_of.h"
 
 namespace hg::rendering {
@@ -325,6 +326,73 @@ TEST(StopSurface, ASphereCarriesWhatPushesIt) {
   EXPECT_LT((twin.centre() - Vector3d(0.6, 0.1, Carrying::kRadius)).norm(), 1e-4);
   EXPECT_LT(twin.state.twin.dq_a.norm(), 1e-3);
   EXPECT_TRUE(twin.result.contact.force.isZero(0.0));  // nothing at the handle itself
+}
+
+TwinModel body_with_corners(double half, double radius) {
+  TwinModel twin = Thrown::body();
+  for (const double x : {-half, half}) {
+    for (const double y : {-half, half}) {
+      for (const double z : {-half, half}) {
+        twin.spheres.push_back({.frame = twin.end_effector, .p = {x, y, z}, .radius = radius});
+      }
+    }
+  }
+  return twin;
+}
+
+// A hand that pulls and turns at random, differently every 0.2 s, with dampers as above.
+struct RandomHand {
+  std::mt19937 random;
+  Vector6 pull = Vector6::Zero();
+
+  Vector6 operator()(int cycle, const Vector6& twist) {
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    if (cycle % 200 == 0) {
+      for (double& value : pull) value = any(random);
+      pull.head<3>() *= 40.0;
+    }
+    Vector6 w = pull - 20.0 * twist;
+    w.tail<3>() = pull.tail<3>() - 0.2 * twist.tail<3>();
+    return w;
+  }
+};
+
+// Spheres of a millimetre and of a metre, at the corners and in the middle of a body.
+TEST(StopSurface, SpheresAtTheCornersOfABodyStayBetweenTwoStops) {
+  struct Case {
+    double half, radius;
+  };
+  for (const Case& c : {Case{0.1, 0.02}, Case{0.1, 1e-3}, Case{0.1, 1.0}, Case{0.0, 0.1}}) {
+    SCOPED_TRACE(c.radius);
+    const double gap = c.half * std::sqrt(3.0) + c.radius + 0.15;
+    Surface below = stop(surfaces::Plane{}, kStart - gap * Vector3d::UnitZ());
+    Surface above = stop(surfaces::Plane{}, kStart + gap * Vector3d::UnitZ());
+    above.pose.R = Eigen::AngleAxisd(M_PI, Vector3d::UnitX());
+    Rendering rendering(device_with(3.0), body_with_corners(c.half, c.radius),
+                        without_synchronisation(),
+                        surfaces::Environment({below, above}, kDt, {kMass, kMass}));
+    RenderingState state = rendering.start(kPosture);
+    RandomHand hand = {.random = std::mt19937(1)};
+    LawResult result;
+    double deepest = 0.0;
+    for (int k = 0; k < 2000; ++k) {
+      state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+      const Eigen::Quaterniond turn(state.twin.q_a.segment<4>(3));
+      Vector6 twist;
+      twist << turn * state.twin.dq_a.head<3>(), turn * state.twin.dq_a.segment<3>(3);
+      const RobotState robot = robot_with(kGantryAtHome, kPosture, hand(k, twist));
+      const AllocationCounter allocations;
+      ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+      ASSERT_EQ(allocations.count(), 0u);
+      rendering.integrate(state);
+      for (const CollisionSphere& sphere : rendering.twin().spheres) {
+        const double z = state.twin.q_a[2] + (turn * sphere.p).z();
+        deepest = std::max(deepest, std::abs(z - kStart.z()) + c.radius - gap);
+      }
+    }
+    EXPECT_LT(deepest, 1e-3);
+    EXPECT_LT(state.twin.dq_a.head<3>().norm(), 2.0);  // 40 N on 20 Ns/m
+  }
 }
 
 }  // namespace
