@@ -120,6 +120,8 @@ bool EventDetector::holds(const Condition& condition, const CycleRecord& record)
       return record.time_s - start_s_ > condition.value;
     case ConditionKind::kHandleAt:
       return is_at(record.T_B_H, condition.place);
+    case ConditionKind::kSurface:
+      return record.contact.surface == condition.index;
   }
   return false;
 }

@@ -23,6 +23,7 @@ enum class ConditionKind {
   kGantryBelow,  ///< gantry joint `index` < value, m
   kElapsed,      ///< time since the first running cycle > value, s
   kHandleAt,     ///< the handle is nearer than 0.10 m and 15 degrees to `place`
+  kSurface,      ///< virtual surface `index` pushes the twin most
 };
 
 struct Condition {

@@ -146,7 +146,10 @@ class Signals(Folders):
                 ({"kind": "elapsed", "value": 2.0}, "at least 2 s after the hand has taken the handle",
                  {"kind": "elapsed_s", "value": 2.0}),
                 ({"kind": "locked", "of": "hinge", "unit": "rad", "value": 0.0}, "a lock holds hinge",
-                 {"kind": "locked", "of": "hinge"})):
+                 {"kind": "locked", "of": "hinge"}),
+                ({"kind": "surface", "of": "chair", "unit": "m", "value": 0.0},
+                 "of all surfaces chair pushes the twin most",
+                 {"kind": "surface", "of": "chair"})):
             self.assertEqual(runs.condition_text(condition), text)
             self.assertEqual(runs.condition_data(condition), data)
 

@@ -55,7 +55,7 @@ void add_twin(const rendering::TwinModel& twin, Json& json) {
   }
 }
 
-// Limit, joint or coordinate that a condition is about, and whether that is an angle; empty: none.
+// Limit, joint, coordinate or surface that a condition is about, and whether that is an angle; empty: none.
 std::pair<std::string, bool> subject(const Condition& condition, const config::Scenario& scenario) {
   const std::size_t i = condition.index;
   const DeviceModel& device = scenario.device.model;
@@ -75,6 +75,8 @@ std::pair<std::string, bool> subject(const Condition& condition, const config::S
     case ConditionKind::kGantryAbove:
     case ConditionKind::kGantryBelow:
       return {device.chain.joints()[i].name, false};
+    case ConditionKind::kSurface:
+      return {scenario.surfaces[i].name, false};
     default:
       return {};
   }

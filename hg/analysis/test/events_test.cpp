@@ -23,6 +23,17 @@ TEST(EventDetector, TimeElapsesFromTheFirstRunningCycleOn) {
   EXPECT_TRUE(detector.observe(record_at(6.1)));
 }
 
+TEST(EventDetector, ASurfaceIsMetWhileItPushesMost) {
+  EventDetector detector({{"hit", "", {{.kind = ConditionKind::kSurface, .index = 1}}}}, {});
+  CycleRecord record = record_at(0.0);
+  for (const int other : {-1, 0}) {
+    record.contact.surface = other;
+    EXPECT_FALSE(detector.observe(record));
+  }
+  record.contact.surface = 1;
+  EXPECT_TRUE(detector.observe(record));
+}
+
 // a level hand axis with this azimuth
 Eigen::Matrix3d pointing(double azimuth) {
   return (Eigen::AngleAxisd(azimuth, Eigen::Vector3d::UnitZ()) *

@@ -132,6 +132,7 @@ void check_twins(Check& check) {
     add(inspect(scenario.twin, scenario.device.model.dt()), check);
     add(inspect(scenario.device, scenario.twin), check);
     add(inspect_surfaces(scenario), check);
+    add(inspect_spheres(scenario), check);
   }
 }
 

@@ -222,4 +222,17 @@ Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin
   return std::move(out.findings);
 }
 
+Findings inspect_spheres(const config::Scenario& scenario) {
+  const auto is_stop = [](const surfaces::Surface& surface) {
+    return surface.contact == surfaces::Contact::kStop;
+  };
+  if (scenario.twin.model.spheres.empty()) return {};
+  if (std::ranges::any_of(scenario.surfaces, is_stop)) return {};
+  Collector out(scenario.sources, scenario.places);
+  out.add(Severity::kNote, "twin",
+          "its collision_spheres meet nothing, since no surface of the scenario is a stop",
+          "give a surface 'contact: stop'");
+  return std::move(out.findings);
+}
+
 }  // namespace hg::checks

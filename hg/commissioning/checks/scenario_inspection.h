@@ -8,6 +8,7 @@
 
 #include "hg/commissioning/checks/findings.h"
 #include "hg/config/device.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/config/simulation/simulation.h"
 #include "hg/config/twin.h"
 
@@ -38,5 +39,8 @@ Match match(const config::DeviceConfig& device, const config::Twin& twin);
 
 /// All findings about the pair; they stand at keys of the twin.
 Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin& twin);
+
+/// A note where the twin has collision spheres and the scenario has no surface that they meet.
+Findings inspect_spheres(const config::Scenario& scenario);
 
 }  // namespace hg::checks

@@ -74,10 +74,12 @@ void check_spheres(Loader& loader, const surfaces::Surface& surface,
 }
 
 std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
-                                             const rendering::TwinModel& twin) {
+                                             const rendering::TwinModel& twin,
+                                             std::vector<std::string>& names) {
   std::vector<SurfaceDraft> drafts;
   const std::size_t faults = file.faults.count();
   describe_surfaces(loader, drafts);
+  for (const SurfaceDraft& draft : drafts) names.push_back(draft.surface.name);
   if (file.faults.count() > faults) return {};
   model::ChainData chain(twin.chain);
   chain.update_poses(twin.q_start);
@@ -135,13 +137,13 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
                   "'" + name + "'");
     }
     draft.names = names_of(*device, *twin, catalogue);
+    surfaces = load_surfaces(loader, file, twin->model, draft.names.surfaces);
     describe_events(loader, draft);
     changes = changes_of(twin->model);
     describe_changes(loader, changes);
     describe_panel(loader, panel);
     injections = injections_of(draft.names.manipulator, draft.names.gantry);
     describe_injections(loader, injections);
-    surfaces = load_surfaces(loader, file, twin->model);
     bystander = bystander_of(device->model.chain.frame_names());
     describe_bystander(loader, bystander);
   });

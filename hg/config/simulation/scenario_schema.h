@@ -100,7 +100,7 @@ template <class V>
 void describe_surfaces(V& v, std::vector<SurfaceDraft>& surfaces) {
   v.list(
       "surfaces", [&](auto& child) { describe(child, surfaces); },
-      "virtual surfaces that push the end effector of the twin, docs/concepts/environment.md");
+      "virtual surfaces that push the twin, docs/concepts/environment.md");
   v.rule(surfaces.size() <= surfaces::kMaxSurfaces, "surfaces", "at most 64 surfaces");
 }
 
@@ -420,6 +420,7 @@ struct EventNames {
   std::vector<int> twin_coordinates;     ///< indices of the twin joints in q_a
   std::vector<std::string> manipulator;
   std::vector<std::string> gantry;
+  std::vector<std::string> surfaces;
 };
 
 /// Content of scenario.yaml, before it becomes a Scenario.
@@ -449,7 +450,7 @@ void describe_parts(V& v, ScenarioDraft& d) {
            "length of the run, from when a scripted hand takes the handle", Need::kRequired);
 }
 
-/// Conditions on single limits.
+/// Conditions on single limits and surfaces.
 template <class V>
 void describe_limit_conditions(V& v, const EventNames& names, EventRule& event) {
   LimitState side = LimitState::kInactive;
@@ -464,6 +465,10 @@ void describe_limit_conditions(V& v, const EventNames& names, EventRule& event) 
   if (v.name("locked", index, names.twin_joints, "a joint of the twin", "a lock holds it")) {
     const int limit = names.twin_limits[index];
     event.all_of.push_back({.kind = ConditionKind::kLocked, .index = limit});
+  }
+  if (v.name("surface", index, names.surfaces, "a surface of the scenario",
+             "of all virtual surfaces this one pushes the twin most")) {
+    event.all_of.push_back({.kind = ConditionKind::kSurface, .index = index});
   }
 }
 

@@ -149,6 +149,7 @@ def condition_text(condition):
                 f"{math.degrees(azimuth):.0f} degrees")
     sign = ">" if kind.endswith("above") else "<"
     return {"locked": f"a lock holds {name}",
+            "surface": f"of all surfaces {name} pushes the twin most",
             "elapsed": f"at least {value:g} s after the hand has taken the handle",
             "force": f"force of the user {sign} {value:g} N",
             "twin": f"{name} {sign} {value:g} {unit}",
@@ -166,6 +167,6 @@ def condition_data(condition):
         data["side"] = condition.get("side", "either")
     elif "place" in condition:
         data["place"] = dict(zip(("x_m", "y_m", "azimuth_rad"), condition["place"]))
-    elif kind != "locked":
+    elif kind not in ("locked", "surface"):
         data["value"] = condition["value"]
     return data

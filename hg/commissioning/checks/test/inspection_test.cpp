@@ -426,6 +426,21 @@ TEST(Pair, PosturesOutOfReachAreCountedAndOneIsExplained) {
   EXPECT_NE(finding->what.find("boom"), std::string::npos) << finding->what;
 }
 
+TEST(Spheres, ThatMeetNoSurfaceAreNoted) {
+  config::Scenario scenario = config::load_scenario("models/scenarios/door.yaml");
+  EXPECT_TRUE(inspect_spheres(scenario).empty());
+  scenario.twin.model.spheres = {{.frame = 0}};
+  scenario.surfaces = {{.name = "table"}};
+  const Findings findings = inspect_spheres(scenario);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].severity, Severity::kNote);
+  EXPECT_EQ(findings[0].file, "models/scenarios/door.yaml");
+  EXPECT_EQ(findings[0].place.line, 6);  // twin: ...
+  EXPECT_NE(findings[0].what.find("collision_spheres meet nothing"), std::string::npos);
+  scenario.surfaces.push_back({.name = "chair", .contact = surfaces::Contact::kStop});
+  EXPECT_TRUE(inspect_spheres(scenario).empty());
+}
+
 TEST(Pair, TwinThatIsTooMuchWorkForTheRateIsFound) {
   const auto finding_of = [](int dofs, rendering::Law law, double rate_Hz) {
     std::string urdf = "<robot name='snake'><link name='l0'/>";

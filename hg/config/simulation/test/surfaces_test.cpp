@@ -13,8 +13,9 @@ namespace {
 
 constexpr const char* kPlate = "solid x\nvertex 0 0 0\nvertex 1000 0 0\nvertex 0 1000 0\nendsolid";
 
-// The twin is the door: its handle starts about 0.75 m from its hinge.
-Scenario load_surfaces(const std::string& surfaces) {
+// The twin is the door: its handle starts about 0.75 m from its hinge. `of_twin` is appended to
+// twin.yaml.
+Scenario load_surfaces(const std::string& surfaces, const std::string& of_twin = "") {
   std::vector<SourceText> texts = {
       {"models/scenarios/run.yaml",
        "title: a\ndescription: b\ndevice: ../haptic_giant/device.yaml\n"
@@ -22,7 +23,8 @@ Scenario load_surfaces(const std::string& surfaces) {
            surfaces},
       {"models/scenarios/plate.stl", kPlate},
       {"models/scenarios/bad.stl", "solid x\nvertex 0 zero 0\n"}};
-  for (const SourceText& source : load_scenario("models/scenarios/door.yaml").sources) {
+  for (SourceText source : load_scenario("models/scenarios/door.yaml").sources) {
+    if (source.name == "models/twins/door/twin.yaml") source.content += of_twin;
     if (source.name != "models/scenarios/door.yaml") texts.push_back(source);
   }
   return load_scenario(texts);
@@ -87,6 +89,79 @@ TEST(Surfaces, AreRefusedWithTheirPlace) {
             "models/scenarios/run.yaml:8:3: surfaces: surface a: a mesh that is a stop must be "
             "closed: each edge that of two triangles, "
             "which run along it in opposite directions");
+}
+
+// A post with a radius of 0.05 m, 0.3 m in front of the open side of the door, as a stop.
+constexpr const char* kPost =
+    "  - {name: post, shape: cylinder, radius_m: 0.05, length_m: 2, contact: stop,\n"
+    "     placement: {x_m: 0.6, y_m: 0.1}}\n";
+
+TEST(Surfaces, AreMetBySpheresOnLinksOfTheTwin) {
+  const rendering::TwinModel twin =
+      load_surfaces(kPost,
+                    "collision_spheres:\n"
+                    "  - {link: leaf, centre_m: [0.9, 0, 0.1], radius_m: 0.02}\n"
+                    "  - {link: handle}\n")
+          .twin.model;
+  ASSERT_EQ(twin.spheres.size(), 2U);
+  EXPECT_EQ(twin.chain.frame_names()[twin.spheres[0].frame], "leaf");
+  EXPECT_EQ(twin.spheres[0].p, Eigen::Vector3d(0.9, 0, 0.1));
+  EXPECT_EQ(twin.spheres[0].radius, 0.02);
+  EXPECT_EQ(twin.spheres[1].frame, twin.end_effector);
+  EXPECT_EQ(twin.spheres[1].p, Eigen::Vector3d::Zero());
+  EXPECT_EQ(twin.spheres[1].radius, 0.0);
+}
+
+std::string message_of_sphere(const std::string& sphere, const std::string& surface = kPost) {
+  return message_of([&] { load_surfaces(surface, "collision_spheres:\n  - " + sphere + "\n"); });
+}
+
+TEST(Surfaces, SpheresOfTheTwinAreRefusedAtTheirPlace) {
+  const std::string at = "models/twins/door/twin.yaml:32:";  // behind the last line of the door
+  EXPECT_EQ(message_of_sphere("{link: leav}"),
+            at + "12: collision_spheres[0].link: must be a link of the URDF, got 'leav', did you "
+                 "mean 'leaf'?");
+  EXPECT_EQ(message_of_sphere("{radius_m: 0.1}"),
+            at + "5: collision_spheres[0]: key 'link' is missing");
+  EXPECT_EQ(message_of_sphere("{link: leaf, radius_m: -0.1}"),
+            at + "28: collision_spheres[0].radius_m: must be 0 .. 1000, got -0.1");
+  EXPECT_EQ(message_of_sphere("{link: leaf, radius_m: .inf}"),
+            at + "28: collision_spheres[0].radius_m: must be 0 .. 1000, got .inf");
+  EXPECT_EQ(message_of_sphere("{link: leaf, center_m: [0, 0, 0]}"),
+            at + "18: collision_spheres[0].center_m: unknown key, did you mean 'centre_m'?");
+  std::string nine = "{link: leaf}";
+  for (int i = 1; i < 9; ++i) nine += "\n  - {link: leaf}";
+  EXPECT_EQ(message_of_sphere(nine),
+            "models/twins/door/twin.yaml:32:3: collision_spheres: at most 8 are possible");
+}
+
+TEST(Surfaces, ASphereMustNotStartInsideOfAStop) {
+  const std::string refused =
+      "models/scenarios/run.yaml:8:3: surfaces: a collision sphere of the twin must not start "
+      "inside of one, got 'post' around that of link 'leaf'";
+  EXPECT_EQ(message_of_sphere("{link: leaf, centre_m: [0.9, 0.29, 0]}"), refused);
+  EXPECT_EQ(message_of_sphere("{link: leaf, centre_m: [0.9, 0, 0], radius_m: 0.26}"), refused);
+  EXPECT_EQ(message_of_sphere("{link: leaf, centre_m: [0.9, 0, 0], radius_m: 0.24}"), "no error");
+  EXPECT_EQ(
+      message_of_sphere(
+          "{link: leaf, centre_m: [0.9, 0.29, 0]}",
+          "  - {name: post, shape: sphere, radius_m: 0.1, placement: {x_m: 0.6, y_m: 0.1}}\n"),
+      "no error");  // a surface with a spring
+}
+
+TEST(Surfaces, AnEventWaitsForOneByItsName) {
+  const auto load = [](const std::string& name) {
+    return load_surfaces(std::string(kPost) +
+                         "  - {name: floor, placement: {z_m: -5}}\n"
+                         "events: [{name: hit, what: a, when: {surface: " +
+                         name + "}}]\n");
+  };
+  const Condition condition = load("floor").events.at(0).all_of.at(0);
+  EXPECT_EQ(condition.kind, ConditionKind::kSurface);
+  EXPECT_EQ(condition.index, 1);
+  EXPECT_EQ(message_of([&] { load("flor"); }),
+            "models/scenarios/run.yaml:11:47: events[0].when.surface: must be a surface of the "
+            "scenario, got 'flor', did you mean 'floor'?");
 }
 
 }  // namespace
