@@ -55,7 +55,8 @@ void add_twin(const rendering::TwinModel& twin, Json& json) {
   }
 }
 
-// Limit, joint, coordinate or surface that a condition is about, and whether that is an angle; empty: none.
+// Limit, joint, coordinate or surface that a condition is about, and whether that is an angle;
+// empty: none.
 std::pair<std::string, bool> subject(const Condition& condition, const config::Scenario& scenario) {
   const std::size_t i = condition.index;
   const DeviceModel& device = scenario.device.model;
