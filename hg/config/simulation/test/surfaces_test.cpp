@@ -149,17 +149,19 @@ TEST(Surfaces, ASphereMustNotStartInsideOfAStop) {
       "no error");  // a surface with a spring
 }
 
+Scenario waiting_for(const std::string& surface) {
+  std::string surfaces = kPost;
+  surfaces += "  - {name: floor, placement: {z_m: -5}}\n";
+  surfaces += "events: [{name: hit, what: a, when: {surface: ";
+  surfaces += surface + "}}]\n";
+  return load_surfaces(surfaces);
+}
+
 TEST(Surfaces, AnEventWaitsForOneByItsName) {
-  const auto load = [](const std::string& name) {
-    return load_surfaces(std::string(kPost) +
-                         "  - {name: floor, placement: {z_m: -5}}\n"
-                         "events: [{name: hit, what: a, when: {surface: " +
-                         name + "}}]\n");
-  };
-  const Condition condition = load("floor").events.at(0).all_of.at(0);
+  const Condition condition = waiting_for("floor").events.at(0).all_of.at(0);
   EXPECT_EQ(condition.kind, ConditionKind::kSurface);
   EXPECT_EQ(condition.index, 1);
-  EXPECT_EQ(message_of([&] { load("flor"); }),
+  EXPECT_EQ(message_of([] { waiting_for("flor"); }),
             "models/scenarios/run.yaml:11:47: events[0].when.surface: must be a surface of the "
             "scenario, got 'flor', did you mean 'floor'?");
 }
