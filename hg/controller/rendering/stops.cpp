@@ -18,7 +18,8 @@ struct Point {
 
 Point point_on(const model::ChainData& chain, int frame, const Vector3d& p_link) noexcept {
   const Pose& T = chain.pose(frame);
-  const Vector6 twist = chain.twist(frame), bias = chain.bias_acceleration(frame);
+  const Vector6& twist = chain.twist(frame);
+  const Vector6& bias = chain.bias_acceleration(frame);
   const Vector3d lever = T.R * p_link, omega = twist.tail<3>();
   return {.p = T.p + lever,
           .v = twist.head<3>() + omega.cross(lever),
