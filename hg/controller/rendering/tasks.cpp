@@ -64,6 +64,15 @@ limits::JointLimits inner_range(const DeviceModel& device, int i) {
   return limits;
 }
 
+// Soft and late enough to be no jerk: an inner range may be left.
+limits::RecoverableOptions inner_options(const limits::JointLimits& inner, double dt) {
+  constexpr double kSoft = 0.1;  // s
+  limits::RecoverableOptions options = limits::recoverable_options(inner, dt, dt);
+  options.tau = options.tau_rec = options.tau_onset = std::max(kSoft, options.tau);
+  options.is_capped = false;
+  return options;
+}
+
 LimitRow make_row(const limits::JointLimits& limits, double margin, double dt) {
   LimitRow row;
   row.range = {limits.q_min, limits.q_max};
@@ -187,7 +196,8 @@ void Tasks::add_posture(const DeviceModel& device) {
   problem_.add_level();
   posture_row_ = problem_.rows();
   for (int i = 0; i < n_m_; ++i) {
-    inner_.push_back(inner_range(device, i));
+    const limits::JointLimits inner = inner_range(device, i);
+    inner_.push_back({inner, inner_options(inner, dt_)});
     problem_.add_bound(i, {}, weight_of(limit_rows_[i]));
   }
   problem_.add_level();
@@ -495,9 +505,9 @@ void Tasks::fill_posture(const DeviceModel& device, const TaskInput& input) noex
   const ReferenceState& reference = input.reference;
   const bool has_goals = device.posture.size() > 0 && !input.is_braked;
   for (int i = 0; i < n_m_; ++i) {
-    const Interval gently =
-        limits::recoverable_bounds(inner_[i], limits::recoverable_options(inner_[i], dt_, dt_),
-                                   reference.q_m[i], reference.dq_m[i], dt_);
+    const InnerRange& inner = inner_[i];
+    const Interval gently = limits::recoverable_bounds(
+        inner.limits, inner.options, reference.q_m[i], reference.dq_m[i], dt_);
     problem_.set_bounds(posture_row_ + i, input.is_braked ? Interval{} : gently);
     const bool has_goal = has_goals && std::isfinite(device.posture[i]);
     const double error = has_goal ? device.posture[i] - reference.q_m[i] : 0.0;

@@ -184,8 +184,12 @@ class Tasks {
   int posture_row_ = 0;   ///< first row of the posture of seven joints, its inner ranges first
   hqp::Problem problem_;
   std::vector<LimitRow> limit_rows_;
-  std::vector<limits::JointLimits> inner_;  ///< Ranges in which a joint to spare keeps the joints
-  std::vector<double> coefficients_;        ///< scratch, one row
+  struct InnerRange {
+    limits::JointLimits limits;
+    limits::RecoverableOptions options;
+  };
+  std::vector<InnerRange> inner_;     ///< Ranges in which a joint to spare keeps the joints
+  std::vector<double> coefficients_;  ///< scratch, one row
   Vector6 s_ = Vector6::Zero();
   VectorP ddq_p_;         ///< Gantry acceleration in this cycle, without the unknowns
   VectorM known_torque_;  ///< Motor torques in this cycle, without those that accelerate the joints
