@@ -35,7 +35,7 @@ hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
     capacity.levels += 3;
     capacity.rows += 2 * limits;
   } else {
-    capacity.levels += 3;
+    capacity.levels += 2;
     capacity.rows += 2 * n_m;
   }
   if (const int led = led_axes(device, options); led > 0) {
@@ -190,17 +190,18 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   if (n_m_ > 6) add_posture(device);
 }
 
-// The motion that a joint to spare leaves free keeps all joints away from their ends, as rows that
-// its goals cannot overrule, gently: what these rows ask for is below the twin, and no force.
+// The motion that a joint to spare leaves free keeps all joints away from their ends, and follows
+// its goals. What these rows ask for is below the twin, and no force. They share a level: a joint
+// that the free motion hardly moves would take all of it, at any speed, if its row came first.
 void Tasks::add_posture(const DeviceModel& device) {
+  constexpr double kFirm = 5.0;  // beside the goals
   problem_.add_level();
   posture_row_ = problem_.rows();
   for (int i = 0; i < n_m_; ++i) {
     const limits::JointLimits inner = inner_range(device, i);
     inner_.push_back({inner, inner_options(inner, dt_)});
-    problem_.add_bound(i, {}, weight_of(limit_rows_[i]));
+    problem_.add_bound(i, {}, kFirm);
   }
-  problem_.add_level();
   for (int i = 0; i < n_m_; ++i) problem_.add_bound(i, {});
 }
 
