@@ -10,6 +10,8 @@
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
+#include "hg/config/bus/machine_file.h"
+#include "hg/device/ethercat/bus_check.h"
 
 namespace hg::apps {
 namespace {
@@ -41,7 +43,39 @@ int bus_watch(const std::string& interface_name, const ethercat::BusWatchOptions
   return result.lost + result.incomplete > 0 ? 1 : 0;
 }
 
+int bus_check(const std::string& interface_name, const std::string& file) {
+  config::SourceReader reader;
+  const ethercat::Machine machine = config::load_machine(file, reader, {});
+  ethercat::Master master(interface_name);
+  const std::vector<ethercat::BusSlave> found = master.scan();
+  const std::vector<std::string> sentences = ethercat::differences(master, found, machine);
+  for (const std::string& sentence : sentences) print_out(sentence + "\n");
+  if (!sentences.empty()) return 1;
+  print_out(fmt::format("{} slaves on {} are those of {}, settings and watchdogs read back\n",
+                        found.size(), interface_name, file));
+  return 0;
+}
+
 namespace {
+
+void add_check(CLI::App& bus, int& exit_code) {
+  struct Arguments {
+    std::string file, interface_name;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* check = bus.add_subcommand(
+      "check", "Compares every slave with the file of the machine: identity, objects, watchdog.");
+  check->footer(
+      "Takes all slaves to PRE-OP and writes the settings of the file to them. Exit code 1: "
+      "something is different.\n"
+      "Example:\n"
+      "  hapticgiant bus check machine.yaml eth1");
+  check->add_option("MACHINE", arguments->file, "machine.yaml")->required();
+  check->add_option("INTERFACE", arguments->interface_name, "as in scan")->required();
+  check->callback([arguments, &exit_code] {
+    exit_code = bus_check(arguments->interface_name, arguments->file);
+  });
+}
 
 void add_watch(CLI::App& bus, int& exit_code) {
   struct Arguments {
@@ -89,6 +123,7 @@ void add_bus(CLI::App& app, int& exit_code) {
     bus_scan(*interface_name);
     exit_code = 0;
   });
+  add_check(*command, exit_code);
   add_watch(*command, exit_code);
 }
 

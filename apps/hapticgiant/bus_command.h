@@ -19,6 +19,10 @@ void bus_scan(const std::string& interface_name);
 /// or incomplete. Throws SetupError.
 int bus_watch(const std::string& interface_name, const ethercat::BusWatchOptions& options);
 
+/// Compares all slaves with the file of a machine and prints one sentence for each difference. Exit
+/// code: 0 none, 1 some. Throws SetupError.
+int bus_check(const std::string& interface_name, const std::string& file);
+
 /// Adds the subcommand to the program; running it sets `exit_code`.
 void add_bus(CLI::App& app, int& exit_code);
 

@@ -9,6 +9,7 @@
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/remote/ethercat_setup.h"
 #include "hg/scenario/remote/franka_setup.h"
 #include "hg/scenario/remote/remote_setup.h"
 #include "hg/scenario/start_posture.h"
@@ -31,6 +32,8 @@ PreparedRun::PreparedRun(const RunArguments& a)
   } else if (arguments.moves_to_start) {
     throw SetupError("--move-to-start: only a Franka can be moved, got --device-address " +
                      arguments.device_address);
+  } else if (scenario::is_ethercat(arguments.device_address)) {
+    connect_ethercat();
   } else {
     connect_remote();
   }
@@ -54,6 +57,24 @@ void PreparedRun::connect_franka() {
         "that "
         "the arm yields that way";
   }
+  remote = connected.get();
+  device = std::move(connected);
+}
+
+void PreparedRun::connect_ethercat() {
+  if (!arguments.key_file.empty()) throw SetupError("--key-file: a bus has no key");
+  const ethercat::EthercatConfig config = scenario::ethercat_config(
+      arguments.device_address, arguments.machine, scenario, arguments.is_fast);
+  if (config.machine.moves_with_frames) {
+    note = "the machine file says that the segment is a simulation: no start test is required";
+  } else if (arguments.without_start_test) {
+    note = "driven without a start test: brakes and stop inputs were not tested by this program";
+  } else {
+    throw SetupError(arguments.device_address +
+                     ": there is no start test of a machine on a bus yet: test its brakes and "
+                     "stop inputs by hand, then give --without-start-test");
+  }
+  auto connected = std::make_unique<ethercat::EthercatDevice>(config);
   remote = connected.get();
   device = std::move(connected);
 }

@@ -39,6 +39,7 @@ struct PreparedRun {
  private:
   void connect_remote();
   void connect_franka();
+  void connect_ethercat();
 };
 
 }  // namespace hg::apps

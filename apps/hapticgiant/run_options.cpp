@@ -21,8 +21,13 @@ void add_run(CLI::App& app, const std::string& program, int& exit_code) {
   add_scenario_options(*command, arguments->world);
   command->add_option(
       "--device-address", arguments->device_address,
-      "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one, or "
-      "franka://HOST of a Franka FR3 (docs/start/franka.md)");
+      "HOST:PORT of a remote device (hapticgiant simulate) instead of a simulated one, "
+      "franka://HOST of a Franka FR3 (docs/start/franka.md), or ethercat://INTERFACE of a machine "
+      "on a bus (docs/reference/ethercat.md)");
+  command
+      ->add_option("--machine", arguments->machine,
+                   "machine.yaml of a bus; default: the one beside the device file")
+      ->needs("--device-address");
   command
       ->add_flag("--move-to-start", arguments->moves_to_start,
                  "a Franka first moves slowly to where the twin starts; keep its way clear")

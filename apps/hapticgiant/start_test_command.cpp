@@ -23,6 +23,7 @@
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/remote/ethercat_setup.h"
 #include "hg/scenario/remote/franka_setup.h"
 #include "hg/scenario/remote/remote_setup.h"
 
@@ -31,6 +32,10 @@ namespace hg::apps {
 int start_test(const StartTestArguments& arguments) {
   if (scenario::is_franka(arguments.device_address)) {
     throw SetupError("start-test: a Franka tests its brakes and stop inputs itself, see Desk");
+  }
+  if (scenario::is_ethercat(arguments.device_address)) {
+    throw SetupError(
+        "start-test: not for a machine on a bus yet, test its brakes and stop inputs by hand");
   }
   RunArguments run;
   run.world = arguments.world;

@@ -16,8 +16,8 @@ struct Signature {
   std::vector<std::string> keys;
 };
 
-const std::array<Signature, 6>& signatures() {
-  static const std::array<Signature, 6> kAll = {{
+const std::array<Signature, 7>& signatures() {
+  static const std::array<Signature, 7> kAll = {{
       {FileKind::kDevice,
        {"manipulator", "gantry", "flange", "kinematics", "rate_Hz", "virtual_joints",
         "cartesian_limits", "drive", "synchronisation", "prepositioning", "estimation", "monitor",
@@ -29,6 +29,7 @@ const std::array<Signature, 6>& signatures() {
       {FileKind::kTool, {"mass_kg", "centre_of_mass_m", "inertia_kg_m2", "dead_man"}},
       {FileKind::kSimulation,
        {"sensors", "seed", "step_s", "factors", "safety", "end_stops", "gear_ratio", "flexible"}},
+      {FileKind::kMachine, {"slaves", "watchdog_s", "answer_s", "moves_with_frames"}},
   }};
   return kAll;
 }
@@ -65,6 +66,8 @@ std::string_view to_string(FileKind kind) noexcept {
       return "tool";
     case FileKind::kSimulation:
       return "simulation";
+    case FileKind::kMachine:
+      return "machine";
   }
   return "";
 }

@@ -8,7 +8,7 @@
 
 namespace hg::config {
 
-enum class FileKind { kDevice, kTwin, kScenario, kScript, kTool, kSimulation };
+enum class FileKind { kDevice, kTwin, kScenario, kScript, kTool, kSimulation, kMachine };
 
 std::string_view to_string(FileKind kind) noexcept;
 

@@ -95,6 +95,18 @@ std::optional<double> parse_number(const YAML::Node& node) {
   return value;
 }
 
+std::optional<std::uint32_t> parse_whole(const YAML::Node& node) {
+  if (!node.IsScalar() || node.Tag() == "!") return {};
+  std::string_view text = node.Scalar();
+  const bool is_hexadecimal = text.starts_with("0x");
+  if (is_hexadecimal) text.remove_prefix(2);
+  std::uint32_t value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value, is_hexadecimal ? 16 : 10);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
 }  // namespace
 
 Loader::Loader(const YAML::Node& map, std::string item, LoaderFile& file)
@@ -123,6 +135,21 @@ bool Loader::number(std::string_view key, double& value, const Range& range, std
   const Entry* entry = find(key, need);
   return entry != nullptr &&
          read_number(entry->value, item_of(key), unit_of(key), {range, key}, value);
+}
+
+bool Loader::whole(std::string_view key, std::uint32_t& value, std::uint32_t most, std::string_view,
+                   Need need) {
+  const Entry* entry = find(key, need);
+  if (entry == nullptr) return false;
+  const std::optional<std::uint32_t> read = parse_whole(entry->value);
+  if (!read || *read > most) {
+    fault(entry->value, item_of(key),
+          "must be a whole number from 0 to " + std::to_string(most) + ", also as 0x1A, got " +
+              shown(entry->value));
+    return false;
+  }
+  value = *read;
+  return true;
 }
 
 bool Loader::joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,

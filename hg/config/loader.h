@@ -8,6 +8,7 @@
 
 #include <yaml-cpp/yaml.h>
 #include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -45,6 +46,9 @@ class Loader {
   /// joint.
   bool joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
                     std::string_view text, Need need = Need::kOptional);
+  /// Reads a whole number from 0 to `most`, also as 0x1A00.
+  bool whole(std::string_view key, std::uint32_t& value, std::uint32_t most, std::string_view text,
+             Need need = Need::kOptional);
   /// Reads a vector [x, y, z].
   bool vector(std::string_view key, Eigen::Vector3d& value, const Range& range,
               std::string_view text);

@@ -48,7 +48,7 @@ def enter_namespace():
 def make_interfaces():
     subprocess.run(["ip", "link", "add", MASTER_END, "type", "veth", "peer", "name", SEGMENT_END],
                    check=True)
-    for end in (MASTER_END, SEGMENT_END):
+    for end in ("lo", MASTER_END, SEGMENT_END):
         subprocess.run(["ip", "link", "set", end, "up"], check=True)
 
 
@@ -78,8 +78,8 @@ class Program:
 
 
 class Segment(Program):
-    def __init__(self, program, layout=MACHINE):
-        super().__init__(program, SEGMENT_END, str(layout))
+    def __init__(self, program, layout=MACHINE, plant=None):
+        super().__init__(program, SEGMENT_END, str(layout), *([plant] if plant else []))
         self.hear()
 
     def tell(self, command):

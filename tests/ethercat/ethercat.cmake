@@ -1,5 +1,5 @@
 # The simulated EtherCAT segment, a program in Rust, what judges it, two masters of others, and what
-# `hapticgiant bus` finds on it.
+# `hapticgiant bus` finds on it; and the HapticGiant on such a segment, from the door to its plant.
 # Without cargo there is none of it; without the crates of one master the other one judges alone.
 
 # hg_rust_program(RESULT FOLDER LEAST_RUST): a program of tests/ethercat/FOLDER, and in RESULT where
@@ -43,6 +43,8 @@ if(cargo AND HG_TESTS)
   if(segment_program)
     hg_python_test(ethercat_bus tests/ethercat/ethercat_test.py ${program} ${segment_program} ${ethercrab_program}
       TIMEOUT 300)
-    set_tests_properties(ethercat_bus PROPERTIES SKIP_RETURN_CODE 77)
+    hg_python_test(ethercat_machine tests/ethercat/machine_test.py ${program} ${segment_program}
+      TIMEOUT 300)
+    set_tests_properties(ethercat_bus ethercat_machine PROPERTIES SKIP_RETURN_CODE 77)
   endif()
 endif()

@@ -570,7 +570,9 @@ class Words(unittest.TestCase):
                             ("io a\nio a", "line 2: there is a slave 'a' already"),
                             ("imu a turn=9", "line 1: unknown key 'turn', expected vendor"),
                             ("drive a drift=5000", "drift: expected a number from -1000 to 1000"),
-                            ("drive a mapping=any", "mapping: expected free or fixed, got 'any'")):
+                            ("drive a joint=8", "joint: expected 1 to 7, got '8'"),
+                            ("drive a mapping=any",
+                             "mapping: expected free, fixed or joint, got 'any'")):
             with self.subTest(text), tempfile.NamedTemporaryFile("w") as file:
                 file.write(text)
                 file.flush()

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "hg/config/bus/machine_schema.h"
 #include "hg/config/device_schema.h"
 #include "hg/config/simulation/scenario_schema.h"
 #include "hg/config/simulation/script_schema.h"
@@ -62,6 +63,13 @@ Json twin_table() {
   return writer.table();
 }
 
+Json machine_table() {
+  ethercat::Machine machine;
+  DocWriter writer;
+  describe(writer, machine, {});
+  return writer.table();
+}
+
 Json script_table() {
   ScriptDraft draft;
   draft.channels = {{"CHANNEL", 0, kJointPosition, "one of the channels below"}};
@@ -110,7 +118,8 @@ Json configuration_facts() {
           {"channels_base", channel_table(pose_channels(person::ScriptFrame::kBase))},
           {"channels_cylindrical", channel_table(pose_channels(person::ScriptFrame::kCylindrical))},
           {"channels", channel_table(common_channels())},
-          {"scenario", scenario_table()}};
+          {"scenario", scenario_table()},
+          {"machine", machine_table()}};
 }
 
 }  // namespace hg::pages

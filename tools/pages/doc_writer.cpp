@@ -35,6 +35,12 @@ bool DocWriter::joint_number(const JointKey& key, JointUnit unit, const double& 
              allowed(range, key.angle) + "; " + allowed(range, key.length), text);
 }
 
+bool DocWriter::whole(std::string_view key, std::uint32_t value, std::uint32_t most,
+                      std::string_view text, Need need) {
+  return row(key, std::to_string(value), need, "a whole number, 0 .. " + std::to_string(most),
+             text);
+}
+
 bool DocWriter::vector(std::string_view key, const Eigen::Vector3d& value, const Range& range,
                        std::string_view text) {
   if (value.hasNaN()) {

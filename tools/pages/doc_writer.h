@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -29,6 +30,8 @@ class DocWriter {
               Need need = Need::kOptional);
   bool joint_number(const JointKey& key, JointUnit unit, const double& value, const Range& range,
                     std::string_view text, Need need = Need::kOptional);
+  bool whole(std::string_view key, std::uint32_t value, std::uint32_t most, std::string_view text,
+             Need need = Need::kOptional);
   bool vector(std::string_view key, const Eigen::Vector3d& value, const Range& range,
               std::string_view text);
   bool inertia(std::string_view key, const Eigen::Matrix3d& value, std::string_view text);

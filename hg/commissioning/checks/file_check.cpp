@@ -10,6 +10,7 @@
 #include "hg/commissioning/checks/stiffness.h"
 #include "hg/commissioning/checks/survey.h"
 #include "hg/commissioning/checks/twin_inspection.h"
+#include "hg/config/bus/machine_file.h"
 #include "hg/config/file_kind.h"
 #include "hg/config/simulation/scenario.h"
 #include "hg/config/simulation/script.h"
@@ -78,6 +79,11 @@ void load(const std::string& file, Check& check) {
       case FileKind::kSimulation: {
         config::SourceReader reader;
         config::load_simulation(file, reader, {});
+        break;
+      }
+      case FileKind::kMachine: {
+        config::SourceReader reader;
+        config::load_machine(file, reader, {});
         break;
       }
     }

@@ -41,17 +41,55 @@ size_t bus_master_scan(bus_master* master);
 /// One of the slaves of the last scan, in the order of the cable. False: there is none.
 bool bus_master_slave(const bus_master* master, size_t index, bus_slave* slave);
 
+/// Reads an object of 1, 2 or 4 bytes of a slave that the last scan has left in PRE-OP. 0: done;
+/// more: the slave refuses, with this abort code; -1: no answer, or of another size.
+int64_t bus_master_read_object(bus_master* master, size_t index, uint16_t object, uint8_t subindex,
+                               uint8_t* data, size_t size);
+
+/// Writes one, likewise.
+int64_t bus_master_write_object(bus_master* master, size_t index, uint16_t object, uint8_t subindex,
+                                const uint8_t* data, size_t size);
+
+/// Sets the watchdog of process data of a slave, 1 to 6553 ms, and reads it back. False: it is
+/// another one.
+bool bus_master_set_watchdog(bus_master* master, size_t index, uint32_t watchdog_ms);
+
+/// This slave gets sync pulses from the next start on. The first slave that does so is the clock.
+void bus_master_use_sync(bus_master* master, size_t index);
+
 /// Takes all slaves of the last scan to OP, with outputs of zero: drives stay off. Those with
-/// outputs get a watchdog, which is read back. Returns the working counter that an exchange has
-/// when all slaves take part; 0 after an error.
-uint16_t bus_master_start(bus_master* master, uint32_t watchdog_ms);
+/// outputs get a watchdog, which is read back; those that use them get sync pulses with this
+/// period. Returns the working counter that an exchange has when all slaves take part; 0 after an
+/// error.
+uint16_t bus_master_start(bus_master* master, uint32_t watchdog_ms, uint32_t sync_ns);
+
+/// Bytes of process data of a slave in OP. False: there is none.
+bool bus_master_sizes(bus_master* master, size_t index, size_t* outputs, size_t* inputs);
+
+// The functions below neither allocate, lock nor panic.
+
+/// Outputs of a slave from the next exchange on; of another size they are ignored.
+void bus_master_set_outputs(bus_master* master, size_t index, const uint8_t* data, size_t size);
+
+/// Inputs of a slave by the last exchange that it took part in; `data` stays as it is where their
+/// size is another one.
+void bus_master_inputs(const bus_master* master, size_t index, uint8_t* data, size_t size);
 
 /// Exchanges process data once, and keeps the clocks together. Returns the working counter; -1: no
 /// answer within this time.
 int32_t bus_master_exchange(bus_master* master, uint32_t patience_us);
 
-/// Reads AL status and AL status code of a slave of the last scan. False: it does not answer.
-bool bus_master_status(bus_master* master, size_t index, uint8_t* status, uint16_t* code);
+/// AL state of a slave by the last exchange with an answer; 0: this slave did not answer.
+uint8_t bus_master_state(const bus_master* master, size_t index);
+
+/// Asks a slave for a state (with 0x10: acknowledges its error). False: no answer in time. What
+/// becomes of it is in the next exchanges.
+bool bus_master_request_state(bus_master* master, size_t index, uint8_t state,
+                              uint32_t patience_us);
+
+/// Reads AL status and AL status code of a slave of the last scan. False: no answer in time.
+bool bus_master_status(bus_master* master, size_t index, uint32_t patience_us, uint8_t* status,
+                       uint16_t* code);
 
 /// Closes the interface.
 void bus_master_free(bus_master* master);

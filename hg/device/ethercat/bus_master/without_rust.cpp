@@ -16,10 +16,32 @@ size_t bus_master_scan(bus_master*) { return 0; }
 
 bool bus_master_slave(const bus_master*, size_t, bus_slave*) { return false; }
 
-uint16_t bus_master_start(bus_master*, uint32_t) { return 0; }
+int64_t bus_master_read_object(bus_master*, size_t, uint16_t, uint8_t, uint8_t*, size_t) {
+  return -1;
+}
+
+int64_t bus_master_write_object(bus_master*, size_t, uint16_t, uint8_t, const uint8_t*, size_t) {
+  return -1;
+}
+
+bool bus_master_set_watchdog(bus_master*, size_t, uint32_t) { return false; }
+
+void bus_master_use_sync(bus_master*, size_t) {}
+
+uint16_t bus_master_start(bus_master*, uint32_t, uint32_t) { return 0; }
+
+bool bus_master_sizes(bus_master*, size_t, size_t*, size_t*) { return false; }
+
+void bus_master_set_outputs(bus_master*, size_t, const uint8_t*, size_t) {}
+
+void bus_master_inputs(const bus_master*, size_t, uint8_t*, size_t) {}
 
 int32_t bus_master_exchange(bus_master*, uint32_t) { return -1; }
 
-bool bus_master_status(bus_master*, size_t, uint8_t*, uint16_t*) { return false; }
+uint8_t bus_master_state(const bus_master*, size_t) { return 0; }
+
+bool bus_master_request_state(bus_master*, size_t, uint8_t, uint32_t) { return false; }
+
+bool bus_master_status(bus_master*, size_t, uint32_t, uint8_t*, uint16_t*) { return false; }
 
 void bus_master_free(bus_master*) {}

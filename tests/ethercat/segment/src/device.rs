@@ -1,6 +1,7 @@
 //! What a slave is good for: its objects, what happens in a period, and values set by hand.
 
 use crate::dictionary::{Abort, Access, Dictionary, Mapped};
+use crate::plant::{Demand, Sensed};
 
 pub trait Device {
     fn objects(&self) -> &Dictionary;
@@ -12,6 +13,12 @@ pub trait Device {
     fn step(&mut self, pulses_ns: Option<u32>);
     /// Outputs are no longer valid: the slave has left OP.
     fn stop(&mut self) {}
+    /// What it wants of the plant.
+    fn demand(&self) -> Option<Demand> {
+        None
+    }
+    /// What it senses of the plant.
+    fn feel(&mut self, _sensed: &Sensed) {}
     /// Writes an object on behalf of the master.
     fn download(
         &mut self,

@@ -7,7 +7,8 @@ use crate::device::{common_objects, Device};
 use crate::dictionary::{
     Abort, Access, Dictionary, Mapped, PdoEntry, INPUT_ASSIGNMENT, OUTPUT_ASSIGNMENT,
 };
-use crate::motor::{Motor, Wish, RATED_TORQUE};
+use crate::motor::{Motor, Wish};
+use crate::plant::{Demand, Part, Sensed};
 
 const ERROR_CODE: u16 = 0x603F;
 const CONTROL_WORD: u16 = 0x6040;
@@ -28,6 +29,9 @@ const POSITION_LIMITS: u16 = 0x607D;
 const MOST_SPEED: u16 = 0x6080;
 const TORQUE_OFFSET: u16 = 0x60B2;
 const PERIOD: u16 = 0x60C2;
+const LINK_POSITION: u16 = 0x60E4; // of an encoder behind the gear
+const LINK_VELOCITY: u16 = 0x60E5;
+const JOINT_TORQUE: u16 = 0x2077; // of a sensor behind the gear, 1e-6 Nm
 const FOLLOWING_ERROR: u16 = 0x60F4;
 const DIGITAL_OUTPUTS: u16 = 0x60FE;
 const TARGET_VELOCITY: u16 = 0x60FF;
@@ -78,7 +82,10 @@ impl State {
 
 pub struct Drive {
     objects: Dictionary,
-    counts_per_rad: f64,
+    counts_per_rad: f64, // of a gantry axis per m
+    rated_torque: f64,   // Nm
+    part: Part,
+    has_plant: bool, // which moves it instead of its motor
     motor: Motor,
     state: State,
     last_control: u16,
@@ -94,18 +101,35 @@ pub enum Mapping {
     Free,
     /// Position only, with a gap; the master must take it as it is.
     Fixed,
+    /// Torque, and the sensors behind the gear.
+    Joint,
+}
+
+/// What a drive is made of.
+pub struct DriveOptions {
+    pub counts_per_turn: f64,
+    pub mapping: Mapping,
+    pub rated_torque: f64, // Nm
+    /// What it moves of a plant.
+    pub part: Part,
 }
 
 impl Drive {
-    pub fn new(name: &str, identity: [u32; 4], counts_per_turn: f64, mapping: Mapping) -> Drive {
+    pub fn new(name: &str, identity: [u32; 4], options: &DriveOptions) -> Drive {
         let mut objects = common_objects(0x0002_0192, name, identity);
         add_values(&mut objects);
-        add_settings(&mut objects, counts_per_turn);
-        add_mapping(&mut objects, mapping);
+        add_settings(&mut objects, options);
+        add_mapping(&mut objects, options.mapping);
         let motor = Motor { brake_is_closed: true, ..Motor::default() };
         let mut drive = Drive {
             objects,
-            counts_per_rad: counts_per_turn / TAU,
+            counts_per_rad: match options.part {
+                Part::Axis(_) => options.counts_per_turn,
+                _ => options.counts_per_turn / TAU,
+            },
+            rated_torque: options.rated_torque,
+            part: options.part,
+            has_plant: false,
             motor,
             state: State::SwitchOnDisabled,
             last_control: 0,
@@ -234,8 +258,12 @@ impl Drive {
                 }
             }
             CSV => Wish::Speed(self.objects.get(TARGET_VELOCITY, 0) as f64 / self.counts_per_rad),
-            _ => Wish::Torque(self.objects.get(TARGET_TORQUE, 0) as f64 * RATED_TORQUE / 1000.0),
+            _ => Wish::Torque(self.target_torque()),
         }
+    }
+
+    fn target_torque(&self) -> f64 {
+        self.objects.get(TARGET_TORQUE, 0) as f64 * self.rated_torque / 1000.0
     }
 
     fn supervise(&mut self, is_open: bool, period: f64) {
@@ -275,7 +303,7 @@ impl Drive {
 
     fn publish(&mut self, is_open: bool) {
         let speed = (self.motor.speed * self.counts_per_rad).round() as i64;
-        let torque = (self.motor.torque / RATED_TORQUE * 1000.0).round() as i64;
+        let torque = (self.motor.torque / self.rated_torque * 1000.0).round() as i64;
         let is_following = self.state == State::OperationEnabled && is_open;
         let is_limited = is_following
             && (self.motor.is_limited
@@ -320,9 +348,11 @@ impl Device for Drive {
         self.obey(self.objects.get(CONTROL_WORD, 0) as u16);
         let is_open = self.move_brake();
         let wish = self.wish(is_open);
-        let most = self.objects.get(MOST_TORQUE, 0) as f64 / 1000.0 * RATED_TORQUE;
-        let offset = self.objects.get(TORQUE_OFFSET, 0) as f64 / 1000.0 * RATED_TORQUE;
-        self.motor.step(wish, offset, most, period);
+        if !self.has_plant {
+            let most = self.objects.get(MOST_TORQUE, 0) as f64 / 1000.0 * self.rated_torque;
+            let offset = self.objects.get(TORQUE_OFFSET, 0) as f64 / 1000.0 * self.rated_torque;
+            self.motor.step(wish, offset, most, period);
+        }
         self.stand_still_ends();
         self.supervise(is_open, period);
         self.publish(is_open);
@@ -350,6 +380,38 @@ impl Device for Drive {
             return Err(Abort::OutOfRange);
         }
         self.objects.download(index, subindex, bytes, is_pre_op)
+    }
+    fn demand(&self) -> Option<Demand> {
+        if self.part == Part::None {
+            return None;
+        }
+        let is_following = self.state == State::OperationEnabled && !self.motor.brake_is_closed;
+        let target = match self.objects.get(MODE_NOW, 0) {
+            CST => self.target_torque(),
+            CSV => self.objects.get(TARGET_VELOCITY, 0) as f64 / self.counts_per_rad,
+            _ => 0.0,
+        };
+        let is_ready = !matches!(self.state, State::SwitchOnDisabled);
+        let target = if is_following { target } else { 0.0 };
+        Some(Demand { part: self.part, is_ready, is_following, target })
+    }
+    fn feel(&mut self, sensed: &Sensed) {
+        let counts = |value: f64, scale: f64| (value * scale).round() as i64;
+        match self.part {
+            Part::Joint(i) => {
+                self.motor.angle = sensed.theta_m[i];
+                self.motor.torque = sensed.tau_m[i];
+                let scale = self.counts_per_rad;
+                self.objects.set(LINK_POSITION, 1, counts(sensed.q_m[i], scale));
+                self.objects.set(LINK_VELOCITY, 1, counts(sensed.dq_m[i], scale));
+                self.objects.set(JOINT_TORQUE, 0, counts(sensed.tau_m[i], 1e6));
+            }
+            Part::Axis(i) => self.motor.angle = sensed.q_p[i],
+            Part::None => return,
+        }
+        self.has_plant = true;
+        let is_open = !self.motor.brake_is_closed;
+        self.publish(is_open);
     }
     fn channels(&self) -> &'static [&'static str] {
         &["load"]
@@ -396,13 +458,16 @@ fn add_values(objects: &mut Dictionary) {
     ] {
         objects.add(index, 0, &[0; 4][..bytes], access, mapped);
     }
+    for (index, subindex) in [(LINK_POSITION, 1), (LINK_VELOCITY, 1), (JOINT_TORQUE, 0)] {
+        objects.add(index, subindex, &[0; 4], ReadOnly, AsInput);
+    }
 }
 
-fn add_settings(objects: &mut Dictionary, counts_per_turn: f64) {
+fn add_settings(objects: &mut Dictionary, options: &DriveOptions) {
     use Access::{ReadOnly, ReadWrite};
-    let window = (counts_per_turn / 4.0) as u32;
+    let window = (options.counts_per_turn / 4.0) as u32;
     let far = i32::MAX;
-    let rated = (RATED_TORQUE * 1000.0) as u32; // mNm
+    let rated = (options.rated_torque * 1000.0) as u32; // mNm
     let modes = 1u32 << 7 | 1 << 8 | 1 << 9;
     let settings: [(u16, u8, Vec<u8>, Access); 14] = [
         (QUICK_STOP_OPTION, 0, 2i16.to_le_bytes().into(), ReadWrite),
@@ -462,6 +527,16 @@ fn add_mapping(objects: &mut Dictionary, mapping: Mapping) {
             objects.add_pdo(0x1601, &few_outputs);
             objects.add_pdo(0x1A00, &inputs);
             objects.add_pdo(0x1A01, &few_inputs);
+        }
+        Mapping::Joint => {
+            let outputs = with(&[(CONTROL_WORD, 16), (TARGET_TORQUE, 16), (MODE, 8), (0, 8)]);
+            let mut inputs =
+                with(&[(STATUS_WORD, 16), (ERROR_CODE, 16), (MODE_NOW, 8), (0, 8), (POSITION, 32)]);
+            for (index, subindex) in [(LINK_POSITION, 1), (LINK_VELOCITY, 1), (JOINT_TORQUE, 0)] {
+                inputs.push(PdoEntry { index, subindex, bits: 32 });
+            }
+            objects.add_fixed_pdo(0x1600, &outputs);
+            objects.add_fixed_pdo(0x1A00, &inputs);
         }
         Mapping::Fixed => {
             objects.add_fixed_pdo(0x1600, &few_outputs);

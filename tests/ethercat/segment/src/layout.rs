@@ -2,7 +2,8 @@
 
 use crate::clock::Clock;
 use crate::device::Device;
-use crate::drive::{Drive, Mapping};
+use crate::drive::{Drive, DriveOptions, Mapping};
+use crate::plant::{self, Part};
 use crate::sensors::{DigitalIo, Sensor};
 use crate::sii::Identity;
 use crate::slave::Slave;
@@ -12,6 +13,10 @@ const KINDS: [&str; 4] = ["drive", "imu", "force", "io"];
 const TYPES: [&str; 4] = ["CiA 402 drive", "inertial unit", "force sensor", "digital I/O"];
 const VENDOR: u32 = 0x00FF_FF00; // not given to anyone
 const COUNTS_PER_TURN: f64 = 1_048_576.0;
+const RATED_TORQUE: f64 = 1.0; // Nm
+
+const KEYS: &str = "vendor, product, revision, serial, drift";
+const DRIVE_KEYS: &str = "turn, rated, mapping, joint, axis";
 
 /// What a line of the file says.
 struct Entry<'a> {
@@ -19,8 +24,7 @@ struct Entry<'a> {
     name: &'a str,
     identity: Identity,
     drift_ppm: f64,
-    counts_per_turn: f64,
-    mapping: Mapping,
+    drive: DriveOptions,
 }
 
 /// The slaves of a file's text, or what is wrong with it and where.
@@ -63,8 +67,12 @@ fn parse(line: &str, position: usize) -> Result<Entry<'_>, String> {
             serial: position as u32 + 1,
         },
         drift_ppm: 0.0,
-        counts_per_turn: COUNTS_PER_TURN,
-        mapping: Mapping::Free,
+        drive: DriveOptions {
+            counts_per_turn: COUNTS_PER_TURN,
+            mapping: Mapping::Free,
+            rated_torque: RATED_TORQUE,
+            part: Part::None,
+        },
     };
     for word in words {
         let (key, value) =
@@ -81,24 +89,37 @@ fn set(entry: &mut Entry, key: &str, value: &str) -> Result<(), String> {
         "revision" => entry.identity.revision = whole(key, value)?,
         "serial" => entry.identity.serial = whole(key, value)?,
         "drift" => entry.drift_ppm = number(key, value, -1000.0, 1000.0)?,
-        "turn" if entry.kind == 0 => {
-            entry.counts_per_turn = number(key, value, 100.0, 268_435_456.0)?;
-        }
-        "mapping" if entry.kind == 0 => {
-            entry.mapping = match value {
-                "free" => Mapping::Free,
-                "fixed" => Mapping::Fixed,
-                _ => return Err(format!("mapping: expected free or fixed, got '{value}'")),
-            }
-        }
-        _ => {
-            return Err(format!(
-                "unknown key '{key}', expected vendor, product, revision, serial, drift and, of a \
-                 drive, turn, mapping"
-            ))
-        }
+        _ if entry.kind == 0 => return set_drive(&mut entry.drive, key, value),
+        _ => return Err(format!("unknown key '{key}', expected {KEYS}")),
     }
     Ok(())
+}
+
+fn set_drive(drive: &mut DriveOptions, key: &str, value: &str) -> Result<(), String> {
+    match key {
+        "turn" => drive.counts_per_turn = number(key, value, 100.0, 268_435_456.0)?,
+        "rated" => drive.rated_torque = number(key, value, 0.001, 10_000.0)?,
+        "joint" => drive.part = Part::Joint(place(key, value, plant::MOST_JOINTS)?),
+        "axis" => drive.part = Part::Axis(place(key, value, plant::MOST_AXES)?),
+        "mapping" => {
+            drive.mapping = match value {
+                "free" => Mapping::Free,
+                "fixed" => Mapping::Fixed,
+                "joint" => Mapping::Joint,
+                _ => return Err(format!("mapping: expected free, fixed or joint, got '{value}'")),
+            }
+        }
+        _ => return Err(format!("unknown key '{key}', expected {KEYS}, {DRIVE_KEYS}")),
+    }
+    Ok(())
+}
+
+// counted from 1 in the file
+fn place(key: &str, value: &str, most: usize) -> Result<usize, String> {
+    match value.parse() {
+        Ok(place) if (1..=most).contains(&place) => Ok(place - 1),
+        _ => Err(format!("{key}: expected 1 to {most}, got '{value}'")),
+    }
 }
 
 fn whole(key: &str, value: &str) -> Result<u32, String> {
@@ -126,7 +147,7 @@ fn make(entry: &Entry, position: usize) -> Slave {
     let numbers = [id.vendor, id.product, id.revision, id.serial];
     let name = TYPES[entry.kind];
     let device: Box<dyn Device> = match KINDS[entry.kind] {
-        "drive" => Box::new(Drive::new(name, numbers, entry.counts_per_turn, entry.mapping)),
+        "drive" => Box::new(Drive::new(name, numbers, &entry.drive)),
         "imu" => Box::new(Sensor::inertial(name, numbers)),
         "force" => Box::new(Sensor::force(name, numbers)),
         _ => Box::new(DigitalIo::new()),

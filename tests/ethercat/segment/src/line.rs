@@ -27,6 +27,8 @@ pub struct FrameFaults {
 
 pub struct Line {
     pub slaves: Vec<Slave>,
+    /// The last frame had process data.
+    pub has_exchanged: bool,
     reached: usize, // slaves before the open cable
     pub faults: FrameFaults,
 }
@@ -91,7 +93,12 @@ impl Datagram<'_> {
 
 impl Line {
     pub fn new(slaves: Vec<Slave>) -> Line {
-        let mut line = Line { reached: slaves.len(), slaves, faults: FrameFaults::default() };
+        let mut line = Line {
+            reached: slaves.len(),
+            slaves,
+            has_exchanged: false,
+            faults: FrameFaults::default(),
+        };
         line.connect(line.slaves.len());
         line
     }
@@ -124,6 +131,7 @@ impl Line {
         }
         let end = (ETHERNET_BYTES + 2 + usize::from(header & 0x07FF)).min(frame.len());
         let has_process_data = self.pass_datagrams(&mut frame[ETHERNET_BYTES + 2..end], now_ns);
+        self.has_exchanged = has_process_data;
         // the first slave marks frames that have come back
         if self.reached > 0 {
             frame[6] |= 0x02;

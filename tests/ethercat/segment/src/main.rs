@@ -1,8 +1,9 @@
 //! A simulated EtherCAT segment: answers the frames of a master on a network interface as slaves in
 //! a line would, and makes faults on purpose (docs/reference/ethercat_segment.md).
 //!
-//! segment INTERFACE LAYOUT
+//! segment INTERFACE LAYOUT [HOST:PORT]
 //!
+//! HOST:PORT is a simulated machine (`hapticgiant simulate --fast`), which the drives then move.
 //! Commands come by standard input, whose end ends the program.
 
 mod clock;
@@ -17,6 +18,7 @@ mod line;
 mod link;
 mod mailbox;
 mod motor;
+mod plant;
 mod registers;
 mod sensors;
 mod sii;
@@ -28,12 +30,14 @@ use std::time::{Duration, Instant};
 
 use line::{Fate, Line};
 use link::Link;
+use plant::Plant;
 
 const LOOK: Duration = Duration::from_millis(5); // at watchdogs, where no frames come
 
 struct Segment {
     line: Line,
     link: Link,
+    plant: Option<Plant>,
     started: Instant,
     late: VecDeque<(Instant, Vec<u8>)>,
     typed: Vec<u8>, // an unfinished line of standard input
@@ -76,7 +80,8 @@ impl Segment {
     fn answer(&mut self) -> io::Result<()> {
         let now_ns = self.now_ns();
         while let Some(frame) = self.link.receive()? {
-            match self.line.pass(frame, now_ns) {
+            let fate = self.line.pass(frame, now_ns);
+            match fate {
                 Fate::Lost => {}
                 Fate::Late(us) => {
                     let due = Instant::now() + Duration::from_micros(us);
@@ -86,6 +91,9 @@ impl Segment {
                     let answer = frame.to_vec();
                     self.link.send(&answer)?;
                 }
+            }
+            if let Some(plant) = &mut self.plant {
+                plant.follow(&mut self.line)?;
             }
         }
         Ok(())
@@ -124,16 +132,21 @@ fn say(text: &str) -> Result<(), String> {
 
 fn start() -> Result<(), String> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [interface, file] = &arguments[..] else {
-        return Err("expected: segment INTERFACE LAYOUT".to_string());
+    let (interface, file, machine) = match &arguments[..] {
+        [interface, file] => (interface, file, None),
+        [interface, file, machine] => (interface, file, Some(machine)),
+        _ => return Err("expected: segment INTERFACE LAYOUT [HOST:PORT]".to_string()),
     };
     let text = std::fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
     let slaves = layout::read(&text).map_err(|problem| format!("{file}: {problem}"))?;
     let link = Link::open(interface).map_err(|error| format!("{interface}: {error}"))?;
-    say(&format!("{} slaves on {interface}", slaves.len()))?;
+    let mut line = Line::new(slaves);
+    let plant = machine.map(|address| Plant::behind(&mut line, address)).transpose()?;
+    say(&format!("{} slaves on {interface}", line.slaves.len()))?;
     let mut segment = Segment {
-        line: Line::new(slaves),
+        line,
         link,
+        plant,
         started: Instant::now(),
         late: VecDeque::new(),
         typed: Vec::new(),

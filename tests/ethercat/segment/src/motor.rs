@@ -1,6 +1,5 @@
 //! A motor with inertia, friction, a brake and a load, and the loops of its drive. SI units.
 
-pub const RATED_TORQUE: f64 = 1.0; // Nm
 const INERTIA: f64 = 2e-4; // kg m^2, with what it drives
 const VISCOUS: f64 = 1e-3; // Nm s/rad
 const DRY: f64 = 0.01; // Nm

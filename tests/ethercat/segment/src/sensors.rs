@@ -4,6 +4,7 @@ use crate::device::{common_objects, Device};
 use crate::dictionary::{
     Access, Dictionary, Mapped, PdoEntry, INPUT_ASSIGNMENT, OUTPUT_ASSIGNMENT,
 };
+use crate::plant::{Demand, Part, Sensed};
 
 const VALUES: u16 = 0x6000; // six, 32 bit with sign
 const STATUS: u16 = 0x6010;
@@ -74,6 +75,12 @@ impl Device for Sensor {
         let raw = raw.clamp(f64::from(i32::MIN), f64::from(i32::MAX));
         self.objects.set(VALUES, channel as u8 + 1, raw as i64);
     }
+    fn feel(&mut self, sensed: &Sensed) {
+        let values = if self.channels[0] == "fx" { &sensed.wrench } else { &sensed.motion };
+        for (channel, &value) in values.iter().enumerate() {
+            self.set_channel(channel, value);
+        }
+    }
     // its status says so, and its counter of samples stands
     fn trip(&mut self, code: u16) -> bool {
         self.is_broken = code != 0;
@@ -127,6 +134,17 @@ impl Device for DigitalIo {
     fn stop(&mut self) {
         for subindex in 1..=8 {
             self.objects.set(DIGITAL_OUTPUTS, subindex, 0);
+        }
+    }
+    // the reset button is its first output
+    fn demand(&self) -> Option<Demand> {
+        let is_pressed = self.objects.get(DIGITAL_OUTPUTS, 1) != 0;
+        let target = if is_pressed { 1.0 } else { 0.0 };
+        Some(Demand { part: Part::None, is_ready: true, is_following: true, target })
+    }
+    fn feel(&mut self, sensed: &Sensed) {
+        for (channel, &is_set) in sensed.switches.iter().enumerate() {
+            self.set_channel(channel, f64::from(u8::from(is_set)));
         }
     }
     fn channels(&self) -> &'static [&'static str] {

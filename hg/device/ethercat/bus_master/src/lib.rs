@@ -7,9 +7,9 @@ pub mod pump;
 
 use std::ffi::{c_char, CStr, CString};
 use std::panic::{catch_unwind, AssertUnwindSafe};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use ethercrab::error::{Error, Item};
+use ethercrab::error::{Error, Item, MailboxError};
 use ethercrab::subdevice_group::{Op, PreOp};
 use ethercrab::{
     AlStatusCode, Command, DefaultLock, MainDevice, MainDeviceConfig, PduStorage, SubDeviceGroup,
@@ -28,13 +28,23 @@ const NAME_BYTES: usize = 64;
 const WATCHDOG_DIVIDER: u16 = 0x0400;
 const WATCHDOG_TIME: u16 = 0x0420;
 const WATCHDOG_TICK: u16 = 2498; // 100 us
+const AL_CONTROL: u16 = 0x0120;
 const AL_STATUS: u16 = 0x0130;
 const AL_STATUS_CODE: u16 = 0x0134;
 const ERROR_FLAG: u16 = 0x10;
+const SYSTEM_TIME: u16 = 0x0910;
+const SYNC_ACTIVATION: u16 = 0x0981;
+const SYNC_START: u16 = 0x0990;
+const SYNC0_PERIOD: u16 = 0x09A0;
+const SYNC0_ON: u8 = 3; // cyclic operation, with pulses
+const SYNC_AHEAD_NS: u64 = 100_000_000; // of the first pulse
+const OP: u8 = 0x08;
+const EXCHANGE_PERIOD: Duration = Duration::from_millis(1); // shortest, on the way to OP
 const SECOND: Duration = Duration::from_secs(1);
 const ANSWER: Duration = Duration::from_millis(500); // of one frame or one step
 const TO_OP: Duration = Duration::from_secs(10); // ETG.1020
 const PATIENCE: Duration = Duration::from_secs(60);
+const NO_ANSWER: i64 = -1;
 
 /// One slave as in `bus_master.h`.
 #[allow(non_camel_case_types)]
@@ -57,6 +67,7 @@ pub struct bus_slave {
 pub struct bus_master {
     open: Option<Bus>,
     slaves: Vec<bus_slave>,
+    synced: Vec<bool>, // by slave: gets sync pulses
     error: CString,
 }
 
@@ -73,7 +84,8 @@ struct Bus {
     device: &'static MainDevice<'static>,
     interface: String,
     stage: Stage,
-    expected: u16, // working counter of an exchange
+    expected: u16,             // working counter of an exchange
+    states: [u8; MOST_SLAVES], // AL states by the last exchange; 0: no answer
 }
 
 impl Bus {
@@ -104,6 +116,7 @@ impl Bus {
             interface: interface.to_string(),
             stage: Stage::Unknown,
             expected: 0,
+            states: [0; MOST_SLAVES],
         })
     }
 
@@ -126,14 +139,17 @@ impl Bus {
         let mut slaves = Vec::new();
         for slave in group.iter(device) {
             let id = slave.identity();
-            let (status, _) = self.status(slave.configured_address())?;
+            let address = slave.configured_address();
+            let (status, _) = self
+                .status(address, PATIENCE)
+                .ok_or_else(|| format!("slave {address:#06x}: no answer"))?;
             slaves.push(bus_slave {
                 name: name_of(slave.name()),
                 vendor: id.vendor_id,
                 product: id.product_id,
                 revision: id.revision,
                 serial: id.serial,
-                address: slave.configured_address(),
+                address,
                 delay_ns: slave.propagation_delay(),
                 has_clock: slave.dc_support().any(),
                 status: (status & 0x1F) as u8,
@@ -143,11 +159,15 @@ impl Bus {
         Ok(slaves)
     }
 
-    fn start(&mut self, watchdog_ms: u32) -> Result<(), String> {
+    /// To OP, with sync pulses of this period (0: none) for some slaves.
+    fn start(&mut self, watchdog_ms: u32, sync_ns: u32, synced: &[u16]) -> Result<(), String> {
         let Stage::PreOp(group) = std::mem::replace(&mut self.stage, Stage::Unknown) else {
             return Err(format!("{}: scan comes before start", self.interface));
         };
         let device = self.device;
+        for &address in synced {
+            self.set_sync(address, synced[0], sync_ns)?;
+        }
         let to_safe_op = async { group.into_pre_op_pdi(device).await?.into_safe_op(device).await };
         let group = match self.pump.run(to_safe_op, PATIENCE) {
             Some(Ok(group)) => group,
@@ -166,17 +186,48 @@ impl Bus {
         for address in watched {
             self.set_watchdog(address, watchdog_ms)?;
         }
-        let to_op = async {
-            let group = group.request_into_op(device).await?;
-            while !group.tx_rx_sync_system_time(device).await?.all_op() {}
-            Ok::<_, Error>(group)
-        };
-        match self.pump.run(to_op, TO_OP) {
+        match self.pump.run(group.request_into_op(device), PATIENCE) {
             Some(Ok(group)) => self.stage = Stage::Op(group),
             Some(Err(error)) => return Err(self.explain(&error.to_string())),
-            None => return Err(self.explain("no end of the way to OP")),
+            None => return Err(self.explain("no answer on the way to OP")),
         }
-        Ok(())
+        self.await_op(Duration::from_nanos(u64::from(sync_ns)).max(EXCHANGE_PERIOD))
+    }
+
+    /// Exchanges process data in the rhythm of the pulses until all slaves are in OP.
+    fn await_op(&mut self, period: Duration) -> Result<(), String> {
+        let begin = Instant::now();
+        let mut next = begin;
+        while begin.elapsed() < TO_OP {
+            next += period;
+            std::thread::sleep(next.saturating_duration_since(Instant::now()));
+            let is_complete = self.exchange(ANSWER).is_some();
+            let count = usize::from(self.device.num_subdevices() as u16);
+            if is_complete && self.states[..count].iter().all(|&state| state == OP) {
+                return Ok(());
+            }
+        }
+        Err(self.explain("no end of the way to OP"))
+    }
+
+    /// Sync pulses in step with the clock of the slave `first`.
+    fn set_sync(&mut self, address: u16, first: u16, period_ns: u32) -> Result<(), String> {
+        let device = self.device;
+        let set = async {
+            let now = Command::fprd(first, SYSTEM_TIME).receive::<u64>(device).await?;
+            let period = u64::from(period_ns);
+            let start = (now + SYNC_AHEAD_NS) / period * period;
+            Command::fpwr(address, SYNC_ACTIVATION).send(device, 0u8).await?;
+            Command::fpwr(address, SYNC_START).send(device, start).await?;
+            Command::fpwr(address, SYNC0_PERIOD).send(device, period_ns).await?;
+            Command::fpwr(address, SYNC_ACTIVATION).send(device, SYNC0_ON).await?;
+            Command::fprd(address, SYNC0_PERIOD).receive::<u32>(device).await
+        };
+        match self.pump.run(set, PATIENCE) {
+            Some(Ok(found)) if found == period_ns => Ok(()),
+            Some(Err(error)) => Err(format!("slave {address:#06x}: sync pulses: {error}")),
+            _ => Err(format!("slave {address:#06x}: its sync pulses cannot be set")),
+        }
     }
 
     /// Sets the watchdog of process data and reads it back.
@@ -200,11 +251,63 @@ impl Bus {
         }
     }
 
+    /// Reads an object of a slave in PRE-OP; an abort code, or NO_ANSWER.
+    fn read_object(
+        &mut self,
+        slave: usize,
+        (index, subindex): (u16, u8),
+        data: &mut [u8],
+    ) -> Result<(), i64> {
+        let Stage::PreOp(group) = &self.stage else { return Err(NO_ANSWER) };
+        let slave = group.iter(self.device).nth(slave).ok_or(NO_ANSWER)?;
+        let read = async {
+            match data.len() {
+                1 => data.copy_from_slice(&[slave.sdo_read::<u8>(index, subindex).await?]),
+                2 => data.copy_from_slice(&slave.sdo_read::<[u8; 2]>(index, subindex).await?),
+                4 => data.copy_from_slice(&slave.sdo_read::<[u8; 4]>(index, subindex).await?),
+                _ => return Err(Error::Internal),
+            }
+            Ok(())
+        };
+        self.pump.run(read, PATIENCE).ok_or(NO_ANSWER)?.map_err(abort_code)
+    }
+
+    /// Writes an object of a slave in PRE-OP; an abort code, or NO_ANSWER.
+    fn write_object(
+        &mut self,
+        slave: usize,
+        (index, subindex): (u16, u8),
+        data: &[u8],
+    ) -> Result<(), i64> {
+        let Stage::PreOp(group) = &self.stage else { return Err(NO_ANSWER) };
+        let slave = group.iter(self.device).nth(slave).ok_or(NO_ANSWER)?;
+        let write = async {
+            match *data {
+                [a] => slave.sdo_write(index, subindex, a).await,
+                [a, b] => slave.sdo_write(index, subindex, [a, b]).await,
+                [a, b, c, d] => slave.sdo_write(index, subindex, [a, b, c, d]).await,
+                _ => Err(Error::Internal),
+            }
+        };
+        self.pump.run(write, PATIENCE).ok_or(NO_ANSWER)?.map_err(abort_code)
+    }
+
+    /// Asks a slave for another state; its answer is in the next exchanges.
+    fn request_state(&mut self, address: u16, state: u16, patience: Duration) -> bool {
+        let request = Command::fpwr(address, AL_CONTROL).send(self.device, state);
+        matches!(self.pump.run(request, patience), Some(Ok(())))
+    }
+
     /// Working counter of one exchange of process data; None: no answer in time.
     fn exchange(&mut self, patience: Duration) -> Option<u16> {
         let Stage::Op(group) = &self.stage else { return None };
         match self.pump.run(group.tx_rx_sync_system_time(self.device), patience) {
-            Some(Ok(response)) => Some(response.working_counter),
+            Some(Ok(response)) => {
+                for (known, found) in self.states.iter_mut().zip(&response.subdevice_states) {
+                    *known = u8::from(*found);
+                }
+                Some(response.working_counter)
+            }
             _ => None,
         }
     }
@@ -221,19 +324,15 @@ impl Bus {
         }
     }
 
-    /// AL status and its code of one slave.
-    fn status(&mut self, address: u16) -> Result<(u16, u16), String> {
+    /// AL status and its code of one slave; None: no answer in time.
+    fn status(&mut self, address: u16, patience: Duration) -> Option<(u16, u16)> {
         let device = self.device;
         let ask = async {
             let status = Command::fprd(address, AL_STATUS).receive::<u16>(device).await?;
             let code = Command::fprd(address, AL_STATUS_CODE).receive::<u16>(device).await?;
             Ok::<_, Error>((status, code))
         };
-        match self.pump.run(ask, PATIENCE) {
-            Some(Ok(found)) => Ok(found),
-            Some(Err(error)) => Err(format!("slave {address:#06x}: {error}")),
-            None => Err(format!("slave {address:#06x}: no answer")),
-        }
+        self.pump.run(ask, patience)?.ok()
     }
 
     /// Which slaves report an error, where there are some; else what ethercrab says.
@@ -242,8 +341,8 @@ impl Bus {
         let mut named = Vec::new();
         for i in 0..count {
             let address = FIRST_ADDRESS + i;
-            match self.status(address) {
-                Ok((status, code)) if status & ERROR_FLAG != 0 => named.push(format!(
+            match self.status(address, PATIENCE) {
+                Some((status, code)) if status & ERROR_FLAG != 0 => named.push(format!(
                     "slave {} of {count} ({address:#06x}) stays in {}: AL status code {code:#06x}, \
                      {}",
                     i + 1,
@@ -272,6 +371,13 @@ fn state_name(status: u16) -> &'static str {
     }
 }
 
+fn abort_code(error: Error) -> i64 {
+    match error {
+        Error::Mailbox(MailboxError::Aborted { code, .. }) => i64::from(u32::from(code)),
+        _ => NO_ANSWER,
+    }
+}
+
 fn name_of(text: &str) -> [u8; NAME_BYTES] {
     let mut name = [0; NAME_BYTES];
     let length = text.len().min(NAME_BYTES - 1);
@@ -295,8 +401,12 @@ fn guarded<T>(action: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
 #[no_mangle]
 pub unsafe extern "C" fn bus_master_open(interface: *const c_char) -> *mut bus_master {
     let interface = CStr::from_ptr(interface).to_string_lossy();
-    let mut master =
-        Box::new(bus_master { open: None, slaves: Vec::new(), error: CString::default() });
+    let mut master = Box::new(bus_master {
+        open: None,
+        slaves: Vec::new(),
+        synced: Vec::new(),
+        error: CString::default(),
+    });
     match guarded(|| Bus::open(&interface)) {
         Ok(bus) => master.open = Some(bus),
         Err(message) => master.fail(message),
@@ -318,7 +428,10 @@ pub unsafe extern "C" fn bus_master_scan(master: *mut bus_master) -> usize {
     let master = &mut *master;
     let Some(bus) = &mut master.open else { return 0 };
     match guarded(|| bus.scan()) {
-        Ok(slaves) => master.slaves = slaves,
+        Ok(slaves) => {
+            master.synced = vec![false; slaves.len()];
+            master.slaves = slaves;
+        }
         Err(message) => {
             master.slaves.clear();
             master.fail(message);
@@ -343,17 +456,139 @@ pub unsafe extern "C" fn bus_master_slave(
 }
 
 /// # Safety
+/// `master` comes from `bus_master_open`; `data` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_read_object(
+    master: *mut bus_master,
+    index: usize,
+    object: u16,
+    subindex: u8,
+    data: *mut u8,
+    size: usize,
+) -> i64 {
+    let Some(bus) = &mut (*master).open else { return NO_ANSWER };
+    let data = std::slice::from_raw_parts_mut(data, size);
+    let done = catch_unwind(AssertUnwindSafe(|| bus.read_object(index, (object, subindex), data)));
+    done.unwrap_or(Err(NO_ANSWER)).err().unwrap_or(0)
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`; `data` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_write_object(
+    master: *mut bus_master,
+    index: usize,
+    object: u16,
+    subindex: u8,
+    data: *const u8,
+    size: usize,
+) -> i64 {
+    let Some(bus) = &mut (*master).open else { return NO_ANSWER };
+    let data = std::slice::from_raw_parts(data, size);
+    let done = catch_unwind(AssertUnwindSafe(|| bus.write_object(index, (object, subindex), data)));
+    done.unwrap_or(Err(NO_ANSWER)).err().unwrap_or(0)
+}
+
+/// # Safety
 /// `master` comes from `bus_master_open`.
 #[no_mangle]
-pub unsafe extern "C" fn bus_master_start(master: *mut bus_master, watchdog_ms: u32) -> u16 {
+pub unsafe extern "C" fn bus_master_set_watchdog(
+    master: *mut bus_master,
+    index: usize,
+    watchdog_ms: u32,
+) -> bool {
+    let master = &mut *master;
+    let (Some(bus), Some(slave)) = (&mut master.open, master.slaves.get(index)) else {
+        return false;
+    };
+    guarded(|| bus.set_watchdog(slave.address, watchdog_ms)).is_ok()
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_use_sync(master: *mut bus_master, index: usize) {
+    if let Some(is_synced) = (&mut (*master).synced).get_mut(index) {
+        *is_synced = true;
+    }
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_start(
+    master: *mut bus_master,
+    watchdog_ms: u32,
+    sync_ns: u32,
+) -> u16 {
     let master = &mut *master;
     let Some(bus) = &mut master.open else { return 0 };
-    match guarded(|| bus.start(watchdog_ms)) {
+    let synced: Vec<u16> = master
+        .slaves
+        .iter()
+        .zip(&master.synced)
+        .filter(|(_, &is_synced)| is_synced)
+        .map(|(slave, _)| slave.address)
+        .collect();
+    match guarded(|| bus.start(watchdog_ms, sync_ns, &synced)) {
         Ok(()) => bus.expected,
         Err(message) => {
             master.fail(message);
             0
         }
+    }
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`; `outputs` and `inputs` point to numbers.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_sizes(
+    master: *mut bus_master,
+    index: usize,
+    outputs: *mut usize,
+    inputs: *mut usize,
+) -> bool {
+    let Some(bus) = &(*master).open else { return false };
+    let Stage::Op(group) = &bus.stage else { return false };
+    let Ok(slave) = group.subdevice(bus.device, index) else { return false };
+    *outputs = slave.outputs_raw().len();
+    *inputs = slave.inputs_raw().len();
+    true
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`; `data` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_set_outputs(
+    master: *mut bus_master,
+    index: usize,
+    data: *const u8,
+    size: usize,
+) {
+    let Some(bus) = &(*master).open else { return };
+    let Stage::Op(group) = &bus.stage else { return };
+    let Ok(slave) = group.subdevice(bus.device, index) else { return };
+    let mut outputs = slave.outputs_raw_mut();
+    if outputs.len() == size {
+        outputs.copy_from_slice(std::slice::from_raw_parts(data, size));
+    }
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`; `data` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_inputs(
+    master: *const bus_master,
+    index: usize,
+    data: *mut u8,
+    size: usize,
+) {
+    let Some(bus) = &(*master).open else { return };
+    let Stage::Op(group) = &bus.stage else { return };
+    let Ok(slave) = group.subdevice(bus.device, index) else { return };
+    let inputs = slave.inputs_raw();
+    if inputs.len() == size {
+        std::slice::from_raw_parts_mut(data, size).copy_from_slice(&inputs);
     }
 }
 
@@ -368,11 +603,38 @@ pub unsafe extern "C" fn bus_master_exchange(master: *mut bus_master, patience_u
 }
 
 /// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_state(master: *const bus_master, index: usize) -> u8 {
+    let Some(bus) = &(*master).open else { return 0 };
+    bus.states.get(index).copied().unwrap_or(0)
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_request_state(
+    master: *mut bus_master,
+    index: usize,
+    state: u8,
+    patience_us: u32,
+) -> bool {
+    let master = &mut *master;
+    let (Some(bus), Some(slave)) = (&mut master.open, master.slaves.get(index)) else {
+        return false;
+    };
+    let patience = Duration::from_micros(u64::from(patience_us));
+    catch_unwind(AssertUnwindSafe(|| bus.request_state(slave.address, u16::from(state), patience)))
+        .unwrap_or(false)
+}
+
+/// # Safety
 /// `master` comes from `bus_master_open`; `status` and `code` point to numbers.
 #[no_mangle]
 pub unsafe extern "C" fn bus_master_status(
     master: *mut bus_master,
     index: usize,
+    patience_us: u32,
     status: *mut u8,
     code: *mut u16,
 ) -> bool {
@@ -380,14 +642,12 @@ pub unsafe extern "C" fn bus_master_status(
     let (Some(bus), Some(slave)) = (&mut master.open, master.slaves.get(index)) else {
         return false;
     };
-    match guarded(|| bus.status(slave.address)) {
-        Ok((found, found_code)) => {
-            *status = (found & 0x1F) as u8;
-            *code = found_code;
-            true
-        }
-        Err(_) => false,
-    }
+    let patience = Duration::from_micros(u64::from(patience_us));
+    let found = catch_unwind(AssertUnwindSafe(|| bus.status(slave.address, patience)));
+    let Some((found, found_code)) = found.ok().flatten() else { return false };
+    *status = (found & 0x1F) as u8;
+    *code = found_code;
+    true
 }
 
 /// # Safety

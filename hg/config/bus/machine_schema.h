@@ -1,0 +1,162 @@
+/// Description of machine.yaml.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hg/config/schema.h"
+#include "hg/device/ethercat/machine.h"
+
+namespace hg::config {
+
+inline constexpr std::uint32_t kMostObject = 0xFFFF;
+inline constexpr std::uint32_t kMostSubindex = 0xFF;
+inline constexpr std::uint32_t kAnyNumber32 = 0xFFFFFFFF;
+
+/// Whether one of the entries has this meaning.
+template <typename Meaning>
+bool tells(const std::vector<ethercat::Entry<Meaning>>& entries, Meaning meaning) {
+  return std::ranges::any_of(
+      entries, [&](const ethercat::Entry<Meaning>& entry) { return entry.meaning == meaning; });
+}
+
+/// What a drive in this mode is told.
+inline ethercat::Output target_of(ethercat::DriveMode mode) {
+  switch (mode) {
+    case ethercat::DriveMode::kCsp:
+      return ethercat::Output::kTargetPosition;
+    case ethercat::DriveMode::kCsv:
+      return ethercat::Output::kTargetVelocity;
+    case ethercat::DriveMode::kCst:
+      return ethercat::Output::kTargetTorque;
+    case ethercat::DriveMode::kNone:
+      break;
+  }
+  return ethercat::Output::kNothing;
+}
+
+template <class V, typename Meaning>
+void describe(V& v, ethercat::Entry<Meaning>& entry) {
+  const auto meanings = choices_of<Meaning>();
+  v.whole("object", entry.object, kMostObject, "index of the object that is mapped; 0: a gap");
+  v.whole("subindex", entry.subindex, kMostSubindex, "its subindex");
+  v.whole("bits", entry.bits, 32, "its size in the process data", Need::kRequired);
+  v.choice("is", entry.meaning, Choices<Meaning>(meanings), "what it means");
+  v.number("scale", entry.scale, {.lb = -1e3, .ub = 1e3},
+           "SI units (m, rad, Nm, N, degrees Celsius, per s, per s^2) per count; negative: the "
+           "other way round");
+  v.number("offset", entry.offset, {.lb = -1e3, .ub = 1e3}, "SI units at the number 0");
+  v.flag("inverted", entry.is_inverted, "of a switch: 0 says yes");
+  v.rule(entry.bits > 0, "bits", "must be 1 to 32");
+  v.rule(entry.scale != 0.0, "scale", "must not be 0");
+  v.rule(entry.object != 0 || entry.meaning == Meaning::kNothing, "is",
+         "a gap (object 0) has no meaning");
+}
+
+template <class V>
+void describe(V& v, ethercat::Setting& setting) {
+  v.whole("object", setting.object, kMostObject, "index of the object", Need::kRequired);
+  v.whole("subindex", setting.subindex, kMostSubindex, "its subindex");
+  v.whole("bits", setting.bits, 32, "its size: 8, 16 or 32", Need::kRequired);
+  v.number("value", setting.value, {.lb = -2147483648.0, .ub = 4294967295.0}, "a whole number",
+           Need::kRequired);
+  v.rule(setting.bits == 8 || setting.bits == 16 || setting.bits == 32, "bits",
+         "must be 8, 16 or 32");
+  v.rule(setting.value == static_cast<double>(static_cast<std::int64_t>(setting.value)), "value",
+         "must be a whole number");
+}
+
+template <class V>
+void describe_drive(V& v, ethercat::Slave& slave, const std::vector<std::string>& joints) {
+  using ethercat::DriveMode;
+  const auto modes = choices_of<DriveMode>();
+  v.name("joint", slave.joint, joints, "a joint of the device",
+         "the joint or gantry axis that this drive moves");
+  v.choice("mode", slave.mode, Choices<DriveMode>(modes),
+           "how this drive is led (CiA 402): csp by positions, csv by velocities, cst by torques");
+  v.rule(v.is_given("joint") == (slave.mode != DriveMode::kNone), "mode",
+         "a drive has a joint and a mode, another slave neither");
+}
+
+template <class V>
+void check_drive(V& v, const ethercat::Slave& slave) {
+  using namespace ethercat;
+  if (slave.mode == DriveMode::kNone) return;
+  const bool sets_mode =
+      tells(slave.outputs, Output::kMode) ||
+      std::ranges::any_of(slave.settings, [](const Setting& s) { return s.object == 0x6060; });
+  v.rule(sets_mode, "outputs", "a drive needs an output 'mode', or a setting of object 0x6060");
+  v.rule(tells(slave.outputs, Output::kControlWord), "outputs",
+         "a drive needs an output 'control_word'");
+  v.rule(tells(slave.outputs, target_of(slave.mode)), "outputs",
+         "the target of its mode is missing: target_position for csp, target_velocity for csv, "
+         "target_torque for cst");
+  v.rule(tells(slave.inputs, Input::kStatusWord), "inputs", "a drive needs an input 'status_word'");
+  v.rule(tells(slave.inputs, Input::kLinkPosition), "inputs",
+         "a drive needs an input 'link_position'");
+}
+
+template <class V>
+void describe(V& v, ethercat::Slave& slave, const std::vector<std::string>& joints) {
+  v.words("name", slave.name, "name of this slave in messages", Need::kRequired);
+  v.whole("vendor", slave.vendor, kAnyNumber32, "identity, as `bus scan` shows it",
+          Need::kRequired);
+  v.whole("product", slave.product, kAnyNumber32, "of this vendor", Need::kRequired);
+  v.whole("revision", slave.revision, kAnyNumber32, "of this product", Need::kRequired);
+  describe_drive(v, slave, joints);
+  v.flag("synchronous", slave.is_synchronous,
+         "gets sync pulses (SYNC0) of the distributed clocks, one per period");
+  v.list(
+      "settings",
+      [&](auto& child) {
+        ethercat::Setting setting;
+        describe(child, setting);
+        slave.settings.push_back(setting);
+      },
+      "objects that are written by SDO at every start, in this order, and read back");
+  v.list(
+      "outputs",
+      [&](auto& child) {
+        ethercat::Entry<ethercat::Output> entry;
+        describe(child, entry);
+        slave.outputs.push_back(entry);
+      },
+      "what this slave is told, in the order of its process data");
+  v.list(
+      "inputs",
+      [&](auto& child) {
+        ethercat::Entry<ethercat::Input> entry;
+        describe(child, entry);
+        slave.inputs.push_back(entry);
+      },
+      "what it tells, likewise");
+  v.rule(ethercat::bits_of(slave.outputs) % 8 == 0, "outputs", "must be whole bytes");
+  v.rule(ethercat::bits_of(slave.inputs) % 8 == 0, "inputs", "must be whole bytes");
+  check_drive(v, slave);
+}
+
+template <class V>
+void describe(V& v, ethercat::Machine& machine, const std::vector<std::string>& joints) {
+  v.words("name", machine.name, "name of the machine", Need::kRequired);
+  v.number(
+      "watchdog_s", machine.watchdog_s, {.lb = 1e-3, .ub = 6.5},
+      "a slave that gets no outputs for so long leaves OP; set and verified at every start, of "
+      "every slave with outputs");
+  v.number("answer_s", machine.answer_s, {.lb = 1e-5, .ub = 1.0},
+           "a frame that takes longer to come back is lost");
+  v.flag("moves_with_frames", machine.moves_with_frames,
+         "a simulated segment, which moves by one period with each frame: `run --fast` is allowed");
+  v.list(
+      "slaves",
+      [&](auto& child) {
+        ethercat::Slave slave;
+        describe(child, slave, joints);
+        machine.slaves.push_back(slave);
+      },
+      "all slaves in the order of the cable", Need::kRequired);
+}
+
+}  // namespace hg::config

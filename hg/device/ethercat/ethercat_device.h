@@ -1,0 +1,117 @@
+/// A machine on an EtherCAT bus as a device.
+///
+/// Set-up (constructor, close()) may block for a bounded time and throw; read() and write() follow
+/// the contract of Device, but read() keeps the period: the device is the clock. Each read() is one
+/// exchange of process data, which carries the last command. Drives are switched on, with closed
+/// brakes, from the first read() on, and enabled while commands have drives on. What the machine
+/// stops itself for becomes a fault, with the slave that it comes from in farewell().
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hg/device/connected_device.h"
+#include "hg/device/ethercat/drive_state.h"
+#include "hg/device/ethercat/machine.h"
+#include "hg/device/ethercat/master.h"
+#include "hg/signals/frames.h"
+
+namespace hg::ethercat {
+
+/// Set-up data of a machine.
+struct EthercatConfig {
+  std::string interface_name;
+  Machine machine;
+  int n_p = 0;  ///< gantry axes of the device
+  int n_m = 0;  ///< joints of its manipulator
+  double rate_Hz = 1000.0;
+  bool is_fast = false;  ///< as fast as it can, for a machine that moves with frames
+};
+
+class EthercatDevice final : public device::ConnectedDevice {
+ public:
+  /// Compares all slaves with the machine, sets them up, and takes them to OP with drives off.
+  /// Throws SetupError with one sentence for each difference.
+  explicit EthercatDevice(const EthercatConfig& config);
+  ~EthercatDevice() override;
+
+  void read(SensorFrame& sensors) noexcept override;
+  void write(const CommandFrame& command) noexcept override;
+
+  /// Switches the drives off and takes the slaves back to PRE-OP, within 0.1 s.
+  void close(FaultCode reason) noexcept override;
+  std::string farewell() const override;
+  LinkCounts counts() const noexcept override { return counts_; }
+
+ private:
+  /// What is known of one slave in operation.
+  struct Station {
+    std::vector<std::uint8_t> outputs, inputs;
+    bool is_drive = false;
+    std::uint16_t status = 0;     ///< status word of a drive
+    std::uint16_t error = 0;      ///< error code of a drive, fault of a sensor
+    std::uint32_t samples = 0;    ///< counter of a sensor
+    bool has_new_samples = true;  ///< it has counted on, or does not count
+    bool has_followed = false;    ///< the drive has followed its target since it was enabled
+  };
+  /// Why the machine has stopped.
+  enum class Cause : std::uint8_t {
+    kNone,
+    kIncomplete,  ///< the monitor has stopped it
+    kLeftOp,
+    kDrive,
+    kDisabled,
+    kSensor,
+    kSilent,
+    kNotFinite,
+  };
+
+  void start();
+  void await_drives();
+  void wait_for_turn() noexcept;
+  void repeat(SensorFrame& sensors) noexcept;
+  void take_lost() noexcept;
+  void take_inputs() noexcept;
+  void take_input(Station& station, const Slave& slave, const Entry<Input>& entry,
+                  std::uint32_t bits) noexcept;
+  void look_at_counter(int counter) noexcept;
+  void note_incomplete(int counter) noexcept;
+  void look_at_states() noexcept;
+  void look_at_drives() noexcept;
+  void look_at_sensors() noexcept;
+  void stop(Cause cause, std::size_t slave, FaultCode fault) noexcept;
+  void recover() noexcept;
+  void look_at_recovery() noexcept;
+  void put_outputs(const CommandFrame* command) noexcept;
+  double output(const Station& station, const Slave& slave, Output meaning,
+                const CommandFrame* command) const noexcept;
+  bool is_finite(const CommandFrame& command) const noexcept;
+
+  EthercatConfig config_;
+  Master master_;
+  std::vector<BusSlave> found_;
+  std::vector<Station> stations_;
+  int expected_ = 0;  ///< working counter of an exchange in which all take part
+  std::uint32_t patience_us_ = 0;
+  std::int64_t period_ns_ = 0;
+  std::int64_t due_ns_ = 0;  ///< start of the next period
+  SensorFrame frame_;        ///< of the last exchange
+  CommandFrame command_;     ///< for the next exchange
+  bool has_command_ = false;
+  std::uint64_t sequence_ = 0;
+  std::uint32_t lost_in_a_row_ = 0, incomplete_in_a_row_ = 0;
+  bool is_in_use_ = false;  ///< the first read() has come: drives are switched on
+  bool was_reset_ = false;  ///< reset button in the last command
+  int recovery_ = 0;        ///< exchanges that are left to recover; 0: does not recover
+  bool is_closed_ = false;
+  // what has stopped the machine; kept for farewell() until it recovers
+  Cause cause_ = Cause::kNone;
+  std::size_t culprit_ = 0;
+  SlaveStatus culprit_status_;
+  int culprit_counter_ = 0;
+  FaultCode fault_ = FaultCode::kNone;
+  LinkCounts counts_;
+};
+
+}  // namespace hg::ethercat

@@ -1,0 +1,133 @@
+#include "hg/device/ethercat/master.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "hg/core/error.h"
+#include "hg/device/ethercat/bus_master/bus_master.h"
+
+namespace hg::ethercat {
+namespace {
+
+BusSlave slave_of(const bus_slave& found) {
+  return {.name = found.name,
+          .vendor = found.vendor,
+          .product = found.product,
+          .revision = found.revision,
+          .serial = found.serial,
+          .address = found.address,
+          .has_clock = found.has_clock,
+          .delay_ns = found.delay_ns,
+          .status = found.status};
+}
+
+}  // namespace
+
+Master::Master(const std::string& interface_name)
+    : master_(bus_master_open(interface_name.c_str()), &bus_master_free) {
+  check();
+}
+
+std::vector<BusSlave> Master::scan() {
+  const std::size_t count = bus_master_scan(master_.get());
+  check();
+  std::vector<BusSlave> slaves;
+  bus_slave found;
+  for (std::size_t i = 0; i < count && bus_master_slave(master_.get(), i, &found); ++i) {
+    slaves.push_back(slave_of(found));
+  }
+  return slaves;
+}
+
+// little endian on both sides
+ObjectResult Master::read(std::size_t slave, ObjectKey object, std::size_t bytes) {
+  ObjectResult result;
+  std::uint8_t data[sizeof result.value] = {};
+  result.abort =
+      bus_master_read_object(master_.get(), slave, object.index, object.subindex, data, bytes);
+  std::memcpy(&result.value, data, sizeof data);
+  return result;
+}
+
+ObjectResult Master::write(std::size_t slave, ObjectKey object, std::size_t bytes,
+                           std::uint32_t value) {
+  std::uint8_t data[sizeof value];
+  std::memcpy(data, &value, sizeof data);
+  return {.value = value,
+          .abort = bus_master_write_object(master_.get(), slave, object.index, object.subindex,
+                                           data, bytes)};
+}
+
+bool Master::set_watchdog(std::size_t slave, std::uint32_t watchdog_ms) {
+  return bus_master_set_watchdog(master_.get(), slave, watchdog_ms);
+}
+
+void Master::use_sync(std::size_t slave) { bus_master_use_sync(master_.get(), slave); }
+
+int Master::start(std::uint32_t watchdog_ms, std::uint32_t sync_ns) {
+  const int expected = bus_master_start(master_.get(), watchdog_ms, sync_ns);
+  check();
+  return expected;
+}
+
+Master::Sizes Master::sizes(std::size_t slave) {
+  Sizes sizes;
+  bus_master_sizes(master_.get(), slave, &sizes.outputs, &sizes.inputs);
+  return sizes;
+}
+
+void Master::set_outputs(std::size_t slave, std::span<const std::uint8_t> data) noexcept {
+  bus_master_set_outputs(master_.get(), slave, data.data(), data.size());
+}
+
+void Master::get_inputs(std::size_t slave, std::span<std::uint8_t> data) const noexcept {
+  bus_master_inputs(master_.get(), slave, data.data(), data.size());
+}
+
+int Master::exchange(std::uint32_t patience_us) noexcept {
+  return bus_master_exchange(master_.get(), patience_us);
+}
+
+std::uint8_t Master::state(std::size_t slave) const noexcept {
+  return bus_master_state(master_.get(), slave);
+}
+
+bool Master::request_state(std::size_t slave, std::uint8_t state,
+                           std::uint32_t patience_us) noexcept {
+  return bus_master_request_state(master_.get(), slave, state, patience_us);
+}
+
+std::optional<SlaveStatus> Master::status(std::size_t slave, std::uint32_t patience_us) noexcept {
+  SlaveStatus found;
+  if (!bus_master_status(master_.get(), slave, patience_us, &found.status, &found.code)) return {};
+  return found;
+}
+
+void Master::check() const {
+  if (const std::string error = bus_master_error(master_.get()); !error.empty()) {
+    throw SetupError(error);
+  }
+}
+
+std::string state_name(std::uint8_t status) {
+  const auto name = [&]() -> std::string {
+    switch (status & 0x0F) {
+      case 1:
+        return "INIT";
+      case kPreOp:
+        return "PRE-OP";
+      case 3:
+        return "BOOT";
+      case kSafeOp:
+        return "SAFE-OP";
+      case kOp:
+        return "OP";
+      default:
+        return fmt::format("state {}", status & 0x0F);
+    }
+  }();
+  return (status & kErrorFlag) != 0 ? name + " + error" : name;
+}
+
+}  // namespace hg::ethercat

@@ -1,0 +1,21 @@
+/// Sets up a machine on an EtherCAT bus as the device of a scenario.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "hg/config/simulation/scenario.h"
+#include "hg/device/ethercat/ethercat_device.h"
+
+namespace hg::scenario {
+
+/// Whether an address of --device-address names a bus: ethercat://INTERFACE.
+bool is_ethercat(const std::string& address);
+
+/// Set-up data of the machine of a scenario. `file` is its machine.yaml; empty: the one beside the
+/// device file. Throws SetupError where machine and device do not fit.
+ethercat::EthercatConfig ethercat_config(const std::string& address,
+                                         const std::filesystem::path& file,
+                                         const config::Scenario& scenario, bool is_fast);
+
+}  // namespace hg::scenario

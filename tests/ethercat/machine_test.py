@@ -1,0 +1,256 @@
+"""The HapticGiant on a simulated segment: `hapticgiant bus check`, and `run door` through the whole
+bus, with the plant of our simulator behind the drives.
+
+    machine_test.py PROGRAM SEGMENT
+
+Needs network namespaces, virtual interfaces and raw sockets; where the kernel forbids them it is
+skipped (exit code 77).
+"""
+
+import contextlib
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import bus
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LAYOUT = ROOT / "tests" / "ethercat" / "haptic_giant.txt"
+FILE = ROOT / "models" / "haptic_giant" / "machine.yaml"
+SIMULATION = ROOT / "models" / "haptic_giant" / "simulation.yaml"
+SKIPPED = 77
+PATIENCE = 100  # s
+PROGRAM = SEGMENT = None
+
+
+@contextlib.contextmanager
+def segment(layout=LAYOUT, plant=None):
+    one = bus.Segment(SEGMENT, layout, plant)
+    try:
+        yield one
+    finally:
+        one.close()
+
+
+@contextlib.contextmanager
+def plant(scenario="door"):
+    """The address of a simulated machine. Its commands are valid at once: the bus is the latency."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "simulation.yaml")
+        text, count = re.subn(r"\n  latency: 1 .*", "\n  latency: 0.001", SIMULATION.read_text())
+        assert count == 1
+        file.write_text(text)
+        server = subprocess.Popen([PROGRAM, "simulate", scenario, "--fast", "--listen",
+                                   "127.0.0.1:0", "--simulation", file], cwd=ROOT,
+                                  stdout=subprocess.PIPE, text=True)
+        try:
+            for line in server.stdout:
+                if line.startswith("address"):
+                    yield line.split()[1]
+                    break
+        finally:
+            server.terminate()
+            server.communicate(timeout=PATIENCE)
+
+
+class Run:
+    """A run of the door in a process of its own."""
+
+    def __init__(self, *arguments):
+        self.folder = tempfile.TemporaryDirectory()
+        self.summary_file = pathlib.Path(self.folder.name, "summary.json")
+        self.process = subprocess.Popen(
+            [PROGRAM, "run", "door", "--fast", "--no-recording", "--flight-recorder", "off",
+             "--summary", self.summary_file, *arguments], cwd=ROOT, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT, text=True)
+
+    def wait_for(self, text):
+        for line in self.process.stdout:
+            if text in line:
+                return
+        raise AssertionError("never said: " + text)
+
+    def wait(self):
+        """Exit code, what it said, its summary."""
+        said, _ = self.process.communicate(timeout=PATIENCE)
+        has_summary = self.summary_file.exists()
+        summary = json.loads(self.summary_file.read_text()) if has_summary else None
+        self.folder.cleanup()
+        return self.process.returncode, said, summary
+
+
+def over_the_bus(*arguments):
+    return Run("--device-address", f"ethercat://{bus.MASTER_END}", *arguments)
+
+
+class Door(unittest.TestCase):
+    def test_the_events_are_those_of_the_run_without_a_bus(self):
+        code, said, expected = Run().wait()
+        self.assertEqual(code, 0, said)
+        with plant() as address, segment(plant=address) as one:
+            code, said, summary = over_the_bus().wait()
+            self.assertEqual(code, 0, said)
+            states = one.show()
+        self.assertEqual([(event["name"], event["what"]) for event in summary["events"]],
+                         [(event["name"], event["what"]) for event in expected["events"]])
+        for event, wanted in zip(summary["events"], expected["events"]):
+            self.assertAlmostEqual(event["time_s"], wanted["time_s"], delta=0.02, msg=event["name"])
+        self.assertTrue(summary["limits_held"], said)
+        self.assertEqual(summary["allocations_in_loop"], 0)
+        # the drives were left off, and the slaves in PRE-OP
+        self.assertEqual([slave["status"] for slave in states], [2] * 11)
+        self.assertTrue(all(slave["brake_is_closed"] for slave in states[:8]))
+
+
+class Check(unittest.TestCase):
+    def check(self, file=FILE):
+        tried = subprocess.run([PROGRAM, "bus", "check", file, bus.MASTER_END],
+                               capture_output=True, text=True, timeout=PATIENCE)
+        return tried.returncode, tried.stdout + tried.stderr
+
+    def check_with(self, old, new):
+        """The file with a change that the bus does not have."""
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            text = FILE.read_text()
+            self.assertIn(old, text)
+            file.write(text.replace(old, new, 1))
+            file.flush()
+            return self.check(file.name)
+
+    def test_the_shipped_machine_is_the_segment(self):
+        with segment() as one:
+            code, said = self.check()
+            self.assertEqual(code, 0, said)
+            self.assertIn("11 slaves on master0 are those of", said)
+            self.assertEqual([slave["status"] for slave in one.show()], [2] * 11)
+
+    def test_each_difference_is_one_sentence(self):
+        with segment():
+            for old, new, sentence in (
+                    ("product: 0x110", "product: 0x111",
+                     "slave 1 (ppu1): product 0x00000110 found, expected is 0x00000111"),
+                    ("value: 1956", "value: 5000",
+                     "slave 3 (m1): object 0x6072:0 does not take 5000: abort code 0x06090030"),
+                    ("{object: 0x6071, bits: 16, is: target_torque, scale: 0.06}",
+                     "{object: 0x60FF, bits: 32, is: target_torque}",
+                     "slave 5 (m3): entry 2 of its outputs is 0x6071:0 of 16 bits, expected is "
+                     "0x60ff:0 of 32 bits\nslave 6 (m4): entry 2"),
+                    ("is: sensor_fault}\n      - {object: 0x6020, bits: 32, is: sample_counter}",
+                     "is: sensor_fault}",
+                     "slave 9 (wrist): its inputs have 8 entries, expected are 7"),
+                    ("slaves:\n", "slaves:\n  - {name: new, vendor: 1, product: 1, revision: 1}\n",
+                     "11 slaves found, expected are 12\nslave 1 (new): vendor 0x00ffff00 found")):
+                with self.subTest(sentence):
+                    code, said = self.check_with(old, new)
+                    self.assertEqual(code, 1, said)
+                    self.assertIn(sentence, said)
+
+    def test_faults_of_the_file_have_their_place(self):
+        code, said = self.check_with("is: motor_position", "is: moter_position")
+        self.assertEqual(code, 2, said)
+        self.assertRegex(said, r":\d+:\d+: slaves\[2\]\.inputs\[4\]\.is: .*did you mean "
+                               "'motor_position'")
+
+
+class Faults(unittest.TestCase):
+    """What goes wrong during a run ends it with a safe machine and a message."""
+
+    def run_until(self, command, *words):
+        with plant() as address, segment(plant=address) as one:
+            run = over_the_bus()
+            run.wait_for("locked")
+            one.tell(command)
+            code, said, summary = run.wait()
+            self.assertEqual(code, 3, said)
+            for word in words:
+                self.assertIn(word, said)
+            self.assertEqual(summary["allocations_in_loop"], 0)
+            self.expect_brakes(one)
+
+    def expect_brakes(self, one):
+        """Drives that are not reached any more are stopped by their watchdogs."""
+        until = time.monotonic() + PATIENCE
+        while not all(slave["brake_is_closed"] for slave in one.show()[:8]):
+            self.assertLess(time.monotonic(), until, one.show())
+            time.sleep(0.1)
+
+    def test_lost_frames(self):
+        self.run_until("lose 3", "fieldbus answers are missing",
+                       "3 exchanges in a row were incomplete: working counter 0 of 29")
+
+    def test_silence(self):
+        self.run_until("lose 1000000 any", "fieldbus answers are missing",
+                       "master0: no answer to 10 frames in a row")
+
+    def test_late_frames(self):
+        self.run_until("late 3 400000", "fieldbus answers are missing",
+                       "3 exchanges in a row were incomplete: working counter 0 of 29")
+
+    def test_a_wrong_counter(self):
+        self.run_until("miscount m2 50", "fieldbus answers are missing",
+                       "3 exchanges in a row were incomplete: working counter 26 of 29")
+
+    def test_a_drive_that_falls_out(self):
+        self.run_until("fall m2 safeop 0x001B", "drive reports a fault",
+                       "slave 4 (m2), address 0x1003: has left OP: SAFE-OP + error, AL status code "
+                       "0x001b")
+
+    def test_a_sensor_that_falls_out(self):
+        self.run_until("fall wrist preop 0x0050", "fieldbus answers are missing",
+                       "slave 9 (wrist), address 0x1008: has left OP: PRE-OP + error, AL status "
+                       "code 0x0050")
+
+    def test_an_open_cable(self):
+        self.run_until("open m4", "drive reports a fault",
+                       "slave 7 (m5), address 0x1006: does not answer")
+
+    def test_a_drive_that_trips(self):
+        self.run_until("trip m1 0x3210", "drive reports a fault",
+                       "slave 3 (m1), address 0x1002: the drive has failed: ", "error 0x3210")
+
+    def test_a_sensor_that_is_broken(self):
+        self.run_until("trip wrist 7", "fieldbus answers are missing",
+                       "slave 9 (wrist), address 0x1008: the sensor reports fault 0x0007")
+
+
+class Start(unittest.TestCase):
+    """A bus that is not the machine is not driven."""
+
+    def refused(self, *words, arguments=()):
+        code, said, _ = over_the_bus(*arguments).wait()
+        self.assertEqual(code, 2, said)
+        for word in words:
+            self.assertIn(word, said)
+
+    def test_of_another_segment_is_refused(self):
+        with segment(bus.MACHINE):
+            self.refused("master0: the bus is not HapticGiant:", "9 slaves found, expected are 11",
+                         "slave 1 (ppu1): product 0x00000101 found, expected is 0x00000110")
+
+    def test_of_a_machine_without_start_test_is_refused(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write(FILE.read_text().replace("moves_with_frames: true", "moves_with_frames: false"))
+            file.flush()
+            self.refused("--fast: HapticGiant keeps its own time",
+                         arguments=("--machine", file.name))
+
+
+def main():
+    global PROGRAM, SEGMENT
+    if bus.INSIDE not in os.environ:
+        print(f"ethercat_machine: skipped, {bus.enter_namespace()}")
+        return SKIPPED
+    bus.make_interfaces()
+    PROGRAM, SEGMENT = sys.argv[1:3]
+    result = unittest.main(argv=[sys.argv[0], *sys.argv[3:]], exit=False).result
+    return 0 if result.wasSuccessful() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
