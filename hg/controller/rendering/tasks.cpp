@@ -507,8 +507,8 @@ void Tasks::fill_posture(const DeviceModel& device, const TaskInput& input) noex
   const bool has_goals = device.posture.size() > 0 && !input.is_braked;
   for (int i = 0; i < n_m_; ++i) {
     const InnerRange& inner = inner_[i];
-    const Interval gently = limits::recoverable_bounds(
-        inner.limits, inner.options, reference.q_m[i], reference.dq_m[i], dt_);
+    const Interval gently = limits::recoverable_bounds(inner.limits, inner.options,
+                                                       reference.q_m[i], reference.dq_m[i], dt_);
     problem_.set_bounds(posture_row_ + i, input.is_braked ? Interval{} : gently);
     const bool has_goal = has_goals && std::isfinite(device.posture[i]);
     const double error = has_goal ? device.posture[i] - reference.q_m[i] : 0.0;
