@@ -44,6 +44,7 @@ BusWatchResult watch_bus(const std::string& interface_name, const BusWatchOption
   Master master(interface_name);
   const std::vector<BusSlave> slaves = master.scan();
   const int expected = master.start(options.watchdog_ms, 0);
+  master.operate(slaves.size(), [] { std::this_thread::sleep_for(kPeriod); });
   report(0.0, fmt::format("{} slaves in OP, working counter {}", slaves.size(), expected));
 
   BusWatchResult result;

@@ -7,43 +7,24 @@
 
 #include "hg/core/error.h"
 #include "hg/core/monotonic_clock.h"
-#include "hg/device/ethercat/bits.h"
 #include "hg/device/ethercat/bus_check.h"
 
 namespace hg::ethercat {
 namespace {
 
-constexpr std::uint32_t kSilent = 10;  // exchanges without an answer
-constexpr std::uint32_t kNoticed = 3;  // exchanges that are not complete, as rule 109
-constexpr int kStartCycles = 1000;     // until all drives are without fault
-constexpr int kRecoveryCycles = 500;   // until all slaves are in OP again, and no drive at fault
-constexpr int kEndCycles = 20;         // until all drives are off
-constexpr std::uint32_t kStatusPatience_us = 2'000;  // once, for the reason of a fault
-constexpr std::uint32_t kClosePatience_us = 5'000;
+constexpr std::uint32_t kSilent = 10;            // exchanges without an answer
+constexpr std::uint32_t kNoticed = 3;            // exchanges that are not complete, as rule 109
+constexpr int kStartCycles = 1000;               // until all drives are without fault
+constexpr int kStepCycles = 5000;                // until frames are in step with the clocks
+constexpr int kRecoveryCycles = 500;             // until all slaves and drives are well again
+constexpr int kEndCycles = 20;                   // until all drives are off
+constexpr double kEnabling = 2.0;                // s until drives follow, with slow brakes
+constexpr std::uint32_t kStatusPatience = 2000;  // us, once, for the reason of a fault
+constexpr std::uint32_t kClosePatience = 5000;   // us
 
 std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 std::uint32_t us(double seconds) noexcept {
   return static_cast<std::uint32_t>(std::llround(1e6 * seconds));
-}
-
-bool is_switch(Input meaning) noexcept { return meaning >= Input::kDeadMan; }
-bool is_unsigned(Input meaning) noexcept {
-  return meaning == Input::kStatusWord || meaning == Input::kErrorCode ||
-         meaning == Input::kSensorFault || meaning == Input::kSampleCounter || is_switch(meaning);
-}
-
-// Value in SI units.
-double value_of(const Entry<Input>& entry, std::uint32_t bits) noexcept {
-  const double number = is_unsigned(entry.meaning)
-                            ? static_cast<double>(bits)
-                            : static_cast<double>(signed_of(bits, entry.bits));
-  return entry.scale * number + entry.offset;
-}
-
-template <typename Vector>
-void set(Vector& values, Eigen::Index size, Eigen::Index i, double value) noexcept {
-  if (values.size() != size) values = Vector::Zero(size);
-  values[i] = value;
 }
 
 }  // namespace
@@ -52,7 +33,8 @@ EthercatDevice::EthercatDevice(const EthercatConfig& config)
     : config_(config),
       master_(config.interface_name),
       patience_us_(us(config.machine.answer_s)),
-      period_ns_(ns(1.0 / config.rate_Hz)) {
+      period_ns_(ns(1.0 / config.rate_Hz)),
+      pace_(now_ns(), period_ns_) {
   found_ = master_.scan();
   const std::vector<std::string> sentences = differences(master_, found_, config_.machine);
   if (!sentences.empty()) {
@@ -60,20 +42,20 @@ EthercatDevice::EthercatDevice(const EthercatConfig& config)
                                  config_.machine.name, fmt::join(sentences, "\n")));
   }
   start();
+  come_into_step();
+  master_.operate(found_.size(), [&] { wait_for_turn(); });
   await_drives();
 }
 
 EthercatDevice::~EthercatDevice() { close(fault_); }
 
+// To SAFE-OP, with all buffers.
 void EthercatDevice::start() {
-  frame_.q_m = VectorM::Zero(config_.n_m);
-  frame_.q_p = VectorP::Zero(config_.n_p);
   const std::vector<Slave>& slaves = config_.machine.slaves;
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     if (slaves[i].is_synchronous) master_.use_sync(i);
   }
-  const auto watchdog_ms =
-      static_cast<std::uint32_t>(std::lround(1e3 * config_.machine.watchdog_s));
+  const std::uint32_t watchdog_ms = us(config_.machine.watchdog_s) / 1000;
   expected_ = master_.start(watchdog_ms, static_cast<std::uint32_t>(period_ns_));
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     const auto [outputs, inputs] = master_.sizes(i);
@@ -85,66 +67,80 @@ void EthercatDevice::start() {
                       slave_name(config_.machine, i), outputs, inputs, bytes_out, bytes_in));
     }
     stations_.push_back({.outputs = std::vector<std::uint8_t>(bytes_out),
-                         .inputs = std::vector<std::uint8_t>(bytes_in),
-                         .is_drive = slaves[i].joint >= 0});
+                         .inputs = std::vector<std::uint8_t>(bytes_in)});
   }
+  has_followed_.assign(slaves.size(), false);
+  frame_.q_m = VectorM::Zero(config_.n_m);
+  frame_.q_p = VectorP::Zero(config_.n_p);
+}
+
+// Drives want their frames between the sync pulses before they go to OP.
+void EthercatDevice::come_into_step() {
+  const bool has_pulses = std::ranges::any_of(config_.machine.slaves, &Slave::is_synchronous);
+  if (!has_pulses || config_.machine.moves_with_frames) return;
+  for (int i = 0; i < kStepCycles && !pace_.is_settled(); ++i) exchange();
+  if (pace_.is_settled()) return;
+  throw SetupError(fmt::format(
+      "{}: frames do not come into step with the clocks of the slaves, the last one was {} us off: "
+      "is this computer busy, or not real-time (hapticgiant doctor)?",
+      config_.interface_name, pace_.error_ns() / 1000));
 }
 
 // Resets old faults of the drives; they stay off.
 void EthercatDevice::await_drives() {
-  due_ns_ = now_ns();
+  const auto is_off = [&](std::size_t i) {
+    return !is_drive(i) || state_of(stations_[i].status) == DriveState::kSwitchOnDisabled;
+  };
+  bool has_answer = false;
   for (int i = 0; i < kStartCycles; ++i) {
     recovery_ = kStartCycles - i;
-    put_outputs(nullptr);
-    wait_for_turn();
-    if (master_.exchange(patience_us_) != expected_) continue;
-    take_inputs();
-    const bool is_ready = std::ranges::all_of(stations_, [](const Station& station) {
-      return !station.is_drive || state_of(station.status) == DriveState::kSwitchOnDisabled;
-    });
-    if (is_ready) {
+    if (exchange() != expected_) continue;
+    take_in();
+    has_answer = true;
+    bool are_off = true;
+    for (std::size_t k = 0; k < stations_.size(); ++k) are_off = are_off && is_off(k);
+    if (are_off) {
       recovery_ = 0;
       return;
     }
   }
-  for (std::size_t i = 0; i < stations_.size(); ++i) {
-    const DriveState state = state_of(stations_[i].status);
-    if (!stations_[i].is_drive || state == DriveState::kSwitchOnDisabled) continue;
-    throw SetupError(fmt::format("{}: the drive stays in '{}' (status word {:#06x}, error {:#06x})",
-                                 slave_name(config_.machine, i), to_string(state),
-                                 stations_[i].status, stations_[i].error));
+  if (!has_answer) {
+    throw SetupError(config_.interface_name + ": exchanges of process data stay incomplete");
   }
-  throw SetupError(config_.interface_name + ": exchanges of process data stay incomplete");
+  while (is_off(culprit_)) ++culprit_;
+  throw SetupError(slave_name(config_.machine, culprit_) + ": the drive stays in " + drive_words());
 }
 
 void EthercatDevice::wait_for_turn() noexcept {
   if (config_.is_fast) return;
-  sleep_until(due_ns_);
-  const std::int64_t late = now_ns() - due_ns_;
-  // what was missed is not made up for: the machine would see a burst
-  due_ns_ += period_ns_ * (1 + std::max<std::int64_t>(0, late / period_ns_));
+  sleep_until(pace_.due_ns());
+  pace_.advance(now_ns());
+}
+
+// Waits for the next period, and exchanges process data once.
+int EthercatDevice::exchange() noexcept {
+  wait_for_turn();
+  put_out();
+  const int counter = master_.exchange(patience_us_);
+  if (counter >= 0 && master_.time_ns() != 0) pace_.follow(master_.time_ns());
+  return counter;
 }
 
 void EthercatDevice::read(SensorFrame& sensors) noexcept {
-  if (!is_in_use_) {
-    is_in_use_ = true;
-    due_ns_ = now_ns();
-  }
+  is_in_use_ = true;
   ++sequence_;
   if (fault_ == FaultCode::kDeviceSilent) return repeat(sensors);
-  wait_for_turn();
-  put_outputs(has_command_ ? &command_ : nullptr);
-  const int counter = master_.exchange(patience_us_);
+  const int counter = exchange();
   ++counts_.sent;
   if (counter < 0) {
     take_lost();
     return repeat(sensors);
   }
-  frame_.bus_errors = 0;
   ++counts_.received;
   lost_in_a_row_ = 0;
+  frame_.bus_errors = 0;
   if (has_command_) frame_.answered_sequence = command_.sequence;
-  take_inputs();
+  take_in();
   look_at_counter(counter);
   look_at_states();
   look_at_drives();
@@ -169,93 +165,10 @@ void EthercatDevice::take_lost() noexcept {
   if (++lost_in_a_row_ >= kSilent) stop(Cause::kSilent, 0, FaultCode::kDeviceSilent);
 }
 
-void EthercatDevice::take_inputs() noexcept {
+void EthercatDevice::take_in() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    Station& station = stations_[i];
-    const Slave& slave = config_.machine.slaves[i];
-    master_.get_inputs(i, station.inputs);
-    std::uint32_t at = 0;
-    for (const Entry<Input>& entry : slave.inputs) {
-      take_input(station, slave, entry, read_bits(station.inputs, at, entry.bits));
-      at += entry.bits;
-    }
-  }
-}
-
-void EthercatDevice::take_input(Station& station, const Slave& slave, const Entry<Input>& entry,
-                                std::uint32_t bits) noexcept {
-  const double value = value_of(entry, bits);
-  const bool is_set = (bits != 0) != entry.is_inverted;
-  const int n_p = config_.n_p, n_m = config_.n_m, joint = slave.joint - n_p;
-  const auto axis = [&](Input first) {
-    return static_cast<int>(entry.meaning) - static_cast<int>(first);
-  };
-  switch (entry.meaning) {
-    case Input::kNothing:
-    case Input::kModeNow:
-      return;
-    case Input::kStatusWord:
-      station.status = static_cast<std::uint16_t>(bits);
-      return;
-    case Input::kErrorCode:
-    case Input::kSensorFault:
-      station.error = static_cast<std::uint16_t>(bits);
-      return;
-    case Input::kSampleCounter:
-      station.has_new_samples = bits != station.samples;
-      station.samples = bits;
-      return;
-    case Input::kLinkPosition:
-      if (joint < 0) return set(frame_.q_p, n_p, slave.joint, value);
-      return set(frame_.q_m, n_m, joint, value);
-    case Input::kLinkVelocity:
-      if (joint >= 0) set(frame_.dq_m, n_m, joint, value);
-      return;
-    case Input::kMotorPosition:
-      if (joint >= 0) set(frame_.theta_m, n_m, joint, value);
-      return;
-    case Input::kJointTorque:
-      if (joint >= 0) set(frame_.tau_m, n_m, joint, value);
-      return;
-    case Input::kTemperature:
-      if (joint >= 0) set(frame_.temperature_m, n_m, joint, value);
-      return;
-    case Input::kForceX:
-    case Input::kForceY:
-    case Input::kForceZ:
-    case Input::kTorqueX:
-    case Input::kTorqueY:
-    case Input::kTorqueZ:
-      frame_.w_S[axis(Input::kForceX)] = value;
-      return;
-    case Input::kAccelerationX:
-    case Input::kAccelerationY:
-    case Input::kAccelerationZ:
-      frame_.a_S[axis(Input::kAccelerationX)] = value;
-      return;
-    case Input::kAngularRateX:
-    case Input::kAngularRateY:
-    case Input::kAngularRateZ:
-      frame_.omega_S[axis(Input::kAngularRateX)] = value;
-      return;
-    case Input::kDeadMan:
-      frame_.dead_man = is_set;
-      return;
-    case Input::kEmergencyStop:
-      frame_.safety.emergency_stop = is_set;
-      return;
-    case Input::kOperatorEnable:
-      frame_.safety.operator_enable = is_set;
-      return;
-    case Input::kOverrideKey:
-      frame_.safety.override_key = is_set;
-      return;
-    case Input::kFieldClear:
-      frame_.safety.is_field_clear = is_set;
-      return;
-    case Input::kInputsDisagree:
-      frame_.safety.has_disagreement = is_set;
-      return;
+    master_.get_inputs(i, stations_[i].inputs);
+    take_inputs(config_.machine.slaves[i], config_.n_p, config_.n_m, stations_[i], frame_);
   }
 }
 
@@ -281,29 +194,35 @@ void EthercatDevice::look_at_states() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     if (master_.state(i) == kOp) continue;
     ++frame_.bus_errors;
-    stop(Cause::kLeftOp, i, stations_[i].is_drive ? FaultCode::kDriveFault : FaultCode::kBusErrors);
+    stop(Cause::kLeftOp, i, is_drive(i) ? FaultCode::kDriveFault : FaultCode::kBusErrors);
   }
 }
 
 void EthercatDevice::look_at_drives() noexcept {
   const bool is_enabled = has_command_ && command_.enable && fault_ == FaultCode::kNone;
+  enabling_ = is_enabled ? enabling_ + 1 : 0;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    Station& station = stations_[i];
-    if (!station.is_drive) continue;
-    const DriveState state = state_of(station.status);
-    if (has_failed(state)) stop(Cause::kDrive, i, FaultCode::kDriveFault);
-    const bool has_stopped = station.has_followed && state != DriveState::kOperationEnabled;
-    if (is_enabled && has_stopped) stop(Cause::kDisabled, i, FaultCode::kDriveFault);
-    station.has_followed = is_enabled && (station.has_followed || is_following(station.status));
+    if (is_drive(i)) look_at_drive(i, is_enabled);
   }
+}
+
+void EthercatDevice::look_at_drive(std::size_t slave, bool is_enabled) noexcept {
+  const DriveState state = state_of(stations_[slave].status);
+  if (has_failed(state)) stop(Cause::kDrive, slave, FaultCode::kDriveFault);
+  if (is_enabled && has_followed_[slave] && state != DriveState::kOperationEnabled) {
+    stop(Cause::kDisabled, slave, FaultCode::kDriveFault);
+  }
+  const bool follows = is_following(stations_[slave].status);
+  has_followed_[slave] = is_enabled && (has_followed_[slave] || follows);
+  const bool is_overdue = enabling_ > kEnabling * config_.rate_Hz;
+  if (is_overdue && !has_followed_[slave]) stop(Cause::kNotEnabled, slave, FaultCode::kDriveFault);
 }
 
 void EthercatDevice::look_at_sensors() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    const Station& station = stations_[i];
-    if (station.is_drive) continue;
-    if (!station.has_new_samples) ++frame_.bus_errors;
-    if (station.error != 0) stop(Cause::kSensor, i, FaultCode::kBusErrors);
+    if (is_drive(i)) continue;
+    if (!stations_[i].has_new_samples) ++frame_.bus_errors;
+    if (stations_[i].error != 0) stop(Cause::kSensor, i, FaultCode::kBusErrors);
   }
 }
 
@@ -315,7 +234,7 @@ void EthercatDevice::stop(Cause cause, std::size_t slave, FaultCode fault) noexc
   culprit_ = slave;
   culprit_status_ = {};
   if (cause != Cause::kLeftOp) return;
-  if (const auto status = master_.status(slave, kStatusPatience_us)) culprit_status_ = *status;
+  if (const auto status = master_.status(slave, kStatusPatience)) culprit_status_ = *status;
 }
 
 void EthercatDevice::write(const CommandFrame& command) noexcept {
@@ -340,69 +259,42 @@ void EthercatDevice::recover() noexcept {
   recovery_ = kRecoveryCycles;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     if (master_.state(i) == kOp) continue;
-    master_.request_state(i, kSafeOp | kErrorFlag, kStatusPatience_us);
-    master_.request_state(i, kOp, kStatusPatience_us);
+    master_.request_state(i, kSafeOp | kErrorFlag, kStatusPatience);
+    master_.request_state(i, kOp, kStatusPatience);
   }
 }
 
 void EthercatDevice::look_at_recovery() noexcept {
   --recovery_;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    const Station& station = stations_[i];
     if (master_.state(i) != kOp) return;
-    if (station.is_drive ? has_failed(state_of(station.status)) : station.error != 0) return;
+    const Station& station = stations_[i];
+    if (is_drive(i) ? has_failed(state_of(station.status)) : station.error != 0) return;
   }
   recovery_ = 0;
   fault_ = FaultCode::kNone;
   cause_ = Cause::kNone;
 }
 
-void EthercatDevice::put_outputs(const CommandFrame* command) noexcept {
+void EthercatDevice::put_out() noexcept {
+  Orders orders{.command = has_command_ ? &command_ : nullptr};
+  orders.enables = has_command_ && command_.enable && fault_ == FaultCode::kNone && is_in_use_;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    Station& station = stations_[i];
-    const Slave& slave = config_.machine.slaves[i];
-    std::uint32_t at = 0;
-    for (const Entry<Output>& entry : slave.outputs) {
-      const double value = output(station, slave, entry.meaning, command);
-      const double number = (value - entry.offset) / entry.scale;
-      // targets have a sign, words and switches have none
-      const bool is_target = entry.meaning >= Output::kTargetPosition;
-      const std::uint32_t bits = is_target ? entry.bits : entry.bits + 1;
-      write_bits(station.outputs, at, entry.bits, rounded(number, bits));
-      at += entry.bits;
-    }
-    master_.set_outputs(i, station.outputs);
+    orders.control_word = control_word_for(i, orders.enables);
+    put_outputs(config_.machine.slaves[i], config_.n_p, orders, frame_, stations_[i]);
+    master_.set_outputs(i, stations_[i].outputs);
   }
 }
 
-// What a slave is told; without a command the drives stay off.
-double EthercatDevice::output(const Station& station, const Slave& slave, Output meaning,
-                              const CommandFrame* command) const noexcept {
-  const bool enables = command != nullptr && command->enable && fault_ == FaultCode::kNone;
-  const int joint = slave.joint - config_.n_p;
-  switch (meaning) {
-    case Output::kNothing:
-      return 0.0;
-    case Output::kControlWord: {
-      const DriveState state = state_of(station.status);
-      // a reset needs an edge
-      if (state == DriveState::kFault) return recovery_ % 2 == 1 ? kResetFault : kDisableVoltage;
-      return is_in_use_ ? control_word(state, enables) : kDisableVoltage;
-    }
-    case Output::kMode:
-      return static_cast<double>(slave.mode);
-    case Output::kTargetPosition:
-      if (joint >= 0) return enables ? command->q_m[joint] : frame_.q_m[joint];
-      return frame_.q_p[slave.joint];
-    case Output::kTargetVelocity:
-      if (!enables) return 0.0;
-      return joint >= 0 ? command->dq_m[joint] : command->dq_p[slave.joint];
-    case Output::kTargetTorque:
-      return enables && joint >= 0 && joint < command->tau_m.size() ? command->tau_m[joint] : 0.0;
-    case Output::kReset:
-      return command != nullptr && command->panel.reset ? 1.0 : 0.0;
-  }
-  return 0.0;
+// Drives are off until the first read(); a drive in another mode is not enabled.
+std::uint16_t EthercatDevice::control_word_for(std::size_t slave, bool enables) const noexcept {
+  const Station& station = stations_[slave];
+  const DriveState state = state_of(station.status);
+  // a reset needs an edge
+  if (state == DriveState::kFault) return recovery_ % 2 == 1 ? kResetFault : kDisableVoltage;
+  if (!is_in_use_) return kDisableVoltage;
+  const auto mode = static_cast<std::uint8_t>(config_.machine.slaves[slave].mode);
+  return control_word(state, enables && (station.mode_now == 0 || station.mode_now == mode));
 }
 
 void EthercatDevice::close(FaultCode) noexcept {
@@ -410,25 +302,27 @@ void EthercatDevice::close(FaultCode) noexcept {
   is_closed_ = true;
   is_in_use_ = false;
   recovery_ = 0;
+  patience_us_ = std::min(patience_us_, kClosePatience);
   for (int i = 0; i < kEndCycles; ++i) {
-    put_outputs(nullptr);
-    wait_for_turn();
-    if (master_.exchange(std::min(patience_us_, kClosePatience_us)) >= 0) take_inputs();
+    if (exchange() >= 0) take_in();
   }
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    master_.request_state(i, kPreOp, kClosePatience_us);
+    master_.request_state(i, kPreOp, kClosePatience);
   }
+}
+
+// State of the drive that has stopped the machine.
+std::string EthercatDevice::drive_words() const {
+  const Station& station = stations_[culprit_];
+  return fmt::format("'{}' (mode {}, status word {:#06x}, error {:#06x})",
+                     to_string(state_of(station.status)), station.mode_now, station.status,
+                     station.error);
 }
 
 std::string EthercatDevice::farewell() const {
   const auto named = [&](const std::string& what) {
     return fmt::format("{}, address {:#06x}: {}", slave_name(config_.machine, culprit_),
                        found_[culprit_].address, what);
-  };
-  const auto words = [&] {
-    const Station& station = stations_[culprit_];
-    return fmt::format("'{}', status word {:#06x}, error {:#06x}",
-                       to_string(state_of(station.status)), station.status, station.error);
   };
   switch (cause_) {
     case Cause::kNone:
@@ -441,9 +335,12 @@ std::string EthercatDevice::farewell() const {
       return named(fmt::format("has left OP: {}, AL status code {:#06x}",
                                state_name(culprit_status_.status), culprit_status_.code));
     case Cause::kDrive:
-      return named("the drive has failed: " + words());
+      return named("the drive has failed: " + drive_words());
     case Cause::kDisabled:
-      return named("the drive has stopped by itself: " + words());
+      return named("the drive has stopped by itself: " + drive_words());
+    case Cause::kNotEnabled:
+      return named(
+          fmt::format("the drive does not follow after {:g} s: {}", kEnabling, drive_words()));
     case Cause::kSensor:
       return named(fmt::format("the sensor reports fault {:#06x}", stations_[culprit_].error));
     case Cause::kSilent:

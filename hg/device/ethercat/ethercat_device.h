@@ -15,6 +15,8 @@
 #include "hg/device/ethercat/drive_state.h"
 #include "hg/device/ethercat/machine.h"
 #include "hg/device/ethercat/master.h"
+#include "hg/device/ethercat/pace.h"
+#include "hg/device/ethercat/process_data.h"
 #include "hg/signals/frames.h"
 
 namespace hg::ethercat {
@@ -39,22 +41,12 @@ class EthercatDevice final : public device::ConnectedDevice {
   void read(SensorFrame& sensors) noexcept override;
   void write(const CommandFrame& command) noexcept override;
 
-  /// Switches the drives off and takes the slaves back to PRE-OP, within 0.1 s.
+  /// Switches the drives off and takes the slaves back to PRE-OP, within 0.2 s.
   void close(FaultCode reason) noexcept override;
   std::string farewell() const override;
   LinkCounts counts() const noexcept override { return counts_; }
 
  private:
-  /// What is known of one slave in operation.
-  struct Station {
-    std::vector<std::uint8_t> outputs, inputs;
-    bool is_drive = false;
-    std::uint16_t status = 0;     ///< status word of a drive
-    std::uint16_t error = 0;      ///< error code of a drive, fault of a sensor
-    std::uint32_t samples = 0;    ///< counter of a sensor
-    bool has_new_samples = true;  ///< it has counted on, or does not count
-    bool has_followed = false;    ///< the drive has followed its target since it was enabled
-  };
   /// Why the machine has stopped.
   enum class Cause : std::uint8_t {
     kNone,
@@ -62,42 +54,49 @@ class EthercatDevice final : public device::ConnectedDevice {
     kLeftOp,
     kDrive,
     kDisabled,
+    kNotEnabled,
     kSensor,
     kSilent,
     kNotFinite,
   };
 
+  bool is_drive(std::size_t slave) const noexcept {
+    return config_.machine.slaves[slave].mode != DriveMode::kNone;
+  }
   void start();
+  void come_into_step();
   void await_drives();
   void wait_for_turn() noexcept;
-  void repeat(SensorFrame& sensors) noexcept;
+  int exchange() noexcept;
+  void take_in() noexcept;
   void take_lost() noexcept;
-  void take_inputs() noexcept;
-  void take_input(Station& station, const Slave& slave, const Entry<Input>& entry,
-                  std::uint32_t bits) noexcept;
+  void repeat(SensorFrame& sensors) noexcept;
   void look_at_counter(int counter) noexcept;
   void note_incomplete(int counter) noexcept;
   void look_at_states() noexcept;
   void look_at_drives() noexcept;
+  void look_at_drive(std::size_t slave, bool is_enabled) noexcept;
   void look_at_sensors() noexcept;
+  void look_at_recovery() noexcept;
   void stop(Cause cause, std::size_t slave, FaultCode fault) noexcept;
   void recover() noexcept;
-  void look_at_recovery() noexcept;
-  void put_outputs(const CommandFrame* command) noexcept;
-  double output(const Station& station, const Slave& slave, Output meaning,
-                const CommandFrame* command) const noexcept;
+  void put_out() noexcept;
+  std::uint16_t control_word_for(std::size_t slave, bool enables) const noexcept;
   bool is_finite(const CommandFrame& command) const noexcept;
+  std::string drive_words() const;
 
   EthercatConfig config_;
   Master master_;
   std::vector<BusSlave> found_;
   std::vector<Station> stations_;
-  int expected_ = 0;  ///< working counter of an exchange in which all take part
+  std::vector<bool> has_followed_;  ///< by slave: it has followed since it was enabled
+  std::uint32_t enabling_ = 0;      ///< exchanges since drives were enabled
+  int expected_ = 0;                ///< working counter of an exchange in which all take part
   std::uint32_t patience_us_ = 0;
   std::int64_t period_ns_ = 0;
-  std::int64_t due_ns_ = 0;  ///< start of the next period
-  SensorFrame frame_;        ///< of the last exchange
-  CommandFrame command_;     ///< for the next exchange
+  Pace pace_;
+  SensorFrame frame_;     ///< of the last exchange
+  CommandFrame command_;  ///< for the next exchange
   bool has_command_ = false;
   std::uint64_t sequence_ = 0;
   std::uint32_t lost_in_a_row_ = 0, incomplete_in_a_row_ = 0;
