@@ -87,11 +87,8 @@ impl Plant {
         Ok(plant)
     }
 
-    /// Moves by a period, if the last frame has carried process data and a drive is ready.
+    /// Moves by a period after a frame with process data, if a drive is ready.
     pub fn follow(&mut self, line: &mut Line) -> io::Result<()> {
-        if !line.has_exchanged {
-            return Ok(());
-        }
         let demands: Vec<Demand> =
             line.slaves.iter().filter_map(|slave| slave.device.demand()).collect();
         let drives = || demands.iter().filter(|demand| demand.part != Part::None);
