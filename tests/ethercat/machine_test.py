@@ -9,6 +9,7 @@ skipped (exit code 77).
 
 import contextlib
 import json
+import math
 import os
 import pathlib
 import re
@@ -40,24 +41,30 @@ def segment(layout=LAYOUT, plant=None):
 
 
 @contextlib.contextmanager
-def plant(scenario="door"):
-    """The address of a simulated machine. Its commands are valid at once: the bus is the latency."""
+def plant(scenario="door", *arguments):
+    """The address of a simulated machine."""
+    server = subprocess.Popen([PROGRAM, "simulate", scenario, "--fast", "--listen", "127.0.0.1:0",
+                               *arguments], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    try:
+        for line in server.stdout:
+            if line.startswith("address"):
+                yield line.split()[1]
+                break
+    finally:
+        server.terminate()
+        server.communicate(timeout=PATIENCE)
+
+
+@contextlib.contextmanager
+def haptic_giant():
+    """The same for the door. Its commands are valid at once: the bus is the latency."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder, "simulation.yaml")
         text, count = re.subn(r"\n  latency: 1 .*", "\n  latency: 0.001", SIMULATION.read_text())
         assert count == 1
         file.write_text(text)
-        server = subprocess.Popen([PROGRAM, "simulate", scenario, "--fast", "--listen",
-                                   "127.0.0.1:0", "--simulation", file], cwd=ROOT,
-                                  stdout=subprocess.PIPE, text=True)
-        try:
-            for line in server.stdout:
-                if line.startswith("address"):
-                    yield line.split()[1]
-                    break
-        finally:
-            server.terminate()
-            server.communicate(timeout=PATIENCE)
+        with plant("door", "--simulation", file) as address:
+            yield address
 
 
 class Run:
@@ -84,23 +91,81 @@ def over_the_bus(*arguments, **scenario):
     return Run("--device-address", f"ethercat://{bus.MASTER_END}", *arguments, **scenario)
 
 
+def expect_same_events(test, summary, expected):
+    test.assertEqual([(event["name"], event["what"]) for event in summary["events"]],
+                     [(event["name"], event["what"]) for event in expected["events"]])
+    for event, wanted in zip(summary["events"], expected["events"]):
+        test.assertAlmostEqual(event["time_s"], wanted["time_s"], delta=0.005, msg=event["name"])
+    test.assertTrue(summary["limits_held"])
+    test.assertEqual(summary["allocations_in_loop"], 0)
+
+
 class Door(unittest.TestCase):
     def test_the_events_are_those_of_the_run_without_a_bus(self):
         code, said, expected = Run().wait()
         self.assertEqual(code, 0, said)
-        with plant() as address, segment(plant=address) as one:
-            code, said, summary = over_the_bus().wait()
+        with haptic_giant() as address, segment(plant=address) as one:
+            run = over_the_bus()
+            has_opened_brakes = False
+            while run.process.poll() is None and not has_opened_brakes:
+                has_opened_brakes = one.show()[10]["outputs"] == 2
+            code, said, summary = run.wait()
             self.assertEqual(code, 0, said)
+            self.assertTrue(has_opened_brakes)
             states = one.show()
-        self.assertEqual([(event["name"], event["what"]) for event in summary["events"]],
-                         [(event["name"], event["what"]) for event in expected["events"]])
-        for event, wanted in zip(summary["events"], expected["events"]):
-            self.assertAlmostEqual(event["time_s"], wanted["time_s"], delta=0.005, msg=event["name"])
-        self.assertTrue(summary["limits_held"], said)
-        self.assertEqual(summary["allocations_in_loop"], 0)
+        expect_same_events(self, summary, expected)
         # the drives were left off, and the slaves in PRE-OP
         self.assertEqual([slave["status"] for slave in states], [2] * 11)
         self.assertTrue(all(slave["brake_is_closed"] for slave in states[:8]))
+        self.assertEqual(states[10]["outputs"], 0)
+
+
+class Positions(unittest.TestCase):
+    """An arm whose drives follow positions: a Franka FR3 with drives of another maker."""
+
+    JOINTS = [f"fr3_joint{i}" for i in range(1, 8)]
+    TURN = 2 ** 28
+    SCENARIO = "fr3/open_drawer"
+    DEVICE = ("--device", "fr3/fci")
+
+    def layout(self):
+        lines = [f"drive {name} product=0x130 joint={i} turn={self.TURN}"
+                 for i, name in enumerate(self.JOINTS, 1)]
+        return "\n".join(lines + ["force wrist product=0x302", "io panel product=0x401"])
+
+    def machine(self):
+        scale = 2 * math.pi / self.TURN
+        drives = [{"name": name, "vendor": 0x00FFFF00, "product": 0x130, "revision": 1,
+                   "joint": name, "mode": "csp", "synchronous": True, "outputs": [
+                       {"object": 0x6040, "bits": 16, "is": "control_word"},
+                       {"object": 0x607A, "bits": 32, "is": "target_position", "scale": scale},
+                       {"object": 0x60FF, "bits": 32}, {"object": 0x6071, "bits": 16},
+                       {"object": 0x6060, "bits": 8, "is": "mode"}, {"bits": 8}],
+                   "inputs": [
+                       {"object": 0x6041, "bits": 16, "is": "status_word"},
+                       {"object": 0x6064, "bits": 32, "is": "link_position", "scale": scale},
+                       {"object": 0x606C, "bits": 32, "is": "link_velocity", "scale": scale},
+                       {"object": 0x6077, "bits": 16},
+                       {"object": 0x6061, "bits": 8, "is": "mode_now"}, {"bits": 8}]}
+                  for name in self.JOINTS]
+        text = FILE.read_text()
+        sensors = text[text.index("  - name: wrist"):text.index("  - name: imu")]
+        panel = text[text.index("  - name: panel"):]
+        head = "name: arm\nmoves_with_frames: true\nwatchdog_s: 2\nanswer_s: 0.25\nslaves:\n"
+        return head + "".join(f"  - {json.dumps(drive)}\n" for drive in drives) + sensors + panel
+
+    def test_the_events_are_those_of_the_run_without_a_bus(self):
+        code, said, expected = Run(*self.DEVICE, scenario=self.SCENARIO).wait()
+        self.assertEqual(code, 0, said)
+        with tempfile.TemporaryDirectory() as folder:
+            layout, machine = pathlib.Path(folder, "layout.txt"), pathlib.Path(folder, "machine.yaml")
+            layout.write_text(self.layout())
+            machine.write_text(self.machine())
+            with plant(self.SCENARIO, *self.DEVICE) as address, segment(layout, address):
+                code, said, summary = over_the_bus("--machine", machine, *self.DEVICE,
+                                                   scenario=self.SCENARIO).wait()
+        self.assertEqual(code, 0, said)
+        expect_same_events(self, summary, expected)
 
 
 class Check(unittest.TestCase):
@@ -157,7 +222,7 @@ class Faults(unittest.TestCase):
     """What goes wrong during a run ends it with a safe machine and a message."""
 
     def run_until(self, command, *words):
-        with plant() as address, segment(plant=address) as one:
+        with haptic_giant() as address, segment(plant=address) as one:
             one.tell(f"after {FAULT_FRAME} {command}")
             code, said, summary = over_the_bus().wait()
             self.assertEqual(code, 3, said)
@@ -230,7 +295,7 @@ panel:
         return file
 
     def expect_recovery(self, command):
-        with plant() as address, segment(plant=address) as one, \
+        with haptic_giant() as address, segment(plant=address) as one, \
                 tempfile.TemporaryDirectory() as folder:
             one.tell(f"after {FAULT_FRAME} {command}")
             code, said, summary = over_the_bus(scenario=self.scenario(folder)).wait()
@@ -260,12 +325,22 @@ class Start(unittest.TestCase):
             self.refused("master0: the bus is not HapticGiant:", "9 slaves found, expected are 11",
                          "slave 1 (ppu1): product 0x00000101 found, expected is 0x00000110")
 
-    def test_of_a_machine_without_start_test_is_refused(self):
+    def test_of_a_machine_keeps_time_and_needs_a_start_test(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
             file.write(FILE.read_text().replace("moves_with_frames: true", "moves_with_frames: false"))
             file.flush()
             self.refused("--fast: HapticGiant keeps its own time",
                          arguments=("--machine", file.name))
+            with tempfile.TemporaryDirectory() as folder:
+                tried = subprocess.run(
+                    [PROGRAM, "run", "door", "--device-address", f"ethercat://{bus.MASTER_END}",
+                     "--machine", file.name, "--no-viewer", "--recordings", folder], cwd=ROOT,
+                    capture_output=True, text=True, timeout=PATIENCE)
+            self.assertEqual(tried.returncode, 2, tried.stdout)
+            self.assertIn("no start test of HapticGiant that counts: there is none", tried.stderr)
+
+    def test_that_cannot_be_read_is_refused(self):
+        self.refused("nothing.yaml: no such file", arguments=("--machine", "nothing.yaml"))
 
 
 def main():

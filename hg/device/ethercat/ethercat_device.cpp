@@ -279,11 +279,19 @@ void EthercatDevice::look_at_recovery() noexcept {
 void EthercatDevice::put_out() noexcept {
   Orders orders{.command = has_command_ ? &command_ : nullptr};
   orders.enables = has_command_ && command_.enable && fault_ == FaultCode::kNone && is_in_use_;
+  orders.opens_brakes = orders.enables && all_follow();
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     orders.control_word = control_word_for(i, orders.enables);
     put_outputs(config_.machine.slaves[i], config_.n_p, orders, frame_, stations_[i]);
     master_.set_outputs(i, stations_[i].outputs);
   }
+}
+
+bool EthercatDevice::all_follow() const noexcept {
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    if (is_drive(i) && !has_followed_[i]) return false;
+  }
+  return true;
 }
 
 // Drives are off until the first read(); a drive in another mode is not enabled.

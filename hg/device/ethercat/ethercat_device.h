@@ -81,6 +81,7 @@ class EthercatDevice final : public device::ConnectedDevice {
   void stop(Cause cause, std::size_t slave, FaultCode fault) noexcept;
   void recover() noexcept;
   void put_out() noexcept;
+  bool all_follow() const noexcept;
   std::uint16_t control_word_for(std::size_t slave, bool enables) const noexcept;
   bool is_finite(const CommandFrame& command) const noexcept;
   std::string drive_words() const;

@@ -146,6 +146,8 @@ std::uint32_t bits_for(const Slave& slave, const Entry<Output>& entry, int n_p,
       const bool is_pressed = orders.command != nullptr && orders.command->panel.reset;
       return is_pressed != entry.is_inverted ? 1 : 0;
     }
+    case Output::kOpenBrakes:
+      return orders.opens_brakes != entry.is_inverted ? 1 : 0;
   }
   return 0;
 }

@@ -28,7 +28,8 @@ void take_inputs(const Slave& slave, int n_p, int n_m, Station& station,
 struct Orders {
   const CommandFrame* command = nullptr;  ///< null: none has come yet
   bool enables = false;                   ///< drives follow it
-  std::uint16_t control_word = 0;         ///< of this drive
+  bool opens_brakes = false;
+  std::uint16_t control_word = 0;  ///< of this drive
 };
 
 /// Puts what a slave is told into its station. `last` is the last frame: a drive that is not

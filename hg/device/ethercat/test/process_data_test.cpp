@@ -126,6 +126,20 @@ TEST(ProcessData, TellsADriveItsTargetOrToStay) {
   EXPECT_EQ(target(axis, true), -2);
 }
 
+TEST(ProcessData, OpensBrakesAndPressesReset) {
+  const Slave slave{.outputs = {{.bits = 1, .meaning = Output::kReset},
+                                {.bits = 1, .meaning = Output::kOpenBrakes},
+                                {.bits = 1, .meaning = Output::kOpenBrakes, .is_inverted = true},
+                                {.bits = 5}}};
+  CommandFrame wanted = command();
+  Station station = station_of(slave);
+  put_outputs(slave, kAxes, {.command = &wanted}, {}, station);
+  EXPECT_EQ(station.outputs[0], 0b100);
+  wanted.panel.reset = true;
+  put_outputs(slave, kAxes, {.command = &wanted, .opens_brakes = true}, {}, station);
+  EXPECT_EQ(station.outputs[0], 0b011);
+}
+
 TEST(ProcessData, LimitsTargetsInsteadOfTurningThemRound) {
   Slave slave = second_joint(DriveMode::kCst, Output::kTargetTorque);
   slave.outputs[1].scale = 1e-6;

@@ -24,6 +24,7 @@ const COMMAND: u16 = 5;
 const GOODBYE: u16 = 6;
 const HEADER_BYTES: usize = 32;
 const DESCRIPTION_BYTES: usize = 88;
+const BY_POSITION: u32 = 1; // interface of the plant: its joints follow positions
 const AGAIN: Duration = Duration::from_millis(20); // a datagram without an answer is sent again
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -40,7 +41,8 @@ pub struct Demand {
     pub part: Part,
     pub is_ready: bool,     // to switch on, or further
     pub is_following: bool, // enabled, and its brake is open
-    pub target: f64,        // Nm, m/s; of digital outputs: reset is pressed
+    pub target: f64,        // Nm, m/s or rad, as the plant takes it; of digital outputs: reset
+    pub speed: f64,         // rad/s of a target in rad
 }
 
 /// What there is to sense of it, in SI units.
@@ -198,12 +200,16 @@ impl Plant {
         let sensed = self.session.as_ref().and_then(|session| session.sensed.as_ref());
         let sequence = sensed.map_or(0, |sensed| sensed.sequence);
         let (axes, joints) = (u32_at(&self.description, 64), u32_at(&self.description, 68));
-        let mut tau_m = [0.0; MOST_JOINTS];
+        let mut joint_targets = [0.0; MOST_JOINTS];
+        let mut speeds = [0.0; MOST_JOINTS];
         let mut dq_p = [0.0; MOST_AXES];
         let mut is_reset = false;
         for demand in demands {
             match demand.part {
-                Part::Joint(i) => tau_m[i] = demand.target,
+                Part::Joint(i) => {
+                    joint_targets[i] = demand.target;
+                    speeds[i] = demand.speed;
+                }
                 Part::Axis(i) => dq_p[i] = demand.target,
                 Part::None => is_reset |= demand.target != 0.0,
             }
@@ -215,8 +221,16 @@ impl Plant {
             bytes.extend(u32::from(flag).to_le_bytes());
         }
         bytes.extend([0; 4]);
-        for values in [[0.0; MOST_JOINTS], [0.0; MOST_JOINTS], [0.0; MOST_JOINTS], tau_m] {
-            put(&mut bytes, joints, &values);
+        let nothing = [0.0; MOST_JOINTS];
+        if u32_at(&self.description, 80) == BY_POSITION {
+            put(&mut bytes, joints, &joint_targets);
+            put(&mut bytes, joints, &speeds);
+            put(&mut bytes, joints, &nothing);
+            put(&mut bytes, 0, &nothing);
+        } else {
+            for values in [nothing, nothing, nothing, joint_targets] {
+                put(&mut bytes, joints, &values);
+            }
         }
         put(&mut bytes, axes, &dq_p);
         bytes
@@ -242,11 +256,12 @@ fn put(bytes: &mut Vec<u8>, count: u32, values: &[f64]) {
 
 fn sensors(bytes: &[u8]) -> Sensed {
     let flag = |at| u32_at(bytes, at) != 0;
+    let has_motor_encoders = u32_at(bytes, 216) != 0;
     Sensed {
         sequence: u64::from(u32_at(bytes, 36)) << 32 | u64::from(u32_at(bytes, 32)),
         q_m: numbers(bytes, 96),
         dq_m: numbers(bytes, 160),
-        theta_m: numbers(bytes, 224),
+        theta_m: numbers(bytes, if has_motor_encoders { 224 } else { 96 }),
         tau_m: numbers(bytes, 288),
         q_p: numbers(bytes, 352),
         wrench: numbers(bytes, 368),
