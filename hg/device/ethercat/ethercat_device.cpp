@@ -16,6 +16,7 @@ constexpr std::uint32_t kSilent = 10;            // exchanges without an answer
 constexpr std::uint32_t kNoticed = 3;            // exchanges that are not complete, as rule 109
 constexpr int kStartCycles = 1000;               // until all drives are without fault
 constexpr int kStepCycles = 5000;                // until frames are in step with the clocks
+constexpr int kCallCycles = 200;                 // between two calls to OP
 constexpr int kRecoveryCycles = 500;             // until all slaves and drives are well again
 constexpr int kEndCycles = 20;                   // until all drives are off
 constexpr double kEnabling = 2.0;                // s until drives follow, with slow brakes
@@ -42,9 +43,15 @@ EthercatDevice::EthercatDevice(const EthercatConfig& config)
                                  config_.machine.name, fmt::join(sentences, "\n")));
   }
   start();
-  come_into_step();
+  if (!come_into_step()) {
+    throw SetupError(fmt::format(
+        "{}: frames do not come into step with the clocks of the slaves, the last one was {} us "
+        "off: is this computer busy, or not real-time (hapticgiant doctor)?",
+        config_.interface_name, pace_.error_ns() / 1000));
+  }
   master_.operate(found_.size(), [&] { wait_for_turn(); });
   await_drives();
+  rest();
 }
 
 EthercatDevice::~EthercatDevice() { close(fault_); }
@@ -74,16 +81,13 @@ void EthercatDevice::start() {
   frame_.q_p = VectorP::Zero(config_.n_p);
 }
 
-// Drives want their frames between the sync pulses before they go to OP.
-void EthercatDevice::come_into_step() {
+// Drives want their frames between the sync pulses before they go to OP. False: they are not.
+bool EthercatDevice::come_into_step() noexcept {
   const bool has_pulses = std::ranges::any_of(config_.machine.slaves, &Slave::is_synchronous);
-  if (!has_pulses || config_.machine.moves_with_frames) return;
+  if (!has_pulses || config_.machine.moves_with_frames) return true;
+  pace_.restart();
   for (int i = 0; i < kStepCycles && !pace_.is_settled(); ++i) exchange();
-  if (pace_.is_settled()) return;
-  throw SetupError(fmt::format(
-      "{}: frames do not come into step with the clocks of the slaves, the last one was {} us off: "
-      "is this computer busy, or not real-time (hapticgiant doctor)?",
-      config_.interface_name, pace_.error_ns() / 1000));
+  return pace_.is_settled();
 }
 
 // Resets old faults of the drives; they stay off.
@@ -111,6 +115,35 @@ void EthercatDevice::await_drives() {
   throw SetupError(slave_name(config_.machine, culprit_) + ": the drive stays in " + drive_words());
 }
 
+// To SAFE-OP, where no slave waits for frames.
+void EthercatDevice::rest() noexcept {
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    master_.request_state(i, kSafeOp, kStatusPatience);
+  }
+  exchanged_ns_ = 0;
+}
+
+// Whether nobody has read for so long that the watchdogs of the slaves may have acted, while drives
+// were off.
+bool EthercatDevice::has_paused() const noexcept {
+  const bool is_enabled = has_command_ && command_.enable;
+  return !is_enabled && now_ns() - exchanged_ns_ > ns(0.5 * config_.machine.watchdog_s);
+}
+
+// To OP again after a pause; drives stay off. A slave that does not come along is a fault.
+void EthercatDevice::wake() noexcept {
+  is_in_use_ = false;
+  come_into_step();
+  recovery_ = kStartCycles + 1;
+  for (int i = 0; i < kStartCycles && recovery_ > 0; ++i) {
+    if (exchange() < 0) continue;
+    take_in();
+    look_at_recovery();
+    if (i % kCallCycles == 0) call_to_op();
+  }
+  recovery_ = 0;
+}
+
 void EthercatDevice::wait_for_turn() noexcept {
   if (config_.is_fast) return;
   sleep_until(pace_.due_ns());
@@ -122,14 +155,16 @@ int EthercatDevice::exchange() noexcept {
   wait_for_turn();
   put_out();
   const int counter = master_.exchange(patience_us_);
+  exchanged_ns_ = now_ns();
   if (counter >= 0 && master_.time_ns() != 0) pace_.follow(master_.time_ns());
   return counter;
 }
 
 void EthercatDevice::read(SensorFrame& sensors) noexcept {
-  is_in_use_ = true;
   ++sequence_;
   if (fault_ == FaultCode::kDeviceSilent) return repeat(sensors);
+  if (fault_ == FaultCode::kNone && has_paused()) wake();
+  is_in_use_ = true;
   const int counter = exchange();
   ++counts_.sent;
   if (counter < 0) {
@@ -253,10 +288,15 @@ bool EthercatDevice::is_finite(const CommandFrame& command) const noexcept {
          command.tau_m.allFinite();
 }
 
-// Asks slaves that have fallen to SAFE-OP back to OP; drives are reset by their next control words.
+// Slaves are called back to OP; drives are reset by their next control words.
 void EthercatDevice::recover() noexcept {
   if (cause_ == Cause::kSilent) return;
   recovery_ = kRecoveryCycles;
+  call_to_op();
+}
+
+// Asks slaves in SAFE-OP for OP, and forgives those that have fallen there.
+void EthercatDevice::call_to_op() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     if (master_.state(i) == kOp) continue;
     master_.request_state(i, kSafeOp | kErrorFlag, kStatusPatience);

@@ -2,8 +2,10 @@
 ///
 /// Set-up (constructor, close()) may block for a bounded time and throw; read() and write() follow
 /// the contract of Device, but read() keeps the period: the device is the clock. Each read() is one
-/// exchange of process data, which carries the last command. Drives are switched on, with closed
-/// brakes, from the first read() on, and enabled while commands have drives on. What the machine
+/// exchange of process data, which carries the last command. Between set-up and the first read(),
+/// and in a pause with drives off, slaves rest in SAFE-OP, which needs no frames; the read() after
+/// it takes them to OP and may take some seconds. Drives are switched on, with closed brakes, from
+/// the first read() on, and enabled while commands have drives on. What the machine
 /// stops itself for becomes a fault, with the slave that it comes from in farewell().
 #pragma once
 
@@ -64,8 +66,12 @@ class EthercatDevice final : public device::ConnectedDevice {
     return config_.machine.slaves[slave].mode != DriveMode::kNone;
   }
   void start();
-  void come_into_step();
+  bool come_into_step() noexcept;
   void await_drives();
+  void rest() noexcept;
+  bool has_paused() const noexcept;
+  void wake() noexcept;
+  void call_to_op() noexcept;
   void wait_for_turn() noexcept;
   int exchange() noexcept;
   void take_in() noexcept;
@@ -101,9 +107,10 @@ class EthercatDevice final : public device::ConnectedDevice {
   bool has_command_ = false;
   std::uint64_t sequence_ = 0;
   std::uint32_t lost_in_a_row_ = 0, incomplete_in_a_row_ = 0;
-  bool is_in_use_ = false;  ///< the first read() has come: drives are switched on
-  bool was_reset_ = false;  ///< reset button in the last command
-  int recovery_ = 0;        ///< exchanges that are left to recover; 0: does not recover
+  bool is_in_use_ = false;         ///< the first read() has come: drives are switched on
+  std::int64_t exchanged_ns_ = 0;  ///< time of the last exchange
+  bool was_reset_ = false;         ///< reset button in the last command
+  int recovery_ = 0;               ///< exchanges that are left to recover; 0: does not recover
   bool is_closed_ = false;
   // what has stopped the machine; kept for farewell() until it recovers
   Cause cause_ = Cause::kNone;

@@ -35,6 +35,8 @@ class Pace {
     settled_ = std::abs(error_ns_) < period_ns_ / kClose ? settled_ + 1 : 0;
   }
 
+  /// The next frames have to come into step anew.
+  void restart() noexcept { settled_ = 0; }
   /// Whether the last frames have passed near the middle between two pulses.
   bool is_settled() const noexcept { return settled_ >= kSettled; }
   /// How late the last frame was, against the middle.

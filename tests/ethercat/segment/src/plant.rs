@@ -63,6 +63,7 @@ pub struct Sensed {
 pub struct Plant {
     socket: UdpSocket,
     description: [u8; DESCRIPTION_BYTES],
+    nonce: u32, // of the last hello; its welcome repeats it
     session: Option<Session>,
 }
 
@@ -82,7 +83,8 @@ impl Plant {
             Ok(socket)
         };
         let socket = open().map_err(|error| format!("{address}: {error}"))?;
-        let mut plant = Plant { socket, description: [0; DESCRIPTION_BYTES], session: None };
+        let mut plant =
+            Plant { socket, description: [0; DESCRIPTION_BYTES], nonce: 0, session: None };
         plant.begin().map_err(|error| format!("{address}: {error}"))?;
         plant.tell(line);
         plant.end();
@@ -119,11 +121,11 @@ impl Plant {
 
     fn begin(&mut self) -> io::Result<()> {
         self.session = Some(Session { id: 0, number: 0, sensed: None });
-        let mut welcome = self.ask(HELLO, &hello(&self.description), WELCOME)?;
+        let mut welcome = self.introduce()?;
         if u32_at(&welcome, 40) != 0 {
             // the refusal says what the device is
             self.description.copy_from_slice(&welcome[48..48 + DESCRIPTION_BYTES]);
-            welcome = self.ask(HELLO, &hello(&self.description), WELCOME)?;
+            welcome = self.introduce()?;
         }
         if u32_at(&welcome, 40) != 0 {
             let reason =
@@ -135,6 +137,15 @@ impl Plant {
             session.number = 0;
         }
         self.ask(READY, &[], SENSORS).map(|_| ())
+    }
+
+    fn introduce(&mut self) -> io::Result<Vec<u8>> {
+        self.nonce += 1;
+        let mut hello = u64::from(self.nonce).to_le_bytes().to_vec();
+        hello.extend(self.description);
+        hello.extend(b"segment");
+        hello.resize(8 + DESCRIPTION_BYTES + 64, 0);
+        self.ask(HELLO, &hello, WELCOME)
     }
 
     fn end(&mut self) {
@@ -185,7 +196,7 @@ impl Plant {
             return false;
         }
         if wanted == WELCOME {
-            return true;
+            return u32_at(bytes, 32) == self.nonce;
         }
         let sensed = sensors(bytes);
         let is_new = session.sensed.as_ref().is_none_or(|last| sensed.sequence > last.sequence);
@@ -235,15 +246,6 @@ impl Plant {
         put(&mut bytes, axes, &dq_p);
         bytes
     }
-}
-
-fn hello(description: &[u8]) -> Vec<u8> {
-    let mut bytes = 1u64.to_le_bytes().to_vec();
-    bytes.extend(description);
-    let mut client = b"segment".to_vec();
-    client.resize(64, 0);
-    bytes.extend(client);
-    bytes
 }
 
 fn put(bytes: &mut Vec<u8>, count: u32, values: &[f64]) {
