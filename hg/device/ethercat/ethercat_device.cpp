@@ -12,7 +12,7 @@
 namespace hg::ethercat {
 namespace {
 
-constexpr std::uint32_t kSilent = 10;            // exchanges without an answer
+constexpr std::uint32_t kSilent = 10;            // exchanges without an answer in a row
 constexpr std::uint32_t kNoticed = 3;            // exchanges that are not complete, as rule 109
 constexpr int kStartCycles = 1000;               // until all drives are without fault
 constexpr int kStepCycles = 5000;                // until frames are in step with the clocks
@@ -81,12 +81,14 @@ void EthercatDevice::start() {
   frame_.q_p = VectorP::Zero(config_.n_p);
 }
 
+bool EthercatDevice::is_silent() const noexcept { return lost_in_a_row_ >= kSilent; }
+
 // Drives want their frames between the sync pulses before they go to OP. False: they are not.
 bool EthercatDevice::come_into_step() noexcept {
   const bool has_pulses = std::ranges::any_of(config_.machine.slaves, &Slave::is_synchronous);
   if (!has_pulses || config_.machine.moves_with_frames) return true;
   pace_.restart();
-  for (int i = 0; i < kStepCycles && !pace_.is_settled(); ++i) exchange();
+  for (int i = 0; i < kStepCycles && !pace_.is_settled() && !is_silent(); ++i) exchange();
   return pace_.is_settled();
 }
 
@@ -96,7 +98,7 @@ void EthercatDevice::await_drives() {
     return !is_drive(i) || state_of(stations_[i].status) == DriveState::kSwitchOnDisabled;
   };
   bool has_answer = false;
-  for (int i = 0; i < kStartCycles; ++i) {
+  for (int i = 0; i < kStartCycles && !is_silent(); ++i) {
     recovery_ = kStartCycles - i;
     if (exchange() != expected_) continue;
     take_in();
@@ -133,9 +135,10 @@ bool EthercatDevice::has_paused() const noexcept {
 // To OP again after a pause; drives stay off. A slave that does not come along is a fault.
 void EthercatDevice::wake() noexcept {
   is_in_use_ = false;
+  lost_in_a_row_ = 0;
   come_into_step();
   recovery_ = kStartCycles + 1;
-  for (int i = 0; i < kStartCycles && recovery_ > 0; ++i) {
+  for (int i = 0; i < kStartCycles && recovery_ > 0 && !is_silent(); ++i) {
     if (exchange() < 0) continue;
     take_in();
     look_at_recovery();
@@ -156,6 +159,7 @@ int EthercatDevice::exchange() noexcept {
   put_out();
   const int counter = master_.exchange(patience_us_);
   exchanged_ns_ = now_ns();
+  lost_in_a_row_ = counter < 0 ? lost_in_a_row_ + 1 : 0;
   if (counter >= 0 && master_.time_ns() != 0) pace_.follow(master_.time_ns());
   return counter;
 }
@@ -172,7 +176,6 @@ void EthercatDevice::read(SensorFrame& sensors) noexcept {
     return repeat(sensors);
   }
   ++counts_.received;
-  lost_in_a_row_ = 0;
   frame_.bus_errors = 0;
   if (has_command_) frame_.answered_sequence = command_.sequence;
   take_in();
@@ -197,7 +200,7 @@ void EthercatDevice::take_lost() noexcept {
   ++counts_.held;
   frame_.bus_errors = static_cast<std::uint32_t>(stations_.size());
   note_incomplete(0);
-  if (++lost_in_a_row_ >= kSilent) stop(Cause::kSilent, 0, FaultCode::kDeviceSilent);
+  if (is_silent()) stop(Cause::kSilent, 0, FaultCode::kDeviceSilent);
 }
 
 void EthercatDevice::take_in() noexcept {

@@ -66,6 +66,7 @@ class EthercatDevice final : public device::ConnectedDevice {
     return config_.machine.slaves[slave].mode != DriveMode::kNone;
   }
   void start();
+  bool is_silent() const noexcept;
   bool come_into_step() noexcept;
   void await_drives();
   void rest() noexcept;
