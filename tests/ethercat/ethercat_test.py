@@ -500,7 +500,7 @@ class Bus(unittest.TestCase):
         segment.tell("refuse axis_2 0x0016")
         code, said = self.scan()
         self.assertEqual(code, 2)
-        self.assertIn("slave 2 of 9 (0x1001) stays in INIT: AL status code 0x0016, ", said)
+        self.assertIn("slave 2 of 9 (0x1001) stays in INIT: AL status code 0x0016: ", said)
         segment.tell("refuse axis_2 0")
         self.assertEqual(self.scan()[0], 0)
         segment.close()

@@ -189,6 +189,11 @@ class Check(unittest.TestCase):
             self.assertEqual(code, 0, said)
             self.assertIn("11 slaves on master0 are those of", said)
             self.assertEqual([slave["status"] for slave in one.show()], [2] * 11)
+            wire = bus.Wire()
+            for address in [*range(0x1000, 0x1008), 0x100A]:  # 2 s in units of 100 us
+                self.assertEqual(wire.exchange(bus.FPRD, (address, 0x0420), b"\0\0"),
+                                 ((20000).to_bytes(2, "little"), 1))
+            wire.close()
 
     def test_each_difference_is_one_sentence(self):
         with segment():
@@ -196,7 +201,8 @@ class Check(unittest.TestCase):
                     ("product: 0x110", "product: 0x111",
                      "slave 1 (ppu1): product 0x00000110 found, expected is 0x00000111"),
                     ("value: 1956", "value: 5000",
-                     "slave 3 (m1): object 0x6072:0 does not take 5000: abort code 0x06090030"),
+                     "slave 3 (m1): object 0x6072:0 does not take 5000: abort code 0x06090030: "
+                     "Value range"),
                     ("{object: 0x6071, bits: 16, is: target_torque, scale: 0.06}",
                      "{object: 0x60FF, bits: 32, is: target_torque}",
                      "slave 5 (m3): entry 2 of its outputs is 0x6071:0 of 16 bits, expected is "
@@ -257,7 +263,7 @@ class Faults(unittest.TestCase):
     def test_a_drive_that_falls_out(self):
         self.run_until("fall m2 safeop 0x001B", "drive reports a fault",
                        "slave 4 (m2), address 0x1003: has left OP: SAFE-OP + error, AL status code "
-                       "0x001b")
+                       "0x001b: Sync")
 
     def test_a_sensor_that_falls_out(self):
         self.run_until("fall wrist preop 0x0050", "fieldbus answers are missing",

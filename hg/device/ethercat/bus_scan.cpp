@@ -17,7 +17,8 @@ std::string fault_of(Master& master, std::size_t index) {
   const auto found = master.status(index, kPatience_us);
   if (!found) return "does not answer";
   if (found->status == kOp) return "";
-  return fmt::format("{}, AL status code {:#06x}", state_name(found->status), found->code);
+  return fmt::format("{}, AL status code {}", state_name(found->status),
+                     status_code_words(found->code));
 }
 
 // which slaves have left OP

@@ -383,8 +383,9 @@ std::string EthercatDevice::farewell() const {
                          kNoticed, culprit_counter_, expected_);
     case Cause::kLeftOp:
       if (culprit_status_.status == 0) return named("does not answer");
-      return named(fmt::format("has left OP: {}, AL status code {:#06x}",
-                               state_name(culprit_status_.status), culprit_status_.code));
+      return named(fmt::format("has left OP: {}, AL status code {}",
+                               state_name(culprit_status_.status),
+                               status_code_words(culprit_status_.code)));
     case Cause::kDrive:
       return named("the drive has failed: " + drive_words());
     case Cause::kDisabled:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstring>
 
 #include "hg/core/error.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kToOp_ns = 10'000'000'000;  // ETG.1020
 constexpr std::uint32_t kToOpPatience_us = 500'000;
+constexpr std::size_t kWords = 160;
 
 BusSlave slave_of(const bus_slave& found) {
   return {.name = found.name,
@@ -149,6 +151,19 @@ std::string state_name(std::uint8_t status) {
     }
   }();
   return (status & kErrorFlag) != 0 ? name + " + error" : name;
+}
+
+std::string status_code_words(std::uint16_t code) {
+  std::array<char, kWords> text;
+  bus_status_code_words(code, text.data(), text.size());
+  return text.data();
+}
+
+std::string abort_words(std::int64_t abort) {
+  if (abort < 0) return "does not answer";
+  std::array<char, kWords> text;
+  bus_abort_code_words(static_cast<std::uint32_t>(abort), text.data(), text.size());
+  return fmt::format("abort code {}", text.data());
 }
 
 }  // namespace hg::ethercat

@@ -102,4 +102,10 @@ class Master {
 /// Name of the state in an AL status, with "+ error" where its error flag is set.
 std::string state_name(std::uint8_t status);
 
+/// An AL status code with its meaning: "0x001b: Sync Manager Watchdog".
+std::string status_code_words(std::uint16_t code);
+
+/// What came of an access that failed: "does not answer", or the abort code with its meaning.
+std::string abort_words(std::int64_t abort);
+
 }  // namespace hg::ethercat

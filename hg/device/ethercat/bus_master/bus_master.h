@@ -72,7 +72,12 @@ void bus_master_explain(bus_master* master);
 /// Bytes of process data of a slave, after the start. False: there is none.
 bool bus_master_sizes(bus_master* master, size_t index, size_t* outputs, size_t* inputs);
 
-// The functions below neither allocate, lock nor panic.
+/// An AL status code or the abort code of an object with its meaning, for example "0x001b: Sync
+/// Manager Watchdog".
+void bus_status_code_words(uint16_t code, char* text, size_t size);
+void bus_abort_code_words(uint32_t code, char* text, size_t size);
+
+// The functions below neither allocate nor wait for a lock, and no panic leaves them.
 
 /// Outputs of a slave from the next exchange on; of another size they are ignored.
 void bus_master_set_outputs(bus_master* master, size_t index, const uint8_t* data, size_t size);

@@ -36,6 +36,10 @@ void bus_master_explain(bus_master*) {}
 
 bool bus_master_sizes(bus_master*, size_t, size_t*, size_t*) { return false; }
 
+void bus_status_code_words(uint16_t, char* text, size_t) { *text = 0; }
+
+void bus_abort_code_words(uint32_t, char* text, size_t) { *text = 0; }
+
 void bus_master_set_outputs(bus_master*, size_t, const uint8_t*, size_t) {}
 
 void bus_master_inputs(const bus_master*, size_t, uint8_t*, size_t) {}

@@ -9,11 +9,11 @@ use std::ffi::{c_char, CStr, CString};
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::time::Duration;
 
-use ethercrab::error::{Error, Item, MailboxError};
+use ethercrab::error::{CoeAbortCode, Error, Item, MailboxError};
 use ethercrab::subdevice_group::{Op, PreOp, SafeOp};
 use ethercrab::{
-    AlStatusCode, Command, DefaultLock, MainDevice, MainDeviceConfig, PduStorage, SubDeviceGroup,
-    Timeouts,
+    AlStatusCode, Command, DefaultLock, EtherCrabWireRead, MainDevice, MainDeviceConfig,
+    PduStorage, SubDeviceGroup, Timeouts,
 };
 
 use link::Link;
@@ -347,8 +347,7 @@ impl Bus {
             let address = FIRST_ADDRESS + i;
             match self.status(address, PATIENCE) {
                 Some((status, code)) if status & ERROR_FLAG != 0 => named.push(format!(
-                    "slave {} of {count} ({address:#06x}) stays in {}: AL status code {code:#06x}, \
-                     {}",
+                    "slave {} of {count} ({address:#06x}) stays in {}: AL status code {}",
                     i + 1,
                     state_name(status),
                     AlStatusCode::from(code)
@@ -384,9 +383,17 @@ fn abort_code(error: Error) -> i64 {
 
 fn name_of(text: &str) -> [u8; NAME_BYTES] {
     let mut name = [0; NAME_BYTES];
-    let length = text.len().min(NAME_BYTES - 1);
-    name[..length].copy_from_slice(&text.as_bytes()[..length]);
+    put_text(text, &mut name);
     name
+}
+
+/// As much of a text as there is room for, zero-terminated.
+fn put_text(text: &str, room: &mut [u8]) {
+    let length = text.len().min(room.len().saturating_sub(1));
+    room[..length].copy_from_slice(&text.as_bytes()[..length]);
+    if let Some(end) = room.get_mut(length) {
+        *end = 0;
+    }
 }
 
 impl bus_master {
@@ -688,6 +695,24 @@ pub unsafe extern "C" fn bus_master_status(
     *status = (found & 0x1F) as u8;
     *code = found_code;
     true
+}
+
+/// # Safety
+/// `text` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_status_code_words(code: u16, text: *mut u8, size: usize) {
+    put_text(&AlStatusCode::from(code).to_string(), std::slice::from_raw_parts_mut(text, size));
+}
+
+/// # Safety
+/// `text` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_abort_code_words(code: u32, text: *mut u8, size: usize) {
+    let words = match CoeAbortCode::unpack_from_slice(&code.to_le_bytes()) {
+        Ok(known) => known.to_string(),
+        Err(_) => format!("{code:#010x}"),
+    };
+    put_text(&words, std::slice::from_raw_parts_mut(text, size));
 }
 
 /// # Safety
