@@ -248,6 +248,16 @@ class Faults(unittest.TestCase):
         self.run_until("lose 3", "fieldbus answers are missing",
                        "3 exchanges in a row were incomplete: working counter 0 of 29")
 
+    def test_two_lost_frames_do_no_harm(self):
+        with haptic_giant() as address, segment(plant=address) as one:
+            one.tell("after 9600 lose 2")  # the door pops open
+            one.tell("after 12000 lose 2")  # it falls shut
+            code, said, summary = over_the_bus().wait()
+        self.assertEqual(code, 0, said)
+        self.assertEqual(summary["missing_events"], [], said)
+        self.assertTrue(summary["limits_held"], said)
+        self.assertEqual((summary["link"]["lost"], summary["link"]["held"]), (4, 4), said)
+
     def test_silence(self):
         self.run_until("lose 1000000 any", "fieldbus answers are missing",
                        "master0: no answer to 10 frames in a row")
