@@ -310,20 +310,25 @@ panel:
         file.write_text(text.replace("../", f"{ROOT}/models/") + self.PANEL)
         return file
 
-    def expect_recovery(self, command):
+    def expect_recovery(self, command, fault="113 drive reports a fault"):
         with haptic_giant() as address, segment(plant=address) as one, \
                 tempfile.TemporaryDirectory() as folder:
             one.tell(f"after {FAULT_FRAME} {command}")
-            code, said, summary = over_the_bus(scenario=self.scenario(folder)).wait()
+            code, said, summary = over_the_bus("--duration", "6",
+                                               scenario=self.scenario(folder)).wait()
         self.assertEqual(code, 3, said)  # there was a fault
-        self.assertIn("113 drive reports a fault", said)
-        self.assertEqual(summary["missing_events"], [], said)
+        self.assertIn(fault, said)
+        self.assertEqual([event["name"] for event in summary["events"]],
+                         ["locked", "handle pressed", "pulled"], said)
         self.assertTrue(summary["limits_held"], said)
 
     def test_a_drive_that_has_tripped_is_reset(self):
         self.expect_recovery("trip m1 0x3210")
 
-    def test_a_slave_that_has_fallen_is_called_back(self):
+    def test_a_sensor_that_has_fallen_is_called_back(self):
+        self.expect_recovery("fall wrist safeop 0x001B", "109 fieldbus answers are missing")
+
+    def test_a_drive_that_has_fallen_is_called_back(self):
         self.expect_recovery("fall m2 safeop 0x001B")
 
 

@@ -171,18 +171,20 @@ void EthercatDevice::read(SensorFrame& sensors) noexcept {
   is_in_use_ = true;
   const int counter = exchange();
   ++counts_.sent;
+  frame_.bus_errors = 0;
+  suspect_ = Cause::kNone;
   if (counter < 0) {
     take_lost();
     return repeat(sensors);
   }
   ++counts_.received;
-  frame_.bus_errors = 0;
   if (has_command_) frame_.answered_sequence = command_.sequence;
   take_in();
   look_at_counter(counter);
   look_at_states();
   look_at_drives();
   look_at_sensors();
+  look_at_bus_errors(counter);
   if (recovery_ > 0) look_at_recovery();
   repeat(sensors);
 }
@@ -199,7 +201,8 @@ void EthercatDevice::take_lost() noexcept {
   ++counts_.lost;
   ++counts_.held;
   frame_.bus_errors = static_cast<std::uint32_t>(stations_.size());
-  note_incomplete(0);
+  suspect(Cause::kIncomplete, 0);
+  look_at_bus_errors(0);
   if (is_silent()) stop(Cause::kSilent, 0, FaultCode::kDeviceSilent);
 }
 
@@ -210,29 +213,29 @@ void EthercatDevice::take_in() noexcept {
   }
 }
 
+// The last one counts: a working counter only says that something is wrong.
+void EthercatDevice::suspect(Cause cause, std::size_t slave) noexcept {
+  suspect_ = cause;
+  suspected_ = slave;
+}
+
 void EthercatDevice::look_at_counter(int counter) noexcept {
-  if (counter == expected_) {
-    incomplete_in_a_row_ = 0;
-    return;
-  }
+  if (counter == expected_) return;
   frame_.bus_errors = 1;
-  note_incomplete(counter);
+  suspect(Cause::kIncomplete, 0);
 }
 
-// The monitor stops the device; what it was is kept for farewell().
-void EthercatDevice::note_incomplete(int counter) noexcept {
-  if (++incomplete_in_a_row_ != kNoticed || cause_ != Cause::kNone) return;
-  cause_ = Cause::kIncomplete;
-  culprit_counter_ = counter;
-}
-
-// A drive that has left OP stops at once; without another slave the device still stops under
-// control.
+// A drive that has left OP stops the machine at once; without another slave the monitor stops it
+// under control.
 void EthercatDevice::look_at_states() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     if (master_.state(i) == kOp) continue;
     ++frame_.bus_errors;
-    stop(Cause::kLeftOp, i, is_drive(i) ? FaultCode::kDriveFault : FaultCode::kBusErrors);
+    if (is_drive(i)) {
+      stop(Cause::kLeftOp, i, FaultCode::kDriveFault);
+    } else {
+      suspect(Cause::kLeftOp, i);
+    }
   }
 }
 
@@ -258,16 +261,30 @@ void EthercatDevice::look_at_drive(std::size_t slave, bool is_enabled) noexcept 
 
 void EthercatDevice::look_at_sensors() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    if (is_drive(i)) continue;
-    if (!stations_[i].has_new_samples) ++frame_.bus_errors;
-    if (stations_[i].error != 0) stop(Cause::kSensor, i, FaultCode::kBusErrors);
+    if (is_drive(i) || master_.state(i) != kOp) continue;
+    const Station& station = stations_[i];
+    if (station.has_new_samples && station.error == 0) continue;
+    ++frame_.bus_errors;
+    suspect(station.error != 0 ? Cause::kSensor : Cause::kNoSamples, i);
   }
 }
 
-// The first cause counts; the reason of a slave that has left OP is asked for once.
+// The monitor stops the machine; the cause is kept for farewell().
+void EthercatDevice::look_at_bus_errors(int counter) noexcept {
+  incomplete_in_a_row_ = frame_.bus_errors > 0 ? incomplete_in_a_row_ + 1 : 0;
+  if (incomplete_in_a_row_ != kNoticed || cause_ != Cause::kNone) return;
+  culprit_counter_ = counter;
+  blame(suspect_, suspected_);
+}
+
 void EthercatDevice::stop(Cause cause, std::size_t slave, FaultCode fault) noexcept {
   if (fault_ != FaultCode::kNone || (recovery_ > 0 && cause != Cause::kSilent)) return;
   fault_ = fault;
+  blame(cause, slave);
+}
+
+// The reason of a slave that has left OP is asked for once.
+void EthercatDevice::blame(Cause cause, std::size_t slave) noexcept {
   cause_ = cause;
   culprit_ = slave;
   culprit_status_ = {};
@@ -293,7 +310,7 @@ bool EthercatDevice::is_finite(const CommandFrame& command) const noexcept {
 
 // Slaves are called back to OP; drives are reset by their next control words.
 void EthercatDevice::recover() noexcept {
-  if (cause_ == Cause::kSilent) return;
+  if (cause_ == Cause::kNone || cause_ == Cause::kSilent) return;
   recovery_ = kRecoveryCycles;
   call_to_op();
 }
@@ -395,6 +412,8 @@ std::string EthercatDevice::farewell() const {
           fmt::format("the drive does not follow after {:g} s: {}", kEnabling, drive_words()));
     case Cause::kSensor:
       return named(fmt::format("the sensor reports fault {:#06x}", stations_[culprit_].error));
+    case Cause::kNoSamples:
+      return named("the sensor gives no new samples");
     case Cause::kSilent:
       return fmt::format("{}: no answer to {} frames in a row: interface, first cable, first slave",
                          config_.interface_name, kSilent);

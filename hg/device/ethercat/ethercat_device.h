@@ -52,12 +52,13 @@ class EthercatDevice final : public device::ConnectedDevice {
   /// Why the machine has stopped.
   enum class Cause : std::uint8_t {
     kNone,
-    kIncomplete,  ///< the monitor has stopped it
+    kIncomplete,
     kLeftOp,
     kDrive,
     kDisabled,
     kNotEnabled,
     kSensor,
+    kNoSamples,
     kSilent,
     kNotFinite,
   };
@@ -78,14 +79,16 @@ class EthercatDevice final : public device::ConnectedDevice {
   void take_in() noexcept;
   void take_lost() noexcept;
   void repeat(SensorFrame& sensors) noexcept;
+  void suspect(Cause cause, std::size_t slave) noexcept;
   void look_at_counter(int counter) noexcept;
-  void note_incomplete(int counter) noexcept;
   void look_at_states() noexcept;
   void look_at_drives() noexcept;
   void look_at_drive(std::size_t slave, bool is_enabled) noexcept;
   void look_at_sensors() noexcept;
+  void look_at_bus_errors(int counter) noexcept;
   void look_at_recovery() noexcept;
   void stop(Cause cause, std::size_t slave, FaultCode fault) noexcept;
+  void blame(Cause cause, std::size_t slave) noexcept;
   void recover() noexcept;
   void put_out() noexcept;
   bool all_follow() const noexcept;
@@ -113,6 +116,9 @@ class EthercatDevice final : public device::ConnectedDevice {
   bool was_reset_ = false;         ///< reset button in the last command
   int recovery_ = 0;               ///< exchanges that are left to recover; 0: does not recover
   bool is_closed_ = false;
+  // why the bus has errors in this sample
+  Cause suspect_ = Cause::kNone;
+  std::size_t suspected_ = 0;
   // what has stopped the machine; kept for farewell() until it recovers
   Cause cause_ = Cause::kNone;
   std::size_t culprit_ = 0;
