@@ -360,6 +360,21 @@ class Start(unittest.TestCase):
             self.assertEqual(tried.returncode, 2, tried.stdout)
             self.assertIn("no start test of HapticGiant that counts: there is none", tried.stderr)
 
+    def test_with_a_file_that_does_not_fit_the_device_is_refused(self):
+        for old, new, sentence in (
+                ("is: joint_torque", "is: nothing", "slave 'm1': input 'joint_torque' is missing, "
+                 "which the control of HapticGiant needs"),
+                ("is: angular_rate_z", "is: nothing", "no slave has the input 'angular_rate_z'"),
+                ("is: dead_man", "is: nothing", "no slave has the input 'dead_man'"),
+                ("mode: csv", "mode: cst", "the target of its mode is missing"),
+                ("joint: m1", "joint: m2", "joint 'm1' must have one drive, got 0")):
+            with self.subTest(sentence), tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+                text = FILE.read_text()
+                self.assertIn(old, text)
+                file.write(text.replace(old, new, 1))
+                file.flush()
+                self.refused(sentence, arguments=("--machine", file.name))
+
     def test_that_cannot_be_read_is_refused(self):
         self.refused("nothing.yaml: no such file", arguments=("--machine", "nothing.yaml"))
 
