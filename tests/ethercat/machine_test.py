@@ -136,11 +136,16 @@ class Positions(unittest.TestCase):
     def machine(self):
         scale = 2 * math.pi / self.TURN
         drives = [{"name": name, "vendor": 0x00FFFF00, "product": 0x130, "revision": 1,
-                   "joint": name, "mode": "csp", "synchronous": True, "outputs": [
+                   "joint": name, "mode": "csp", "synchronous": True,
+                   "settings": [  # another mapping than the drive has by itself
+                       {"object": 0x1C12, "bits": 8, "value": 0},
+                       {"object": 0x1C12, "subindex": 1, "bits": 16, "value": 0x1601},
+                       {"object": 0x1C12, "bits": 8, "value": 1}],
+                   "outputs": [
+                       {"object": 0x6060, "bits": 8, "is": "mode"}, {"bits": 8},
                        {"object": 0x6040, "bits": 16, "is": "control_word"},
                        {"object": 0x607A, "bits": 32, "is": "target_position", "scale": scale},
-                       {"object": 0x60FF, "bits": 32}, {"object": 0x6071, "bits": 16},
-                       {"object": 0x6060, "bits": 8, "is": "mode"}, {"bits": 8}],
+                       {"object": 0x60B2, "bits": 16}],
                    "inputs": [
                        {"object": 0x6041, "bits": 16, "is": "status_word"},
                        {"object": 0x6064, "bits": 32, "is": "link_position", "scale": scale},
