@@ -65,17 +65,18 @@ void PreparedRun::connect_ethercat() {
   if (!arguments.key_file.empty()) throw SetupError("--key-file: a bus has no key");
   const ethercat::EthercatConfig config = scenario::ethercat_config(
       arguments.device_address, arguments.machine, scenario, arguments.is_fast);
-  if (config.machine.moves_with_frames) {
-    note = "the machine file says that the segment is a simulation: no start test is required";
-  } else if (arguments.without_start_test) {
-    note = "driven without a start test: brakes and stop inputs were not tested by this program";
-  } else {
-    throw SetupError(arguments.device_address +
-                     ": there is no start test of a machine on a bus yet: test its brakes and "
-                     "stop inputs by hand, then give --without-start-test");
+  const start_test::MachineMemory memory = machine_memory(arguments);
+  if (!config.machine.moves_with_frames) {
+    start_test = start_test::check_start_test(memory, scenario.device);
   }
   auto connected = std::make_unique<ethercat::EthercatDevice>(config);
   remote = connected.get();
+  if (config.machine.moves_with_frames) {
+    note = "the machine file says that the segment is a simulation: no start test is required";
+  } else {
+    posture = start_test::check_posture(memory, scenario.device, *connected);
+    machine = connected.get();
+  }
   device = std::move(connected);
 }
 
@@ -91,6 +92,7 @@ void PreparedRun::connect_remote() {
     const start_test::MachineMemory memory = machine_memory(arguments);
     start_test = start_test::check_start_test(memory, scenario.device);
     posture = start_test::check_posture(memory, scenario.device, *connected);
+    connected->close(FaultCode::kNone);
     // the server may not know yet that the session for the posture is over
     constexpr double kFarewell = 0.5;  // s
     connected = connect(kFarewell);

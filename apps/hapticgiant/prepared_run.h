@@ -9,7 +9,6 @@
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/device/connected_device.h"
-#include "hg/device/udp/remote_device.h"
 #include "hg/page/run_page.h"
 
 namespace hg::apps {
@@ -30,8 +29,8 @@ struct PreparedRun {
   std::unique_ptr<device::Device> device;
   /// `device` as one at the other end of a connection; nullptr = simulated here
   device::ConnectedDevice* remote = nullptr;
-  /// `device` as a real machine behind our protocol, which has a start test; nullptr = it is none
-  udp::RemoteDevice* machine = nullptr;
+  /// `device` as a real machine that has a start test; nullptr = it is none
+  device::ConnectedDevice* machine = nullptr;
   std::string note;  ///< why a remote device needs no start test
   /// Messages on a machine's start test and posture; see machine_memory.h
   std::string start_test, posture;

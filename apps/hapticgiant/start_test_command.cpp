@@ -29,13 +29,25 @@
 
 namespace hg::apps {
 
+namespace {
+
+std::unique_ptr<ethercat::EthercatDevice> connect_machine(const StartTestArguments& arguments,
+                                                          const config::Scenario& scenario) {
+  const ethercat::EthercatConfig config = scenario::ethercat_config(
+      arguments.device_address, arguments.machine, scenario, arguments.is_fast);
+  if (config.machine.moves_with_frames) {
+    throw SetupError(
+        "start-test: the segment is a simulation, whose stop button the bus does not reach; leave "
+        "--device-address out");
+  }
+  return std::make_unique<ethercat::EthercatDevice>(config);
+}
+
+}  // namespace
+
 int start_test(const StartTestArguments& arguments) {
   if (scenario::is_franka(arguments.device_address)) {
     throw SetupError("start-test: a Franka tests its brakes and stop inputs itself, see Desk");
-  }
-  if (scenario::is_ethercat(arguments.device_address)) {
-    throw SetupError(
-        "start-test: not for a machine on a bus yet, test its brakes and stop inputs by hand");
   }
   RunArguments run;
   run.world = arguments.world;
@@ -46,17 +58,23 @@ int start_test(const StartTestArguments& arguments) {
   make_folder(arguments.recordings);
 
   std::unique_ptr<device::Device> device;
-  udp::RemoteDevice* remote = nullptr;
+  device::ConnectedDevice* remote = nullptr;
+  bool is_simulated = true;
   if (arguments.device_address.empty()) {
     device = scenario::make_simulated_device(scenario);
+  } else if (scenario::is_ethercat(arguments.device_address)) {
+    auto connected = connect_machine(arguments, scenario);
+    is_simulated = false;
+    remote = connected.get();
+    device = std::move(connected);
   } else {
     auto connected = scenario::connect_device(
         arguments.device_address, scenario::key_of(arguments.key_file), scenario,
         std::string("hapticgiant run ") + kVersion, arguments.is_fast);
+    is_simulated = connected->welcome().is_simulated;
     remote = connected.get();
     device = std::move(connected);
   }
-  const bool is_simulated = remote == nullptr || remote->welcome().is_simulated;
   const std::string file = start_test::start_test_file(
       arguments.recordings, scenario.device, is_simulated ? "" : arguments.device_address);
   check_writable(file);
@@ -118,7 +136,12 @@ void add_start_test(CLI::App& app, int& exit_code) {
       "  hapticgiant start-test --device my_arm_device.yaml --device-address 192.168.1.20:4810");
   add_scenario_options(*command, arguments->world);
   command->add_option("--device-address", arguments->device_address,
-                      "HOST:PORT of a remote device instead of a simulated one");
+                      "HOST:PORT of a remote device instead of a simulated one, or "
+                      "ethercat://INTERFACE of a machine on a bus");
+  command
+      ->add_option("--machine", arguments->machine,
+                   "machine.yaml of a bus; default: the one beside the device file")
+      ->needs("--device-address");
   command
       ->add_option("--key-file", arguments->key_file,
                    "secret that the remote device has, too (docs/reference/device_protocol.md)")

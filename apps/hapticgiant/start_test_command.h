@@ -13,10 +13,12 @@ namespace hg::apps {
 
 struct StartTestArguments {
   scenario::ScenarioOptions world{.scenario = "free_space"};
-  std::string device_address;  ///< HOST:PORT of a remote device; empty = simulated here
-  std::string key_file;        ///< file of the key shared with the device; empty = none
-  bool is_fast = false;        ///< lock-step with a remote device
-  int priority = 80;  ///< SCHED_FIFO priority, with a remote device in real time; 0 = ordinary
+  /// HOST:PORT of a remote device, or ethercat://INTERFACE; empty = simulated here
+  std::string device_address;
+  std::string machine;   ///< machine.yaml of a bus; empty = the one beside the device file
+  std::string key_file;  ///< file of the key shared with the device; empty = none
+  bool is_fast = false;  ///< lock-step with a remote device
+  int priority = 80;     ///< SCHED_FIFO priority, with a remote device in real time; 0 = ordinary
   std::string recordings = "recordings";  ///< folder for the result
 };
 

@@ -500,7 +500,7 @@ class Bus(unittest.TestCase):
         segment.tell("refuse axis_2 0x0016")
         code, said = self.scan()
         self.assertEqual(code, 2)
-        self.assertIn("slave 2 of 9 (0x1001) stays in INIT: AL status code 0x0016, ", said)
+        self.assertIn("slave 2 of 9 (0x1001) stays in INIT: AL status code 0x0016: ", said)
         segment.tell("refuse axis_2 0")
         self.assertEqual(self.scan()[0], 0)
         segment.close()
@@ -558,7 +558,8 @@ class Words(unittest.TestCase):
                                ("fall imu off 1", "expected init, preop or safeop, got 'off'"),
                                ("trip panel 1", "'panel' has no faults"),
                                ("trip axis_1 0x12345", "expected a code of 16 bits"),
-                               ("loose 1", "cannot read 'loose 1'; commands: lose, late")):
+                               ("after 5", "cannot read 'after 5'"),
+                               ("loose 1", "cannot read 'loose 1'; commands: after, lose")):
             with self.subTest(command):
                 self.assertIn("error: " + words, segment.ask(command))
         segment.close()

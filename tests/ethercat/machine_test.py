@@ -9,6 +9,7 @@ skipped (exit code 77).
 
 import contextlib
 import json
+import math
 import os
 import pathlib
 import re
@@ -26,6 +27,7 @@ FILE = ROOT / "models" / "haptic_giant" / "machine.yaml"
 SIMULATION = ROOT / "models" / "haptic_giant" / "simulation.yaml"
 SKIPPED = 77
 PATIENCE = 100  # s
+FAULT_FRAME = 2600  # at about 2.5 s of a run: the hand leans against the locked door
 PROGRAM = SEGMENT = None
 
 
@@ -39,42 +41,42 @@ def segment(layout=LAYOUT, plant=None):
 
 
 @contextlib.contextmanager
-def plant(scenario="door"):
-    """The address of a simulated machine. Its commands are valid at once: the bus is the latency."""
+def plant(scenario="door", *arguments):
+    """The address of a simulated machine."""
+    server = subprocess.Popen([PROGRAM, "simulate", scenario, "--fast", "--listen", "127.0.0.1:0",
+                               *arguments], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+    try:
+        for line in server.stdout:
+            if line.startswith("address"):
+                yield line.split()[1]
+                break
+    finally:
+        server.terminate()
+        server.communicate(timeout=PATIENCE)
+
+
+@contextlib.contextmanager
+def haptic_giant():
+    """The same for the door. Its commands are valid at once: the bus is the latency."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder, "simulation.yaml")
         text, count = re.subn(r"\n  latency: 1 .*", "\n  latency: 0.001", SIMULATION.read_text())
         assert count == 1
         file.write_text(text)
-        server = subprocess.Popen([PROGRAM, "simulate", scenario, "--fast", "--listen",
-                                   "127.0.0.1:0", "--simulation", file], cwd=ROOT,
-                                  stdout=subprocess.PIPE, text=True)
-        try:
-            for line in server.stdout:
-                if line.startswith("address"):
-                    yield line.split()[1]
-                    break
-        finally:
-            server.terminate()
-            server.communicate(timeout=PATIENCE)
+        with plant("door", "--simulation", file) as address:
+            yield address
 
 
 class Run:
-    """A run of the door in a process of its own."""
+    """A run of the door, or of another scenario, in a process of its own."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, scenario="door"):
         self.folder = tempfile.TemporaryDirectory()
         self.summary_file = pathlib.Path(self.folder.name, "summary.json")
         self.process = subprocess.Popen(
-            [PROGRAM, "run", "door", "--fast", "--no-recording", "--flight-recorder", "off",
+            [PROGRAM, "run", scenario, "--fast", "--no-recording", "--flight-recorder", "off",
              "--summary", self.summary_file, *arguments], cwd=ROOT, stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT, text=True)
-
-    def wait_for(self, text):
-        for line in self.process.stdout:
-            if text in line:
-                return
-        raise AssertionError("never said: " + text)
 
     def wait(self):
         """Exit code, what it said, its summary."""
@@ -85,27 +87,90 @@ class Run:
         return self.process.returncode, said, summary
 
 
-def over_the_bus(*arguments):
-    return Run("--device-address", f"ethercat://{bus.MASTER_END}", *arguments)
+def over_the_bus(*arguments, **scenario):
+    return Run("--device-address", f"ethercat://{bus.MASTER_END}", *arguments, **scenario)
+
+
+def expect_same_events(test, summary, expected):
+    test.assertEqual([(event["name"], event["what"]) for event in summary["events"]],
+                     [(event["name"], event["what"]) for event in expected["events"]])
+    for event, wanted in zip(summary["events"], expected["events"]):
+        test.assertAlmostEqual(event["time_s"], wanted["time_s"], delta=0.005, msg=event["name"])
+    test.assertTrue(summary["limits_held"])
+    test.assertEqual(summary["allocations_in_loop"], 0)
 
 
 class Door(unittest.TestCase):
     def test_the_events_are_those_of_the_run_without_a_bus(self):
         code, said, expected = Run().wait()
         self.assertEqual(code, 0, said)
-        with plant() as address, segment(plant=address) as one:
-            code, said, summary = over_the_bus().wait()
+        with haptic_giant() as address, segment(plant=address) as one:
+            run = over_the_bus()
+            has_opened_brakes = False
+            while run.process.poll() is None and not has_opened_brakes:
+                has_opened_brakes = one.show()[10]["outputs"] == 2
+            code, said, summary = run.wait()
             self.assertEqual(code, 0, said)
+            self.assertTrue(has_opened_brakes)
             states = one.show()
-        self.assertEqual([(event["name"], event["what"]) for event in summary["events"]],
-                         [(event["name"], event["what"]) for event in expected["events"]])
-        for event, wanted in zip(summary["events"], expected["events"]):
-            self.assertAlmostEqual(event["time_s"], wanted["time_s"], delta=0.02, msg=event["name"])
-        self.assertTrue(summary["limits_held"], said)
-        self.assertEqual(summary["allocations_in_loop"], 0)
+        expect_same_events(self, summary, expected)
         # the drives were left off, and the slaves in PRE-OP
         self.assertEqual([slave["status"] for slave in states], [2] * 11)
         self.assertTrue(all(slave["brake_is_closed"] for slave in states[:8]))
+        self.assertEqual(states[10]["outputs"], 0)
+
+
+class Positions(unittest.TestCase):
+    """An arm whose drives follow positions: a Franka FR3 with drives of another maker."""
+
+    JOINTS = [f"fr3_joint{i}" for i in range(1, 8)]
+    TURN = 2 ** 28
+    SCENARIO = "fr3/open_drawer"
+    DEVICE = ("--device", "fr3/fci")
+
+    def layout(self):
+        lines = [f"drive {name} product=0x130 joint={i} turn={self.TURN}"
+                 for i, name in enumerate(self.JOINTS, 1)]
+        return "\n".join(lines + ["force wrist product=0x302", "io panel product=0x401"])
+
+    def machine(self):
+        scale = 2 * math.pi / self.TURN
+        drives = [{"name": name, "vendor": 0x00FFFF00, "product": 0x130, "revision": 1,
+                   "joint": name, "mode": "csp", "synchronous": True,
+                   "settings": [  # another mapping than the drive has by itself
+                       {"object": 0x1C12, "bits": 8, "value": 0},
+                       {"object": 0x1C12, "subindex": 1, "bits": 16, "value": 0x1601},
+                       {"object": 0x1C12, "bits": 8, "value": 1}],
+                   "outputs": [
+                       {"object": 0x6060, "bits": 8, "is": "mode"}, {"bits": 8},
+                       {"object": 0x6040, "bits": 16, "is": "control_word"},
+                       {"object": 0x607A, "bits": 32, "is": "target_position", "scale": scale},
+                       {"object": 0x60B2, "bits": 16}],
+                   "inputs": [
+                       {"object": 0x6041, "bits": 16, "is": "status_word"},
+                       {"object": 0x6064, "bits": 32, "is": "link_position", "scale": scale},
+                       {"object": 0x606C, "bits": 32, "is": "link_velocity", "scale": scale},
+                       {"object": 0x6077, "bits": 16},
+                       {"object": 0x6061, "bits": 8, "is": "mode_now"}, {"bits": 8}]}
+                  for name in self.JOINTS]
+        text = FILE.read_text()
+        sensors = text[text.index("  - name: wrist"):text.index("  - name: imu")]
+        panel = text[text.index("  - name: panel"):]
+        head = "name: arm\nmoves_with_frames: true\nwatchdog_s: 2\nanswer_s: 0.25\nslaves:\n"
+        return head + "".join(f"  - {json.dumps(drive)}\n" for drive in drives) + sensors + panel
+
+    def test_the_events_are_those_of_the_run_without_a_bus(self):
+        code, said, expected = Run(*self.DEVICE, scenario=self.SCENARIO).wait()
+        self.assertEqual(code, 0, said)
+        with tempfile.TemporaryDirectory() as folder:
+            layout, machine = pathlib.Path(folder, "layout.txt"), pathlib.Path(folder, "machine.yaml")
+            layout.write_text(self.layout())
+            machine.write_text(self.machine())
+            with plant(self.SCENARIO, *self.DEVICE) as address, segment(layout, address):
+                code, said, summary = over_the_bus("--machine", machine, *self.DEVICE,
+                                                   scenario=self.SCENARIO).wait()
+        self.assertEqual(code, 0, said)
+        expect_same_events(self, summary, expected)
 
 
 class Check(unittest.TestCase):
@@ -129,6 +194,11 @@ class Check(unittest.TestCase):
             self.assertEqual(code, 0, said)
             self.assertIn("11 slaves on master0 are those of", said)
             self.assertEqual([slave["status"] for slave in one.show()], [2] * 11)
+            wire = bus.Wire()
+            for address in [*range(0x1000, 0x1008), 0x100A]:  # 2 s in units of 100 us
+                self.assertEqual(wire.exchange(bus.FPRD, (address, 0x0420), b"\0\0"),
+                                 ((20000).to_bytes(2, "little"), 1))
+            wire.close()
 
     def test_each_difference_is_one_sentence(self):
         with segment():
@@ -136,7 +206,8 @@ class Check(unittest.TestCase):
                     ("product: 0x110", "product: 0x111",
                      "slave 1 (ppu1): product 0x00000110 found, expected is 0x00000111"),
                     ("value: 1956", "value: 5000",
-                     "slave 3 (m1): object 0x6072:0 does not take 5000: abort code 0x06090030"),
+                     "slave 3 (m1): object 0x6072:0 does not take 5000: abort code 0x06090030: "
+                     "Value range"),
                     ("{object: 0x6071, bits: 16, is: target_torque, scale: 0.06}",
                      "{object: 0x60FF, bits: 32, is: target_torque}",
                      "slave 5 (m3): entry 2 of its outputs is 0x6071:0 of 16 bits, expected is "
@@ -162,11 +233,9 @@ class Faults(unittest.TestCase):
     """What goes wrong during a run ends it with a safe machine and a message."""
 
     def run_until(self, command, *words):
-        with plant() as address, segment(plant=address) as one:
-            run = over_the_bus()
-            run.wait_for("locked")
-            one.tell(command)
-            code, said, summary = run.wait()
+        with haptic_giant() as address, segment(plant=address) as one:
+            one.tell(f"after {FAULT_FRAME} {command}")
+            code, said, summary = over_the_bus().wait()
             self.assertEqual(code, 3, said)
             for word in words:
                 self.assertIn(word, said)
@@ -184,6 +253,16 @@ class Faults(unittest.TestCase):
         self.run_until("lose 3", "fieldbus answers are missing",
                        "3 exchanges in a row were incomplete: working counter 0 of 29")
 
+    def test_two_lost_frames_do_no_harm(self):
+        with haptic_giant() as address, segment(plant=address) as one:
+            one.tell("after 9600 lose 2")  # the door pops open
+            one.tell("after 12000 lose 2")  # it falls shut
+            code, said, summary = over_the_bus().wait()
+        self.assertEqual(code, 0, said)
+        self.assertEqual(summary["missing_events"], [], said)
+        self.assertTrue(summary["limits_held"], said)
+        self.assertEqual((summary["link"]["lost"], summary["link"]["held"]), (4, 4), said)
+
     def test_silence(self):
         self.run_until("lose 1000000 any", "fieldbus answers are missing",
                        "master0: no answer to 10 frames in a row")
@@ -199,7 +278,7 @@ class Faults(unittest.TestCase):
     def test_a_drive_that_falls_out(self):
         self.run_until("fall m2 safeop 0x001B", "drive reports a fault",
                        "slave 4 (m2), address 0x1003: has left OP: SAFE-OP + error, AL status code "
-                       "0x001b")
+                       "0x001b: Sync")
 
     def test_a_sensor_that_falls_out(self):
         self.run_until("fall wrist preop 0x0050", "fieldbus answers are missing",
@@ -219,6 +298,45 @@ class Faults(unittest.TestCase):
                        "slave 9 (wrist), address 0x1008: the sensor reports fault 0x0007")
 
 
+class Recovery(unittest.TestCase):
+    """An operator resets at 4 s, and lets the machine run again."""
+
+    PANEL = """
+panel:
+  - {at_s: 4.0, reset: true}
+  - {at_s: 4.5, request: reset}
+  - {at_s: 4.7, request: arm}
+  - {at_s: 5.0, request: run}
+"""
+
+    def scenario(self, folder):
+        text = (ROOT / "models" / "scenarios" / "door.yaml").read_text()
+        file = pathlib.Path(folder, "reset.yaml")
+        file.write_text(text.replace("../", f"{ROOT}/models/") + self.PANEL)
+        return file
+
+    def expect_recovery(self, command, fault="113 drive reports a fault"):
+        with haptic_giant() as address, segment(plant=address) as one, \
+                tempfile.TemporaryDirectory() as folder:
+            one.tell(f"after {FAULT_FRAME} {command}")
+            code, said, summary = over_the_bus("--duration", "6",
+                                               scenario=self.scenario(folder)).wait()
+        self.assertEqual(code, 3, said)  # there was a fault
+        self.assertIn(fault, said)
+        self.assertEqual([event["name"] for event in summary["events"]],
+                         ["locked", "handle pressed", "pulled"], said)
+        self.assertTrue(summary["limits_held"], said)
+
+    def test_a_drive_that_has_tripped_is_reset(self):
+        self.expect_recovery("trip m1 0x3210")
+
+    def test_a_sensor_that_has_fallen_is_called_back(self):
+        self.expect_recovery("fall wrist safeop 0x001B", "109 fieldbus answers are missing")
+
+    def test_a_drive_that_has_fallen_is_called_back(self):
+        self.expect_recovery("fall m2 safeop 0x001B")
+
+
 class Start(unittest.TestCase):
     """A bus that is not the machine is not driven."""
 
@@ -233,12 +351,37 @@ class Start(unittest.TestCase):
             self.refused("master0: the bus is not HapticGiant:", "9 slaves found, expected are 11",
                          "slave 1 (ppu1): product 0x00000101 found, expected is 0x00000110")
 
-    def test_of_a_machine_without_start_test_is_refused(self):
+    def test_of_a_machine_keeps_time_and_needs_a_start_test(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
             file.write(FILE.read_text().replace("moves_with_frames: true", "moves_with_frames: false"))
             file.flush()
             self.refused("--fast: HapticGiant keeps its own time",
                          arguments=("--machine", file.name))
+            with tempfile.TemporaryDirectory() as folder:
+                tried = subprocess.run(
+                    [PROGRAM, "run", "door", "--device-address", f"ethercat://{bus.MASTER_END}",
+                     "--machine", file.name, "--no-viewer", "--recordings", folder], cwd=ROOT,
+                    capture_output=True, text=True, timeout=PATIENCE)
+            self.assertEqual(tried.returncode, 2, tried.stdout)
+            self.assertIn("no start test of HapticGiant that counts: there is none", tried.stderr)
+
+    def test_with_a_file_that_does_not_fit_the_device_is_refused(self):
+        for old, new, sentence in (
+                ("is: joint_torque", "is: nothing", "slave 'm1': input 'joint_torque' is missing, "
+                 "which the control of HapticGiant needs"),
+                ("is: angular_rate_z", "is: nothing", "no slave has the input 'angular_rate_z'"),
+                ("is: dead_man", "is: nothing", "no slave has the input 'dead_man'"),
+                ("mode: csv", "mode: cst", "the target of its mode is missing"),
+                ("joint: m1", "joint: m2", "joint 'm1' must have one drive, got 0")):
+            with self.subTest(sentence), tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+                text = FILE.read_text()
+                self.assertIn(old, text)
+                file.write(text.replace(old, new, 1))
+                file.flush()
+                self.refused(sentence, arguments=("--machine", file.name))
+
+    def test_that_cannot_be_read_is_refused(self):
+        self.refused("nothing.yaml: no such file", arguments=("--machine", "nothing.yaml"))
 
 
 def main():

@@ -17,7 +17,6 @@
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/whole_file.h"
-#include "hg/device/udp/agreement.h"
 
 namespace hg::start_test {
 namespace {
@@ -50,18 +49,27 @@ std::vector<Position> posture_of(const config::DeviceConfig& device, const Senso
   return posture;
 }
 
+// A command with drives off, in the sizes of the device.
+CommandFrame off_command(const config::DeviceConfig& device) {
+  CommandFrame command;
+  command.q_m = command.dq_m = command.ddq_m = VectorM::Zero(device.model.n_m);
+  if (device.control.method != tracking::Method::kDrives) command.tau_m = command.q_m;
+  command.dq_p = VectorP::Zero(device.model.n_p);
+  return command;
+}
+
 // Posture with drives off and brakes closed; empty if the connection to the device is lost.
 std::optional<std::vector<Position>> braked_posture(const config::DeviceConfig& device,
-                                                    udp::RemoteDevice& remote,
+                                                    device::ConnectedDevice& machine,
                                                     double duration_s = kBraked) {
   SensorFrame sensors;
-  CommandFrame off = udp::off_command(remote.welcome().actual);
+  CommandFrame off = off_command(device);
   for (double time_s = 0.0; time_s < duration_s; time_s += 1.0 / device.model.rate_Hz) {
-    remote.read(sensors);
+    machine.read(sensors);
     if (sensors.driver_fault != FaultCode::kNone) return std::nullopt;
     off.sequence = sensors.sequence;
     off.q_m = sensors.q_m;
-    remote.write(off);
+    machine.write(off);
   }
   return posture_of(device, sensors);
 }
@@ -122,13 +130,11 @@ std::string check_start_test(const MachineMemory& memory, const config::DeviceCo
 }
 
 std::string check_posture(const MachineMemory& memory, const config::DeviceConfig& device,
-                          udp::RemoteDevice& remote) {
-  const auto now = braked_posture(device, remote);
-  const std::string farewell = remote.farewell();
-  remote.close(FaultCode::kNone);
+                          device::ConnectedDevice& machine) {
+  const auto now = braked_posture(device, machine);
   if (!now) {
-    throw SetupError(
-        fmt::format("{}: the device has gone before it was armed {}", memory.address, farewell));
+    throw SetupError(fmt::format("{}: the device has gone before it was armed {}", memory.address,
+                                 machine.farewell()));
   }
   for (const std::string& name : memory.confirmed_joints) {
     if (std::ranges::find(*now, name, &Position::name) != now->end()) continue;
@@ -165,10 +171,10 @@ std::string check_posture(const MachineMemory& memory, const config::DeviceConfi
 
 std::vector<std::string> leave_machine(const MachineMemory& memory,
                                        const config::DeviceConfig& device,
-                                       udp::RemoteDevice& remote, FaultCode fault) {
+                                       device::ConnectedDevice& machine, FaultCode fault) {
   std::vector<std::string> lines;
-  const auto braked = braked_posture(device, remote);
-  const auto now = braked ? braked_posture(device, remote, kWatched) : std::nullopt;
+  const auto braked = braked_posture(device, machine);
+  const auto now = braked ? braked_posture(device, machine, kWatched) : std::nullopt;
   const std::vector<std::string> names =
       now ? slipping(device, *braked, *now) : std::vector<std::string>{};
   if (!names.empty()) {

@@ -1,5 +1,5 @@
-/// Checks of a machine (a remote device that is no simulation) before a run, and stored data about
-/// it: the result of its start test and its last posture.
+/// Checks of a machine (a connected device that is no simulation) before a run, and stored data
+/// about it: the result of its start test and its last posture.
 #pragma once
 
 #include <string>
@@ -7,14 +7,14 @@
 
 #include "hg/commissioning/start_test/memory.h"
 #include "hg/config/device.h"
-#include "hg/device/udp/remote_device.h"
+#include "hg/device/connected_device.h"
 
 namespace hg::start_test {
 
 /// Where the data of a machine are stored, and what its operator says about them.
 struct MachineMemory {
   std::string folder;               ///< folder of the recordings
-  std::string address;              ///< HOST:PORT of the machine
+  std::string address;              ///< --device-address of the machine
   bool without_start_test = false;  ///< untested brakes are allowed
   /// Joints confirmed to have moved since the last run
   std::vector<std::string> confirmed_joints;
@@ -32,17 +32,17 @@ std::string start_test_file(const std::string& folder, const config::DeviceConfi
 /// unless `memory` waives the test.
 std::string check_start_test(const MachineMemory& memory, const config::DeviceConfig& device);
 
-/// Compares the machine's posture with that at the end of the last run, in a short session with
-/// closed brakes, which it ends. Returns a message; throws SetupError if joints have moved that
+/// Compares the machine's posture with that at the end of the last run, with closed brakes. Returns
+/// a message; throws SetupError if joints have moved that
 /// `memory` does not confirm.
 std::string check_posture(const MachineMemory& memory, const config::DeviceConfig& device,
-                          udp::RemoteDevice& remote);
+                          device::ConnectedDevice& machine);
 
 /// Stores the machine's posture at the end of its session, after a second with closed brakes. If a
 /// brake slips meanwhile, or `fault` reports that one did, its start test becomes invalid. Returns
 /// messages, one line each; empty if all is well.
 std::vector<std::string> leave_machine(const MachineMemory& memory,
                                        const config::DeviceConfig& device,
-                                       udp::RemoteDevice& remote, FaultCode fault);
+                                       device::ConnectedDevice& machine, FaultCode fault);
 
 }  // namespace hg::start_test

@@ -26,10 +26,6 @@ std::string text_of(const MappedEntry& entry) {
   return fmt::format("{:#06x}:{} of {} bit{}", entry.object, entry.subindex, entry.bits, plural);
 }
 
-std::string why(std::int64_t abort) {
-  return abort < 0 ? std::string("does not answer") : fmt::format("abort code {:#010x}", abort);
-}
-
 // The comparison of one slave.
 class SlaveCheck {
  public:
@@ -94,13 +90,14 @@ class SlaveCheck {
     const auto wanted = static_cast<std::uint32_t>(std::llround(setting.value));
     const std::string object = fmt::format("object {:#06x}:{}", setting.object, setting.subindex);
     if (const auto written = master_.write(position_, key, bytes, wanted); written.abort != 0) {
-      say(fmt::format("{} does not take {:g}: {}", object, setting.value, why(written.abort)));
+      say(fmt::format("{} does not take {:g}: {}", object, setting.value,
+                      abort_words(written.abort)));
       return;
     }
     const ObjectResult read = master_.read(position_, key, bytes);
     const std::uint32_t mask = bytes == 4 ? ~0U : (1U << (8 * bytes)) - 1U;
     if (read.abort != 0) {
-      say(fmt::format("{} cannot be read: {}", object, why(read.abort)));
+      say(fmt::format("{} cannot be read: {}", object, abort_words(read.abort)));
     } else if (read.value != (wanted & mask)) {
       say(fmt::format("{} is {:#x} after {:#x} was written", object, read.value, wanted & mask));
     }
@@ -132,7 +129,7 @@ class SlaveCheck {
       const Slave& slave = machine_.slaves[position_];
       if (slave.mode != DriveMode::kNone || !slave.settings.empty()) {
         say(fmt::format("object {:#06x}, its {}, cannot be read: {}", assignment, what,
-                        why(pdos.abort)));
+                        abort_words(pdos.abort)));
       }
       return false;
     }

@@ -17,7 +17,8 @@ std::string fault_of(Master& master, std::size_t index) {
   const auto found = master.status(index, kPatience_us);
   if (!found) return "does not answer";
   if (found->status == kOp) return "";
-  return fmt::format("{}, AL status code {:#06x}", state_name(found->status), found->code);
+  return fmt::format("{}, AL status code {}", state_name(found->status),
+                     status_code_words(found->code));
 }
 
 // which slaves have left OP
@@ -44,6 +45,7 @@ BusWatchResult watch_bus(const std::string& interface_name, const BusWatchOption
   Master master(interface_name);
   const std::vector<BusSlave> slaves = master.scan();
   const int expected = master.start(options.watchdog_ms, 0);
+  master.operate(slaves.size(), [] { std::this_thread::sleep_for(kPeriod); });
   report(0.0, fmt::format("{} slaves in OP, working counter {}", slaves.size(), expected));
 
   BusWatchResult result;

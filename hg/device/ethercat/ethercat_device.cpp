@@ -7,43 +7,25 @@
 
 #include "hg/core/error.h"
 #include "hg/core/monotonic_clock.h"
-#include "hg/device/ethercat/bits.h"
 #include "hg/device/ethercat/bus_check.h"
 
 namespace hg::ethercat {
 namespace {
 
-constexpr std::uint32_t kSilent = 10;  // exchanges without an answer
-constexpr std::uint32_t kNoticed = 3;  // exchanges that are not complete, as rule 109
-constexpr int kStartCycles = 1000;     // until all drives are without fault
-constexpr int kRecoveryCycles = 500;   // until all slaves are in OP again, and no drive at fault
-constexpr int kEndCycles = 20;         // until all drives are off
-constexpr std::uint32_t kStatusPatience_us = 2'000;  // once, for the reason of a fault
-constexpr std::uint32_t kClosePatience_us = 5'000;
+constexpr std::uint32_t kSilent = 10;            // exchanges without an answer in a row
+constexpr std::uint32_t kNoticed = 3;            // exchanges that are not complete, as rule 109
+constexpr int kStartCycles = 1000;               // until all drives are without fault
+constexpr int kStepCycles = 5000;                // until frames are in step with the clocks
+constexpr int kCallCycles = 200;                 // between two calls to OP
+constexpr int kRecoveryCycles = 500;             // until all slaves and drives are well again
+constexpr int kEndCycles = 20;                   // until all drives are off
+constexpr double kEnabling = 2.0;                // s until drives follow, with slow brakes
+constexpr std::uint32_t kStatusPatience = 2000;  // us, once, for the reason of a fault
+constexpr std::uint32_t kClosePatience = 5000;   // us
 
 std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 std::uint32_t us(double seconds) noexcept {
   return static_cast<std::uint32_t>(std::llround(1e6 * seconds));
-}
-
-bool is_switch(Input meaning) noexcept { return meaning >= Input::kDeadMan; }
-bool is_unsigned(Input meaning) noexcept {
-  return meaning == Input::kStatusWord || meaning == Input::kErrorCode ||
-         meaning == Input::kSensorFault || meaning == Input::kSampleCounter || is_switch(meaning);
-}
-
-// Value in SI units.
-double value_of(const Entry<Input>& entry, std::uint32_t bits) noexcept {
-  const double number = is_unsigned(entry.meaning)
-                            ? static_cast<double>(bits)
-                            : static_cast<double>(signed_of(bits, entry.bits));
-  return entry.scale * number + entry.offset;
-}
-
-template <typename Vector>
-void set(Vector& values, Eigen::Index size, Eigen::Index i, double value) noexcept {
-  if (values.size() != size) values = Vector::Zero(size);
-  values[i] = value;
 }
 
 }  // namespace
@@ -52,7 +34,8 @@ EthercatDevice::EthercatDevice(const EthercatConfig& config)
     : config_(config),
       master_(config.interface_name),
       patience_us_(us(config.machine.answer_s)),
-      period_ns_(ns(1.0 / config.rate_Hz)) {
+      period_ns_(ns(1.0 / config.rate_Hz)),
+      pace_(now_ns(), period_ns_) {
   found_ = master_.scan();
   const std::vector<std::string> sentences = differences(master_, found_, config_.machine);
   if (!sentences.empty()) {
@@ -60,20 +43,26 @@ EthercatDevice::EthercatDevice(const EthercatConfig& config)
                                  config_.machine.name, fmt::join(sentences, "\n")));
   }
   start();
+  if (!come_into_step()) {
+    throw SetupError(fmt::format(
+        "{}: frames do not come into step with the clocks of the slaves, the last one was {} us "
+        "off: is this computer busy, or not real-time (hapticgiant doctor)?",
+        config_.interface_name, pace_.error_ns() / 1000));
+  }
+  master_.operate(found_.size(), [&] { wait_for_turn(); });
   await_drives();
+  rest();
 }
 
 EthercatDevice::~EthercatDevice() { close(fault_); }
 
+// To SAFE-OP, with all buffers.
 void EthercatDevice::start() {
-  frame_.q_m = VectorM::Zero(config_.n_m);
-  frame_.q_p = VectorP::Zero(config_.n_p);
   const std::vector<Slave>& slaves = config_.machine.slaves;
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     if (slaves[i].is_synchronous) master_.use_sync(i);
   }
-  const auto watchdog_ms =
-      static_cast<std::uint32_t>(std::lround(1e3 * config_.machine.watchdog_s));
+  const std::uint32_t watchdog_ms = us(config_.machine.watchdog_s) / 1000;
   expected_ = master_.start(watchdog_ms, static_cast<std::uint32_t>(period_ns_));
   for (std::size_t i = 0; i < slaves.size(); ++i) {
     const auto [outputs, inputs] = master_.sizes(i);
@@ -85,70 +74,117 @@ void EthercatDevice::start() {
                       slave_name(config_.machine, i), outputs, inputs, bytes_out, bytes_in));
     }
     stations_.push_back({.outputs = std::vector<std::uint8_t>(bytes_out),
-                         .inputs = std::vector<std::uint8_t>(bytes_in),
-                         .is_drive = slaves[i].joint >= 0});
+                         .inputs = std::vector<std::uint8_t>(bytes_in)});
   }
+  has_followed_.assign(slaves.size(), false);
+  frame_.q_m = VectorM::Zero(config_.n_m);
+  frame_.q_p = VectorP::Zero(config_.n_p);
+}
+
+bool EthercatDevice::is_silent() const noexcept { return lost_in_a_row_ >= kSilent; }
+
+// Drives want their frames between the sync pulses before they go to OP. False: they are not.
+bool EthercatDevice::come_into_step() noexcept {
+  const bool has_pulses = std::ranges::any_of(config_.machine.slaves, &Slave::is_synchronous);
+  if (!has_pulses || config_.machine.moves_with_frames) return true;
+  pace_.restart();
+  for (int i = 0; i < kStepCycles && !pace_.is_settled() && !is_silent(); ++i) exchange();
+  return pace_.is_settled();
 }
 
 // Resets old faults of the drives; they stay off.
 void EthercatDevice::await_drives() {
-  due_ns_ = now_ns();
-  for (int i = 0; i < kStartCycles; ++i) {
+  const auto is_off = [&](std::size_t i) {
+    return !is_drive(i) || state_of(stations_[i].status) == DriveState::kSwitchOnDisabled;
+  };
+  bool has_answer = false;
+  for (int i = 0; i < kStartCycles && !is_silent(); ++i) {
     recovery_ = kStartCycles - i;
-    put_outputs(nullptr);
-    wait_for_turn();
-    if (master_.exchange(patience_us_) != expected_) continue;
-    take_inputs();
-    const bool is_ready = std::ranges::all_of(stations_, [](const Station& station) {
-      return !station.is_drive || state_of(station.status) == DriveState::kSwitchOnDisabled;
-    });
-    if (is_ready) {
+    if (exchange() != expected_) continue;
+    take_in();
+    has_answer = true;
+    bool are_off = true;
+    for (std::size_t k = 0; k < stations_.size(); ++k) are_off = are_off && is_off(k);
+    if (are_off) {
       recovery_ = 0;
       return;
     }
   }
-  for (std::size_t i = 0; i < stations_.size(); ++i) {
-    const DriveState state = state_of(stations_[i].status);
-    if (!stations_[i].is_drive || state == DriveState::kSwitchOnDisabled) continue;
-    throw SetupError(fmt::format("{}: the drive stays in '{}' (status word {:#06x}, error {:#06x})",
-                                 slave_name(config_.machine, i), to_string(state),
-                                 stations_[i].status, stations_[i].error));
+  if (!has_answer) {
+    throw SetupError(config_.interface_name + ": exchanges of process data stay incomplete");
   }
-  throw SetupError(config_.interface_name + ": exchanges of process data stay incomplete");
+  while (is_off(culprit_)) ++culprit_;
+  throw SetupError(slave_name(config_.machine, culprit_) + ": the drive stays in " + drive_words());
+}
+
+// To SAFE-OP, where no slave waits for frames.
+void EthercatDevice::rest() noexcept {
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    master_.request_state(i, kSafeOp, kStatusPatience);
+  }
+  exchanged_ns_ = 0;
+}
+
+// Whether nobody has read for so long that the watchdogs of the slaves may have acted, while drives
+// were off.
+bool EthercatDevice::has_paused() const noexcept {
+  const bool is_enabled = has_command_ && command_.enable;
+  return !is_enabled && now_ns() - exchanged_ns_ > ns(0.5 * config_.machine.watchdog_s);
+}
+
+// To OP again after a pause; drives stay off. A slave that does not come along is a fault.
+void EthercatDevice::wake() noexcept {
+  is_in_use_ = false;
+  lost_in_a_row_ = 0;
+  come_into_step();
+  recovery_ = kStartCycles + 1;
+  for (int i = 0; i < kStartCycles && recovery_ > 0 && !is_silent(); ++i) {
+    if (exchange() < 0) continue;
+    take_in();
+    look_at_recovery();
+    if (i % kCallCycles == 0) call_to_op();
+  }
+  recovery_ = 0;
 }
 
 void EthercatDevice::wait_for_turn() noexcept {
   if (config_.is_fast) return;
-  sleep_until(due_ns_);
-  const std::int64_t late = now_ns() - due_ns_;
-  // what was missed is not made up for: the machine would see a burst
-  due_ns_ += period_ns_ * (1 + std::max<std::int64_t>(0, late / period_ns_));
+  sleep_until(pace_.due_ns());
+  pace_.advance(now_ns());
+}
+
+// Waits for the next period, and exchanges process data once.
+int EthercatDevice::exchange() noexcept {
+  wait_for_turn();
+  put_out();
+  const int counter = master_.exchange(patience_us_);
+  exchanged_ns_ = now_ns();
+  lost_in_a_row_ = counter < 0 ? lost_in_a_row_ + 1 : 0;
+  if (counter >= 0 && master_.time_ns() != 0) pace_.follow(master_.time_ns());
+  return counter;
 }
 
 void EthercatDevice::read(SensorFrame& sensors) noexcept {
-  if (!is_in_use_) {
-    is_in_use_ = true;
-    due_ns_ = now_ns();
-  }
   ++sequence_;
   if (fault_ == FaultCode::kDeviceSilent) return repeat(sensors);
-  wait_for_turn();
-  put_outputs(has_command_ ? &command_ : nullptr);
-  const int counter = master_.exchange(patience_us_);
+  if (fault_ == FaultCode::kNone && has_paused()) wake();
+  is_in_use_ = true;
+  const int counter = exchange();
   ++counts_.sent;
+  frame_.bus_errors = 0;
+  suspect_ = Cause::kNone;
   if (counter < 0) {
     take_lost();
     return repeat(sensors);
   }
-  frame_.bus_errors = 0;
   ++counts_.received;
-  lost_in_a_row_ = 0;
   if (has_command_) frame_.answered_sequence = command_.sequence;
-  take_inputs();
+  take_in();
   look_at_counter(counter);
   look_at_states();
   look_at_drives();
   look_at_sensors();
+  look_at_bus_errors(counter);
   if (recovery_ > 0) look_at_recovery();
   repeat(sensors);
 }
@@ -165,157 +201,95 @@ void EthercatDevice::take_lost() noexcept {
   ++counts_.lost;
   ++counts_.held;
   frame_.bus_errors = static_cast<std::uint32_t>(stations_.size());
-  note_incomplete(0);
-  if (++lost_in_a_row_ >= kSilent) stop(Cause::kSilent, 0, FaultCode::kDeviceSilent);
+  suspect(Cause::kIncomplete, 0);
+  look_at_bus_errors(0);
+  if (is_silent()) stop(Cause::kSilent, 0, FaultCode::kDeviceSilent);
 }
 
-void EthercatDevice::take_inputs() noexcept {
+void EthercatDevice::take_in() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    Station& station = stations_[i];
-    const Slave& slave = config_.machine.slaves[i];
-    master_.get_inputs(i, station.inputs);
-    std::uint32_t at = 0;
-    for (const Entry<Input>& entry : slave.inputs) {
-      take_input(station, slave, entry, read_bits(station.inputs, at, entry.bits));
-      at += entry.bits;
-    }
+    master_.get_inputs(i, stations_[i].inputs);
+    take_inputs(config_.machine.slaves[i], config_.n_p, config_.n_m, stations_[i], frame_);
   }
 }
 
-void EthercatDevice::take_input(Station& station, const Slave& slave, const Entry<Input>& entry,
-                                std::uint32_t bits) noexcept {
-  const double value = value_of(entry, bits);
-  const bool is_set = (bits != 0) != entry.is_inverted;
-  const int n_p = config_.n_p, n_m = config_.n_m, joint = slave.joint - n_p;
-  const auto axis = [&](Input first) {
-    return static_cast<int>(entry.meaning) - static_cast<int>(first);
-  };
-  switch (entry.meaning) {
-    case Input::kNothing:
-    case Input::kModeNow:
-      return;
-    case Input::kStatusWord:
-      station.status = static_cast<std::uint16_t>(bits);
-      return;
-    case Input::kErrorCode:
-    case Input::kSensorFault:
-      station.error = static_cast<std::uint16_t>(bits);
-      return;
-    case Input::kSampleCounter:
-      station.has_new_samples = bits != station.samples;
-      station.samples = bits;
-      return;
-    case Input::kLinkPosition:
-      if (joint < 0) return set(frame_.q_p, n_p, slave.joint, value);
-      return set(frame_.q_m, n_m, joint, value);
-    case Input::kLinkVelocity:
-      if (joint >= 0) set(frame_.dq_m, n_m, joint, value);
-      return;
-    case Input::kMotorPosition:
-      if (joint >= 0) set(frame_.theta_m, n_m, joint, value);
-      return;
-    case Input::kJointTorque:
-      if (joint >= 0) set(frame_.tau_m, n_m, joint, value);
-      return;
-    case Input::kTemperature:
-      if (joint >= 0) set(frame_.temperature_m, n_m, joint, value);
-      return;
-    case Input::kForceX:
-    case Input::kForceY:
-    case Input::kForceZ:
-    case Input::kTorqueX:
-    case Input::kTorqueY:
-    case Input::kTorqueZ:
-      frame_.w_S[axis(Input::kForceX)] = value;
-      return;
-    case Input::kAccelerationX:
-    case Input::kAccelerationY:
-    case Input::kAccelerationZ:
-      frame_.a_S[axis(Input::kAccelerationX)] = value;
-      return;
-    case Input::kAngularRateX:
-    case Input::kAngularRateY:
-    case Input::kAngularRateZ:
-      frame_.omega_S[axis(Input::kAngularRateX)] = value;
-      return;
-    case Input::kDeadMan:
-      frame_.dead_man = is_set;
-      return;
-    case Input::kEmergencyStop:
-      frame_.safety.emergency_stop = is_set;
-      return;
-    case Input::kOperatorEnable:
-      frame_.safety.operator_enable = is_set;
-      return;
-    case Input::kOverrideKey:
-      frame_.safety.override_key = is_set;
-      return;
-    case Input::kFieldClear:
-      frame_.safety.is_field_clear = is_set;
-      return;
-    case Input::kInputsDisagree:
-      frame_.safety.has_disagreement = is_set;
-      return;
-  }
+// The last one counts: a working counter only says that something is wrong.
+void EthercatDevice::suspect(Cause cause, std::size_t slave) noexcept {
+  suspect_ = cause;
+  suspected_ = slave;
 }
 
 void EthercatDevice::look_at_counter(int counter) noexcept {
-  if (counter == expected_) {
-    incomplete_in_a_row_ = 0;
-    return;
-  }
+  if (counter == expected_) return;
   frame_.bus_errors = 1;
-  note_incomplete(counter);
+  suspect(Cause::kIncomplete, 0);
 }
 
-// The monitor stops the device; what it was is kept for farewell().
-void EthercatDevice::note_incomplete(int counter) noexcept {
-  if (++incomplete_in_a_row_ != kNoticed || cause_ != Cause::kNone) return;
-  cause_ = Cause::kIncomplete;
-  culprit_counter_ = counter;
-}
-
-// A drive that has left OP stops at once; without another slave the device still stops under
-// control.
+// A drive that has left OP stops the machine at once; without another slave the monitor stops it
+// under control.
 void EthercatDevice::look_at_states() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     if (master_.state(i) == kOp) continue;
     ++frame_.bus_errors;
-    stop(Cause::kLeftOp, i, stations_[i].is_drive ? FaultCode::kDriveFault : FaultCode::kBusErrors);
+    if (is_drive(i)) {
+      stop(Cause::kLeftOp, i, FaultCode::kDriveFault);
+    } else {
+      suspect(Cause::kLeftOp, i);
+    }
   }
 }
 
 void EthercatDevice::look_at_drives() noexcept {
   const bool is_enabled = has_command_ && command_.enable && fault_ == FaultCode::kNone;
+  enabling_ = is_enabled ? enabling_ + 1 : 0;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    Station& station = stations_[i];
-    if (!station.is_drive) continue;
-    const DriveState state = state_of(station.status);
-    if (has_failed(state)) stop(Cause::kDrive, i, FaultCode::kDriveFault);
-    const bool has_stopped = station.has_followed && state != DriveState::kOperationEnabled;
-    if (is_enabled && has_stopped) stop(Cause::kDisabled, i, FaultCode::kDriveFault);
-    station.has_followed = is_enabled && (station.has_followed || is_following(station.status));
+    if (is_drive(i)) look_at_drive(i, is_enabled);
   }
+}
+
+void EthercatDevice::look_at_drive(std::size_t slave, bool is_enabled) noexcept {
+  const DriveState state = state_of(stations_[slave].status);
+  if (has_failed(state)) stop(Cause::kDrive, slave, FaultCode::kDriveFault);
+  if (is_enabled && has_followed_[slave] && state != DriveState::kOperationEnabled) {
+    stop(Cause::kDisabled, slave, FaultCode::kDriveFault);
+  }
+  const bool follows = is_following(stations_[slave].status);
+  has_followed_[slave] = is_enabled && (has_followed_[slave] || follows);
+  const bool is_overdue = enabling_ > kEnabling * config_.rate_Hz;
+  if (is_overdue && !has_followed_[slave]) stop(Cause::kNotEnabled, slave, FaultCode::kDriveFault);
 }
 
 void EthercatDevice::look_at_sensors() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
+    if (is_drive(i) || master_.state(i) != kOp) continue;
     const Station& station = stations_[i];
-    if (station.is_drive) continue;
-    if (!station.has_new_samples) ++frame_.bus_errors;
-    if (station.error != 0) stop(Cause::kSensor, i, FaultCode::kBusErrors);
+    if (station.has_new_samples && station.error == 0) continue;
+    ++frame_.bus_errors;
+    suspect(station.error != 0 ? Cause::kSensor : Cause::kNoSamples, i);
   }
 }
 
-// The first cause counts; the reason of a slave that has left OP is asked for once.
+// The monitor stops the machine; the cause is kept for farewell().
+void EthercatDevice::look_at_bus_errors(int counter) noexcept {
+  incomplete_in_a_row_ = frame_.bus_errors > 0 ? incomplete_in_a_row_ + 1 : 0;
+  if (incomplete_in_a_row_ != kNoticed || cause_ != Cause::kNone) return;
+  culprit_counter_ = counter;
+  blame(suspect_, suspected_);
+}
+
 void EthercatDevice::stop(Cause cause, std::size_t slave, FaultCode fault) noexcept {
   if (fault_ != FaultCode::kNone || (recovery_ > 0 && cause != Cause::kSilent)) return;
   fault_ = fault;
+  blame(cause, slave);
+}
+
+// The reason of a slave that has left OP is asked for once.
+void EthercatDevice::blame(Cause cause, std::size_t slave) noexcept {
   cause_ = cause;
   culprit_ = slave;
   culprit_status_ = {};
   if (cause != Cause::kLeftOp) return;
-  if (const auto status = master_.status(slave, kStatusPatience_us)) culprit_status_ = *status;
+  if (const auto status = master_.status(slave, kStatusPatience)) culprit_status_ = *status;
 }
 
 void EthercatDevice::write(const CommandFrame& command) noexcept {
@@ -334,75 +308,61 @@ bool EthercatDevice::is_finite(const CommandFrame& command) const noexcept {
          command.tau_m.allFinite();
 }
 
-// Asks slaves that have fallen to SAFE-OP back to OP; drives are reset by their next control words.
+// Slaves are called back to OP; drives are reset by their next control words.
 void EthercatDevice::recover() noexcept {
-  if (cause_ == Cause::kSilent) return;
+  if (cause_ == Cause::kNone || cause_ == Cause::kSilent) return;
   recovery_ = kRecoveryCycles;
+  call_to_op();
+}
+
+// Asks slaves in SAFE-OP for OP, and forgives those that have fallen there.
+void EthercatDevice::call_to_op() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     if (master_.state(i) == kOp) continue;
-    master_.request_state(i, kSafeOp | kErrorFlag, kStatusPatience_us);
-    master_.request_state(i, kOp, kStatusPatience_us);
+    master_.request_state(i, kSafeOp | kErrorFlag, kStatusPatience);
+    master_.request_state(i, kOp, kStatusPatience);
   }
 }
 
 void EthercatDevice::look_at_recovery() noexcept {
   --recovery_;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    const Station& station = stations_[i];
     if (master_.state(i) != kOp) return;
-    if (station.is_drive ? has_failed(state_of(station.status)) : station.error != 0) return;
+    const Station& station = stations_[i];
+    if (is_drive(i) ? has_failed(state_of(station.status)) : station.error != 0) return;
   }
   recovery_ = 0;
   fault_ = FaultCode::kNone;
   cause_ = Cause::kNone;
 }
 
-void EthercatDevice::put_outputs(const CommandFrame* command) noexcept {
+void EthercatDevice::put_out() noexcept {
+  Orders orders{.command = has_command_ ? &command_ : nullptr};
+  orders.enables = has_command_ && command_.enable && fault_ == FaultCode::kNone && is_in_use_;
+  orders.opens_brakes = orders.enables && all_follow();
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    Station& station = stations_[i];
-    const Slave& slave = config_.machine.slaves[i];
-    std::uint32_t at = 0;
-    for (const Entry<Output>& entry : slave.outputs) {
-      const double value = output(station, slave, entry.meaning, command);
-      const double number = (value - entry.offset) / entry.scale;
-      // targets have a sign, words and switches have none
-      const bool is_target = entry.meaning >= Output::kTargetPosition;
-      const std::uint32_t bits = is_target ? entry.bits : entry.bits + 1;
-      write_bits(station.outputs, at, entry.bits, rounded(number, bits));
-      at += entry.bits;
-    }
-    master_.set_outputs(i, station.outputs);
+    orders.control_word = control_word_for(i, orders.enables);
+    put_outputs(config_.machine.slaves[i], config_.n_p, orders, frame_, stations_[i]);
+    master_.set_outputs(i, stations_[i].outputs);
   }
 }
 
-// What a slave is told; without a command the drives stay off.
-double EthercatDevice::output(const Station& station, const Slave& slave, Output meaning,
-                              const CommandFrame* command) const noexcept {
-  const bool enables = command != nullptr && command->enable && fault_ == FaultCode::kNone;
-  const int joint = slave.joint - config_.n_p;
-  switch (meaning) {
-    case Output::kNothing:
-      return 0.0;
-    case Output::kControlWord: {
-      const DriveState state = state_of(station.status);
-      // a reset needs an edge
-      if (state == DriveState::kFault) return recovery_ % 2 == 1 ? kResetFault : kDisableVoltage;
-      return is_in_use_ ? control_word(state, enables) : kDisableVoltage;
-    }
-    case Output::kMode:
-      return static_cast<double>(slave.mode);
-    case Output::kTargetPosition:
-      if (joint >= 0) return enables ? command->q_m[joint] : frame_.q_m[joint];
-      return frame_.q_p[slave.joint];
-    case Output::kTargetVelocity:
-      if (!enables) return 0.0;
-      return joint >= 0 ? command->dq_m[joint] : command->dq_p[slave.joint];
-    case Output::kTargetTorque:
-      return enables && joint >= 0 && joint < command->tau_m.size() ? command->tau_m[joint] : 0.0;
-    case Output::kReset:
-      return command != nullptr && command->panel.reset ? 1.0 : 0.0;
+bool EthercatDevice::all_follow() const noexcept {
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    if (is_drive(i) && !has_followed_[i]) return false;
   }
-  return 0.0;
+  return true;
+}
+
+// Drives are off until the first read(); a drive in another mode is not enabled.
+std::uint16_t EthercatDevice::control_word_for(std::size_t slave, bool enables) const noexcept {
+  const Station& station = stations_[slave];
+  const DriveState state = state_of(station.status);
+  // a reset needs an edge
+  if (state == DriveState::kFault) return recovery_ % 2 == 1 ? kResetFault : kDisableVoltage;
+  if (!is_in_use_) return kDisableVoltage;
+  const auto mode = static_cast<std::uint8_t>(config_.machine.slaves[slave].mode);
+  return control_word(state, enables && (station.mode_now == 0 || station.mode_now == mode));
 }
 
 void EthercatDevice::close(FaultCode) noexcept {
@@ -410,25 +370,27 @@ void EthercatDevice::close(FaultCode) noexcept {
   is_closed_ = true;
   is_in_use_ = false;
   recovery_ = 0;
+  patience_us_ = std::min(patience_us_, kClosePatience);
   for (int i = 0; i < kEndCycles; ++i) {
-    put_outputs(nullptr);
-    wait_for_turn();
-    if (master_.exchange(std::min(patience_us_, kClosePatience_us)) >= 0) take_inputs();
+    if (exchange() >= 0) take_in();
   }
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    master_.request_state(i, kPreOp, kClosePatience_us);
+    master_.request_state(i, kPreOp, kClosePatience);
   }
+}
+
+// State of the drive that has stopped the machine.
+std::string EthercatDevice::drive_words() const {
+  const Station& station = stations_[culprit_];
+  return fmt::format("'{}' (mode {}, status word {:#06x}, error {:#06x})",
+                     to_string(state_of(station.status)), station.mode_now, station.status,
+                     station.error);
 }
 
 std::string EthercatDevice::farewell() const {
   const auto named = [&](const std::string& what) {
     return fmt::format("{}, address {:#06x}: {}", slave_name(config_.machine, culprit_),
                        found_[culprit_].address, what);
-  };
-  const auto words = [&] {
-    const Station& station = stations_[culprit_];
-    return fmt::format("'{}', status word {:#06x}, error {:#06x}",
-                       to_string(state_of(station.status)), station.status, station.error);
   };
   switch (cause_) {
     case Cause::kNone:
@@ -438,14 +400,20 @@ std::string EthercatDevice::farewell() const {
                          kNoticed, culprit_counter_, expected_);
     case Cause::kLeftOp:
       if (culprit_status_.status == 0) return named("does not answer");
-      return named(fmt::format("has left OP: {}, AL status code {:#06x}",
-                               state_name(culprit_status_.status), culprit_status_.code));
+      return named(fmt::format("has left OP: {}, AL status code {}",
+                               state_name(culprit_status_.status),
+                               status_code_words(culprit_status_.code)));
     case Cause::kDrive:
-      return named("the drive has failed: " + words());
+      return named("the drive has failed: " + drive_words());
     case Cause::kDisabled:
-      return named("the drive has stopped by itself: " + words());
+      return named("the drive has stopped by itself: " + drive_words());
+    case Cause::kNotEnabled:
+      return named(
+          fmt::format("the drive does not follow after {:g} s: {}", kEnabling, drive_words()));
     case Cause::kSensor:
       return named(fmt::format("the sensor reports fault {:#06x}", stations_[culprit_].error));
+    case Cause::kNoSamples:
+      return named("the sensor gives no new samples");
     case Cause::kSilent:
       return fmt::format("{}: no answer to {} frames in a row: interface, first cable, first slave",
                          config_.interface_name, kSilent);

@@ -2,8 +2,10 @@
 ///
 /// Set-up (constructor, close()) may block for a bounded time and throw; read() and write() follow
 /// the contract of Device, but read() keeps the period: the device is the clock. Each read() is one
-/// exchange of process data, which carries the last command. Drives are switched on, with closed
-/// brakes, from the first read() on, and enabled while commands have drives on. What the machine
+/// exchange of process data, which carries the last command. Between set-up and the first read(),
+/// and in a pause with drives off, slaves rest in SAFE-OP, which needs no frames; the read() after
+/// it takes them to OP and may take some seconds. Drives are switched on, with closed brakes, from
+/// the first read() on, and enabled while commands have drives on. What the machine
 /// stops itself for becomes a fault, with the slave that it comes from in farewell().
 #pragma once
 
@@ -15,6 +17,8 @@
 #include "hg/device/ethercat/drive_state.h"
 #include "hg/device/ethercat/machine.h"
 #include "hg/device/ethercat/master.h"
+#include "hg/device/ethercat/pace.h"
+#include "hg/device/ethercat/process_data.h"
 #include "hg/signals/frames.h"
 
 namespace hg::ethercat {
@@ -39,72 +43,82 @@ class EthercatDevice final : public device::ConnectedDevice {
   void read(SensorFrame& sensors) noexcept override;
   void write(const CommandFrame& command) noexcept override;
 
-  /// Switches the drives off and takes the slaves back to PRE-OP, within 0.1 s.
+  /// Switches the drives off and takes the slaves back to PRE-OP, within 0.2 s.
   void close(FaultCode reason) noexcept override;
   std::string farewell() const override;
   LinkCounts counts() const noexcept override { return counts_; }
 
  private:
-  /// What is known of one slave in operation.
-  struct Station {
-    std::vector<std::uint8_t> outputs, inputs;
-    bool is_drive = false;
-    std::uint16_t status = 0;     ///< status word of a drive
-    std::uint16_t error = 0;      ///< error code of a drive, fault of a sensor
-    std::uint32_t samples = 0;    ///< counter of a sensor
-    bool has_new_samples = true;  ///< it has counted on, or does not count
-    bool has_followed = false;    ///< the drive has followed its target since it was enabled
-  };
   /// Why the machine has stopped.
   enum class Cause : std::uint8_t {
     kNone,
-    kIncomplete,  ///< the monitor has stopped it
+    kIncomplete,
     kLeftOp,
     kDrive,
     kDisabled,
+    kNotEnabled,
     kSensor,
+    kNoSamples,
     kSilent,
     kNotFinite,
   };
 
+  bool is_drive(std::size_t slave) const noexcept {
+    return config_.machine.slaves[slave].mode != DriveMode::kNone;
+  }
   void start();
+  bool is_silent() const noexcept;
+  bool come_into_step() noexcept;
   void await_drives();
+  void rest() noexcept;
+  bool has_paused() const noexcept;
+  void wake() noexcept;
+  void call_to_op() noexcept;
   void wait_for_turn() noexcept;
-  void repeat(SensorFrame& sensors) noexcept;
+  int exchange() noexcept;
+  void take_in() noexcept;
   void take_lost() noexcept;
-  void take_inputs() noexcept;
-  void take_input(Station& station, const Slave& slave, const Entry<Input>& entry,
-                  std::uint32_t bits) noexcept;
+  void repeat(SensorFrame& sensors) noexcept;
+  void suspect(Cause cause, std::size_t slave) noexcept;
   void look_at_counter(int counter) noexcept;
-  void note_incomplete(int counter) noexcept;
   void look_at_states() noexcept;
   void look_at_drives() noexcept;
+  void look_at_drive(std::size_t slave, bool is_enabled) noexcept;
   void look_at_sensors() noexcept;
-  void stop(Cause cause, std::size_t slave, FaultCode fault) noexcept;
-  void recover() noexcept;
+  void look_at_bus_errors(int counter) noexcept;
   void look_at_recovery() noexcept;
-  void put_outputs(const CommandFrame* command) noexcept;
-  double output(const Station& station, const Slave& slave, Output meaning,
-                const CommandFrame* command) const noexcept;
+  void stop(Cause cause, std::size_t slave, FaultCode fault) noexcept;
+  void blame(Cause cause, std::size_t slave) noexcept;
+  void recover() noexcept;
+  void put_out() noexcept;
+  bool all_follow() const noexcept;
+  std::uint16_t control_word_for(std::size_t slave, bool enables) const noexcept;
   bool is_finite(const CommandFrame& command) const noexcept;
+  std::string drive_words() const;
 
   EthercatConfig config_;
   Master master_;
   std::vector<BusSlave> found_;
   std::vector<Station> stations_;
-  int expected_ = 0;  ///< working counter of an exchange in which all take part
+  std::vector<bool> has_followed_;  ///< by slave: it has followed since it was enabled
+  std::uint32_t enabling_ = 0;      ///< exchanges since drives were enabled
+  int expected_ = 0;                ///< working counter of an exchange in which all take part
   std::uint32_t patience_us_ = 0;
   std::int64_t period_ns_ = 0;
-  std::int64_t due_ns_ = 0;  ///< start of the next period
-  SensorFrame frame_;        ///< of the last exchange
-  CommandFrame command_;     ///< for the next exchange
+  Pace pace_;
+  SensorFrame frame_;     ///< of the last exchange
+  CommandFrame command_;  ///< for the next exchange
   bool has_command_ = false;
   std::uint64_t sequence_ = 0;
   std::uint32_t lost_in_a_row_ = 0, incomplete_in_a_row_ = 0;
-  bool is_in_use_ = false;  ///< the first read() has come: drives are switched on
-  bool was_reset_ = false;  ///< reset button in the last command
-  int recovery_ = 0;        ///< exchanges that are left to recover; 0: does not recover
+  bool is_in_use_ = false;         ///< the first read() has come: drives are switched on
+  std::int64_t exchanged_ns_ = 0;  ///< time of the last exchange
+  bool was_reset_ = false;         ///< reset button in the last command
+  int recovery_ = 0;               ///< exchanges that are left to recover; 0: does not recover
   bool is_closed_ = false;
+  // why the bus has errors in this sample
+  Cause suspect_ = Cause::kNone;
+  std::size_t suspected_ = 0;
   // what has stopped the machine; kept for farewell() until it recovers
   Cause cause_ = Cause::kNone;
   std::size_t culprit_ = 0;

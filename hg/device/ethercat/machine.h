@@ -16,7 +16,8 @@ enum class Output : std::uint8_t {
   kTargetPosition,
   kTargetVelocity,
   kTargetTorque,
-  kReset,  ///< reset button of the safety controller
+  kReset,       ///< reset button of the safety controller
+  kOpenBrakes,  ///< while all drives follow; for brakes that no drive opens by itself
 };
 
 /// What an entry of its process data tells.

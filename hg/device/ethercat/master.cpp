@@ -2,13 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstring>
 
 #include "hg/core/error.h"
+#include "hg/core/monotonic_clock.h"
 #include "hg/device/ethercat/bus_master/bus_master.h"
 
 namespace hg::ethercat {
 namespace {
+
+constexpr std::int64_t kToOp_ns = 10'000'000'000;  // ETG.1020
+constexpr std::uint32_t kToOpPatience_us = 500'000;
+constexpr std::size_t kWords = 160;
 
 BusSlave slave_of(const bus_slave& found) {
   return {.name = found.name,
@@ -71,6 +77,21 @@ int Master::start(std::uint32_t watchdog_ms, std::uint32_t sync_ns) {
   return expected;
 }
 
+void Master::operate(std::size_t slaves, const std::function<void()>& wait_for_turn) {
+  bus_master_operate(master_.get());
+  check();
+  const std::int64_t deadline = now_ns() + kToOp_ns;
+  while (now_ns() < deadline) {
+    wait_for_turn();
+    if (exchange(kToOpPatience_us) < 0) continue;
+    bool is_complete = true;
+    for (std::size_t i = 0; i < slaves; ++i) is_complete = is_complete && state(i) == kOp;
+    if (is_complete) return;
+  }
+  bus_master_explain(master_.get());
+  check();
+}
+
 Master::Sizes Master::sizes(std::size_t slave) {
   Sizes sizes;
   bus_master_sizes(master_.get(), slave, &sizes.outputs, &sizes.inputs);
@@ -88,6 +109,8 @@ void Master::get_inputs(std::size_t slave, std::span<std::uint8_t> data) const n
 int Master::exchange(std::uint32_t patience_us) noexcept {
   return bus_master_exchange(master_.get(), patience_us);
 }
+
+std::uint64_t Master::time_ns() const noexcept { return bus_master_time_ns(master_.get()); }
 
 std::uint8_t Master::state(std::size_t slave) const noexcept {
   return bus_master_state(master_.get(), slave);
@@ -128,6 +151,19 @@ std::string state_name(std::uint8_t status) {
     }
   }();
   return (status & kErrorFlag) != 0 ? name + " + error" : name;
+}
+
+std::string status_code_words(std::uint16_t code) {
+  std::array<char, kWords> text;
+  bus_status_code_words(code, text.data(), text.size());
+  return text.data();
+}
+
+std::string abort_words(std::int64_t abort) {
+  if (abort < 0) return "does not answer";
+  std::array<char, kWords> text;
+  bus_abort_code_words(static_cast<std::uint32_t>(abort), text.data(), text.size());
+  return fmt::format("abort code {}", text.data());
 }
 
 }  // namespace hg::ethercat

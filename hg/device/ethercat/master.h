@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -66,10 +67,12 @@ class Master {
   bool set_watchdog(std::size_t slave, std::uint32_t watchdog_ms);
   /// This slave gets sync pulses from the next start() on.
   void use_sync(std::size_t slave);
-  /// Takes all slaves to OP with outputs of zero. Returns the working counter of an exchange in
-  /// which all of them take part.
+  /// Takes all slaves to SAFE-OP with outputs of zero. Returns the working counter of an exchange
+  /// in which all of them take part.
   int start(std::uint32_t watchdog_ms, std::uint32_t sync_ns);
-  /// Bytes of outputs and inputs of a slave in OP.
+  /// Takes all slaves to OP: exchanges each time that `wait_for_turn` has returned.
+  void operate(std::size_t slaves, const std::function<void()>& wait_for_turn);
+  /// Bytes of outputs and inputs of a slave, after start().
   struct Sizes {
     std::size_t outputs = 0, inputs = 0;
   };
@@ -81,6 +84,9 @@ class Master {
   void get_inputs(std::size_t slave, std::span<std::uint8_t> data) const noexcept;
   /// The working counter; -1: no answer within this time.
   int exchange(std::uint32_t patience_us) noexcept;
+  /// Time of the first clock when the last exchange passed it; 0: there is no clock. Sync pulses
+  /// come at its whole periods.
+  std::uint64_t time_ns() const noexcept;
   /// AL state of a slave by the last exchange; 0: it did not answer.
   std::uint8_t state(std::size_t slave) const noexcept;
   bool request_state(std::size_t slave, std::uint8_t state, std::uint32_t patience_us) noexcept;
@@ -95,5 +101,11 @@ class Master {
 
 /// Name of the state in an AL status, with "+ error" where its error flag is set.
 std::string state_name(std::uint8_t status);
+
+/// An AL status code with its meaning: "0x001b: Sync Manager Watchdog".
+std::string status_code_words(std::uint16_t code);
+
+/// What came of an access that failed: "does not answer", or the abort code with its meaning.
+std::string abort_words(std::int64_t abort);
 
 }  // namespace hg::ethercat

@@ -1,11 +1,14 @@
 #include "hg/scenario/remote/ethercat_setup.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "hg/config/bus/machine_file.h"
 #include "hg/config/sources.h"
+#include "hg/core/enumerators.h"
 #include "hg/core/error.h"
 
 namespace hg::scenario {
@@ -42,8 +45,58 @@ void check_modes(const std::filesystem::path& file, const ethercat::Machine& mac
     if (slave.joint < 0) continue;
     const DriveMode needed = mode_for(device, slave.joint);
     if (slave.mode == needed) continue;
-    throw SetupError(file.generic_string() + ": slave '" + slave.name + "': mode: " + device.name +
-                     " commands it by " + name_of(needed) + ", got " + name_of(slave.mode));
+    throw SetupError(fmt::format("{}: slave '{}': mode: {} commands it by {}, got {}",
+                                 file.generic_string(), slave.name, device.name, name_of(needed),
+                                 name_of(slave.mode)));
+  }
+}
+
+template <ethercat::Input kInput>
+bool tells(const ethercat::Slave& slave) {
+  return std::ranges::any_of(
+      slave.inputs, [](const ethercat::Entry<ethercat::Input>& e) { return e.meaning == kInput; });
+}
+
+// What the controller of this device measures of every joint.
+template <ethercat::Input... kInputs>
+void require_of_joints(const std::filesystem::path& file, const ethercat::Machine& machine,
+                       const config::DeviceConfig& device) {
+  const auto require = [&](const ethercat::Slave& slave, bool has_it, std::string_view name) {
+    if (has_it) return;
+    throw SetupError(
+        fmt::format("{}: slave '{}': input '{}' is missing, which the control of {} needs",
+                    file.generic_string(), slave.name, name, device.name));
+  };
+  for (const ethercat::Slave& slave : machine.slaves) {
+    if (slave.joint < device.model.n_p) continue;
+    (require(slave, tells<kInputs>(slave), key_name<kInputs>()), ...);
+  }
+}
+
+// What it measures somewhere.
+template <ethercat::Input... kInputs>
+void require_once(const std::filesystem::path& file, const ethercat::Machine& machine,
+                  const config::DeviceConfig& device) {
+  const auto require = [&](bool has_it, std::string_view name) {
+    if (has_it) return;
+    throw SetupError(fmt::format("{}: no slave has the input '{}', which {} needs",
+                                 file.generic_string(), name, device.name));
+  };
+  (require(std::ranges::any_of(machine.slaves, &tells<kInputs>), key_name<kInputs>()), ...);
+}
+
+void check_inputs(const std::filesystem::path& file, const ethercat::Machine& machine,
+                  const config::DeviceConfig& device) {
+  using enum ethercat::Input;
+  require_of_joints<kLinkPosition, kLinkVelocity>(file, machine, device);
+  if (device.control.method != tracking::Method::kDrives) {
+    require_of_joints<kMotorPosition, kJointTorque>(file, machine, device);
+  }
+  require_once<kForceX, kForceY, kForceZ, kTorqueX, kTorqueY, kTorqueZ>(file, machine, device);
+  if (device.monitor.has_dead_man) require_once<kDeadMan>(file, machine, device);
+  if (device.estimation.wrench.has_imu) {
+    require_once<kAccelerationX, kAccelerationY, kAccelerationZ>(file, machine, device);
+    require_once<kAngularRateX, kAngularRateY, kAngularRateZ>(file, machine, device);
   }
 }
 
@@ -77,6 +130,7 @@ ethercat::EthercatConfig ethercat_config(const std::string& address,
   config::SourceReader reader;
   result.machine = config::load_machine(used, reader, joints);
   check_modes(used, result.machine, device);
+  check_inputs(used, result.machine, device);
   if (is_fast && !result.machine.moves_with_frames) {
     throw SetupError("--fast: " + result.machine.name + " keeps its own time, leave it out");
   }

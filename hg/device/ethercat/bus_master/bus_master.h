@@ -57,16 +57,27 @@ bool bus_master_set_watchdog(bus_master* master, size_t index, uint32_t watchdog
 /// This slave gets sync pulses from the next start on. The first slave that does so is the clock.
 void bus_master_use_sync(bus_master* master, size_t index);
 
-/// Takes all slaves of the last scan to OP, with outputs of zero: drives stay off. Those with
+/// Takes all slaves of the last scan to SAFE-OP, with outputs of zero: drives stay off. Those with
 /// outputs get a watchdog, which is read back; those that use them get sync pulses with this
 /// period. Returns the working counter that an exchange has when all slaves take part; 0 after an
 /// error.
 uint16_t bus_master_start(bus_master* master, uint32_t watchdog_ms, uint32_t sync_ns);
 
-/// Bytes of process data of a slave in OP. False: there is none.
+/// Asks all of them for OP, which they reach with the next exchanges. False after an error.
+bool bus_master_operate(bus_master* master);
+
+/// Makes the slaves that do not reach OP, and why, the error.
+void bus_master_explain(bus_master* master);
+
+/// Bytes of process data of a slave, after the start. False: there is none.
 bool bus_master_sizes(bus_master* master, size_t index, size_t* outputs, size_t* inputs);
 
-// The functions below neither allocate, lock nor panic.
+/// An AL status code or the abort code of an object with its meaning, for example "0x001b: Sync
+/// Manager Watchdog".
+void bus_status_code_words(uint16_t code, char* text, size_t size);
+void bus_abort_code_words(uint32_t code, char* text, size_t size);
+
+// The functions below neither allocate nor wait for a lock, and no panic leaves them.
 
 /// Outputs of a slave from the next exchange on; of another size they are ignored.
 void bus_master_set_outputs(bus_master* master, size_t index, const uint8_t* data, size_t size);
@@ -78,6 +89,10 @@ void bus_master_inputs(const bus_master* master, size_t index, uint8_t* data, si
 /// Exchanges process data once, and keeps the clocks together. Returns the working counter; -1: no
 /// answer within this time.
 int32_t bus_master_exchange(bus_master* master, uint32_t patience_us);
+
+/// Time of the first clock, to which all others are held, when the last exchange passed it; 0:
+/// there is no clock. Sync pulses come at its whole periods.
+uint64_t bus_master_time_ns(const bus_master* master);
 
 /// AL state of a slave by the last exchange with an answer; 0: this slave did not answer.
 uint8_t bus_master_state(const bus_master* master, size_t index);

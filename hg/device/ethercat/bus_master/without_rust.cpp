@@ -30,13 +30,23 @@ void bus_master_use_sync(bus_master*, size_t) {}
 
 uint16_t bus_master_start(bus_master*, uint32_t, uint32_t) { return 0; }
 
+bool bus_master_operate(bus_master*) { return false; }
+
+void bus_master_explain(bus_master*) {}
+
 bool bus_master_sizes(bus_master*, size_t, size_t*, size_t*) { return false; }
+
+void bus_status_code_words(uint16_t, char* text, size_t) { *text = 0; }
+
+void bus_abort_code_words(uint32_t, char* text, size_t) { *text = 0; }
 
 void bus_master_set_outputs(bus_master*, size_t, const uint8_t*, size_t) {}
 
 void bus_master_inputs(const bus_master*, size_t, uint8_t*, size_t) {}
 
 int32_t bus_master_exchange(bus_master*, uint32_t) { return -1; }
+
+uint64_t bus_master_time_ns(const bus_master*) { return 0; }
 
 uint8_t bus_master_state(const bus_master*, size_t) { return 0; }
 

@@ -6,7 +6,7 @@ use crate::line::Line;
 use crate::registers::TIME_DELAY;
 use crate::slave::{INIT, PRE_OP, SAFE_OP};
 
-const COMMANDS: &str = "lose, late, miscount, fall, refuse, open, close, trip, set, show";
+const COMMANDS: &str = "after, lose, late, miscount, fall, refuse, open, close, trip, set, show";
 
 pub fn execute(line: &mut Line, command: &str, now_ns: u64) -> String {
     match run(line, command, now_ns) {
@@ -15,9 +15,26 @@ pub fn execute(line: &mut Line, command: &str, now_ns: u64) -> String {
     }
 }
 
+/// Executes what was to wait for the frame with process data that has just passed.
+pub fn execute_due(line: &mut Line, now_ns: u64) -> Result<(), String> {
+    for (frames, _) in &mut line.waiting {
+        *frames = frames.saturating_sub(1);
+    }
+    while let Some(i) = line.waiting.iter().position(|(frames, _)| *frames == 0) {
+        let (_, command) = line.waiting.remove(i);
+        run(line, &command, now_ns)?;
+    }
+    Ok(())
+}
+
 fn run(line: &mut Line, command: &str, now_ns: u64) -> Result<String, String> {
     let words: Vec<&str> = command.split_whitespace().collect();
     match words[..] {
+        ["after", frames, _, ..] => {
+            let frames = count(frames)?;
+            let command = words[2..].join(" ");
+            line.waiting.push((frames, command));
+        }
         ["lose", frames] => line.faults.lost = count(frames)?,
         ["lose", frames, "any"] => line.faults.lost_of_all_kinds = count(frames)?,
         ["late", frames, us] => {

@@ -89,7 +89,8 @@ pub struct Drive {
     motor: Motor,
     state: State,
     last_control: u16,
-    target: i64, // of the last period, in counts
+    target: i64,       // of the last period, in counts
+    target_speed: f64, // with which it has changed, rad/s
     brake_periods: u32,
     late_periods: u32, // outside the window of the following error
 }
@@ -134,6 +135,7 @@ impl Drive {
             state: State::SwitchOnDisabled,
             last_control: 0,
             target: 0,
+            target_speed: 0.0,
             brake_periods: 0,
             late_periods: 0,
         };
@@ -348,6 +350,10 @@ impl Device for Drive {
         self.obey(self.objects.get(CONTROL_WORD, 0) as u16);
         let is_open = self.move_brake();
         let wish = self.wish(is_open);
+        self.target_speed = match wish {
+            Wish::Angle { from, to } => (to - from) / period,
+            _ => 0.0,
+        };
         if !self.has_plant {
             let most = self.objects.get(MOST_TORQUE, 0) as f64 / 1000.0 * self.rated_torque;
             let offset = self.objects.get(TORQUE_OFFSET, 0) as f64 / 1000.0 * self.rated_torque;
@@ -386,20 +392,22 @@ impl Device for Drive {
             return None;
         }
         let is_following = self.state == State::OperationEnabled && !self.motor.brake_is_closed;
-        let target = match self.objects.get(MODE_NOW, 0) {
-            CST => self.target_torque(),
-            CSV => self.objects.get(TARGET_VELOCITY, 0) as f64 / self.counts_per_rad,
-            _ => 0.0,
-        };
         let is_ready = !matches!(self.state, State::SwitchOnDisabled);
-        let target = if is_following { target } else { 0.0 };
-        Some(Demand { part: self.part, is_ready, is_following, target })
+        let demand =
+            |target, speed| Demand { part: self.part, is_ready, is_following, target, speed };
+        Some(match self.objects.get(MODE_NOW, 0) {
+            CSP => demand(self.target as f64 / self.counts_per_rad, self.target_speed),
+            _ if !is_following => demand(0.0, 0.0),
+            CSV => demand(self.objects.get(TARGET_VELOCITY, 0) as f64 / self.counts_per_rad, 0.0),
+            _ => demand(self.target_torque(), 0.0),
+        })
     }
     fn feel(&mut self, sensed: &Sensed) {
         let counts = |value: f64, scale: f64| (value * scale).round() as i64;
         match self.part {
             Part::Joint(i) => {
                 self.motor.angle = sensed.theta_m[i];
+                self.motor.speed = sensed.dq_m[i];
                 self.motor.torque = sensed.tau_m[i];
                 let scale = self.counts_per_rad;
                 self.objects.set(LINK_POSITION, 1, counts(sensed.q_m[i], scale));

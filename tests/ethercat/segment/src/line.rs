@@ -31,6 +31,8 @@ pub struct Line {
     pub has_exchanged: bool,
     reached: usize, // slaves before the open cable
     pub faults: FrameFaults,
+    /// Commands, and after how many frames with process data they come.
+    pub waiting: Vec<(u32, String)>,
 }
 
 /// Commands of datagrams.
@@ -98,6 +100,7 @@ impl Line {
             slaves,
             has_exchanged: false,
             faults: FrameFaults::default(),
+            waiting: Vec::new(),
         };
         line.connect(line.slaves.len());
         line

@@ -56,7 +56,7 @@ impl Segment {
                 return Ok(());
             }
             if has_frames {
-                self.answer().map_err(|error| format!("the interface: {error}"))?;
+                self.answer()?;
             }
             self.send_late().map_err(|error| format!("the interface: {error}"))?;
         }
@@ -77,9 +77,10 @@ impl Segment {
         (files[0].revents != 0, files[1].revents != 0)
     }
 
-    fn answer(&mut self) -> io::Result<()> {
+    fn answer(&mut self) -> Result<(), String> {
+        let wrong = |error: io::Error| format!("the interface: {error}");
         let now_ns = self.now_ns();
-        while let Some(frame) = self.link.receive()? {
+        while let Some(frame) = self.link.receive().map_err(wrong)? {
             let fate = self.line.pass(frame, now_ns);
             match fate {
                 Fate::Lost => {}
@@ -89,12 +90,16 @@ impl Segment {
                 }
                 Fate::Answered => {
                     let answer = frame.to_vec();
-                    self.link.send(&answer)?;
+                    self.link.send(&answer).map_err(wrong)?;
                 }
             }
-            if let Some(plant) = &mut self.plant {
-                plant.follow(&mut self.line)?;
+            if !self.line.has_exchanged {
+                continue;
             }
+            if let Some(plant) = &mut self.plant {
+                plant.follow(&mut self.line).map_err(|error| format!("the plant: {error}"))?;
+            }
+            commands::execute_due(&mut self.line, now_ns)?;
         }
         Ok(())
     }

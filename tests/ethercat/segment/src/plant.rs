@@ -24,6 +24,7 @@ const COMMAND: u16 = 5;
 const GOODBYE: u16 = 6;
 const HEADER_BYTES: usize = 32;
 const DESCRIPTION_BYTES: usize = 88;
+const BY_POSITION: u32 = 1; // interface of the plant: its joints follow positions
 const AGAIN: Duration = Duration::from_millis(20); // a datagram without an answer is sent again
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -40,7 +41,8 @@ pub struct Demand {
     pub part: Part,
     pub is_ready: bool,     // to switch on, or further
     pub is_following: bool, // enabled, and its brake is open
-    pub target: f64,        // Nm, m/s; of digital outputs: reset is pressed
+    pub target: f64,        // Nm, m/s or rad, as the plant takes it; of digital outputs: reset
+    pub speed: f64,         // rad/s of a target in rad
 }
 
 /// What there is to sense of it, in SI units.
@@ -61,6 +63,7 @@ pub struct Sensed {
 pub struct Plant {
     socket: UdpSocket,
     description: [u8; DESCRIPTION_BYTES],
+    nonce: u32, // of the last hello; its welcome repeats it
     session: Option<Session>,
 }
 
@@ -80,18 +83,16 @@ impl Plant {
             Ok(socket)
         };
         let socket = open().map_err(|error| format!("{address}: {error}"))?;
-        let mut plant = Plant { socket, description: [0; DESCRIPTION_BYTES], session: None };
+        let mut plant =
+            Plant { socket, description: [0; DESCRIPTION_BYTES], nonce: 0, session: None };
         plant.begin().map_err(|error| format!("{address}: {error}"))?;
         plant.tell(line);
         plant.end();
         Ok(plant)
     }
 
-    /// Moves by a period, if the last frame has carried process data and a drive is ready.
+    /// Moves by a period after a frame with process data, if a drive is ready.
     pub fn follow(&mut self, line: &mut Line) -> io::Result<()> {
-        if !line.has_exchanged {
-            return Ok(());
-        }
         let demands: Vec<Demand> =
             line.slaves.iter().filter_map(|slave| slave.device.demand()).collect();
         let drives = || demands.iter().filter(|demand| demand.part != Part::None);
@@ -120,11 +121,11 @@ impl Plant {
 
     fn begin(&mut self) -> io::Result<()> {
         self.session = Some(Session { id: 0, number: 0, sensed: None });
-        let mut welcome = self.ask(HELLO, &hello(&self.description), WELCOME)?;
+        let mut welcome = self.introduce()?;
         if u32_at(&welcome, 40) != 0 {
             // the refusal says what the device is
             self.description.copy_from_slice(&welcome[48..48 + DESCRIPTION_BYTES]);
-            welcome = self.ask(HELLO, &hello(&self.description), WELCOME)?;
+            welcome = self.introduce()?;
         }
         if u32_at(&welcome, 40) != 0 {
             let reason =
@@ -136,6 +137,15 @@ impl Plant {
             session.number = 0;
         }
         self.ask(READY, &[], SENSORS).map(|_| ())
+    }
+
+    fn introduce(&mut self) -> io::Result<Vec<u8>> {
+        self.nonce += 1;
+        let mut hello = u64::from(self.nonce).to_le_bytes().to_vec();
+        hello.extend(self.description);
+        hello.extend(b"segment");
+        hello.resize(8 + DESCRIPTION_BYTES + 64, 0);
+        self.ask(HELLO, &hello, WELCOME)
     }
 
     fn end(&mut self) {
@@ -186,7 +196,7 @@ impl Plant {
             return false;
         }
         if wanted == WELCOME {
-            return true;
+            return u32_at(bytes, 32) == self.nonce;
         }
         let sensed = sensors(bytes);
         let is_new = session.sensed.as_ref().is_none_or(|last| sensed.sequence > last.sequence);
@@ -201,12 +211,16 @@ impl Plant {
         let sensed = self.session.as_ref().and_then(|session| session.sensed.as_ref());
         let sequence = sensed.map_or(0, |sensed| sensed.sequence);
         let (axes, joints) = (u32_at(&self.description, 64), u32_at(&self.description, 68));
-        let mut tau_m = [0.0; MOST_JOINTS];
+        let mut joint_targets = [0.0; MOST_JOINTS];
+        let mut speeds = [0.0; MOST_JOINTS];
         let mut dq_p = [0.0; MOST_AXES];
         let mut is_reset = false;
         for demand in demands {
             match demand.part {
-                Part::Joint(i) => tau_m[i] = demand.target,
+                Part::Joint(i) => {
+                    joint_targets[i] = demand.target;
+                    speeds[i] = demand.speed;
+                }
                 Part::Axis(i) => dq_p[i] = demand.target,
                 Part::None => is_reset |= demand.target != 0.0,
             }
@@ -218,21 +232,20 @@ impl Plant {
             bytes.extend(u32::from(flag).to_le_bytes());
         }
         bytes.extend([0; 4]);
-        for values in [[0.0; MOST_JOINTS], [0.0; MOST_JOINTS], [0.0; MOST_JOINTS], tau_m] {
-            put(&mut bytes, joints, &values);
+        let nothing = [0.0; MOST_JOINTS];
+        if u32_at(&self.description, 80) == BY_POSITION {
+            put(&mut bytes, joints, &joint_targets);
+            put(&mut bytes, joints, &speeds);
+            put(&mut bytes, joints, &nothing);
+            put(&mut bytes, 0, &nothing);
+        } else {
+            for values in [nothing, nothing, nothing, joint_targets] {
+                put(&mut bytes, joints, &values);
+            }
         }
         put(&mut bytes, axes, &dq_p);
         bytes
     }
-}
-
-fn hello(description: &[u8]) -> Vec<u8> {
-    let mut bytes = 1u64.to_le_bytes().to_vec();
-    bytes.extend(description);
-    let mut client = b"segment".to_vec();
-    client.resize(64, 0);
-    bytes.extend(client);
-    bytes
 }
 
 fn put(bytes: &mut Vec<u8>, count: u32, values: &[f64]) {
@@ -245,11 +258,12 @@ fn put(bytes: &mut Vec<u8>, count: u32, values: &[f64]) {
 
 fn sensors(bytes: &[u8]) -> Sensed {
     let flag = |at| u32_at(bytes, at) != 0;
+    let has_motor_encoders = u32_at(bytes, 216) != 0;
     Sensed {
         sequence: u64::from(u32_at(bytes, 36)) << 32 | u64::from(u32_at(bytes, 32)),
         q_m: numbers(bytes, 96),
         dq_m: numbers(bytes, 160),
-        theta_m: numbers(bytes, 224),
+        theta_m: numbers(bytes, if has_motor_encoders { 224 } else { 96 }),
         tau_m: numbers(bytes, 288),
         q_p: numbers(bytes, 352),
         wrench: numbers(bytes, 368),

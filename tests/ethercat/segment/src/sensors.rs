@@ -140,7 +140,7 @@ impl Device for DigitalIo {
     fn demand(&self) -> Option<Demand> {
         let is_pressed = self.objects.get(DIGITAL_OUTPUTS, 1) != 0;
         let target = if is_pressed { 1.0 } else { 0.0 };
-        Some(Demand { part: Part::None, is_ready: true, is_following: true, target })
+        Some(Demand { part: Part::None, is_ready: true, is_following: true, target, speed: 0.0 })
     }
     fn feel(&mut self, sensed: &Sensed) {
         for (channel, &is_set) in sensed.switches.iter().enumerate() {

@@ -7,13 +7,13 @@ pub mod pump;
 
 use std::ffi::{c_char, CStr, CString};
 use std::panic::{catch_unwind, AssertUnwindSafe};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use ethercrab::error::{Error, Item, MailboxError};
-use ethercrab::subdevice_group::{Op, PreOp};
+use ethercrab::error::{CoeAbortCode, Error, Item, MailboxError};
+use ethercrab::subdevice_group::{Op, PreOp, SafeOp};
 use ethercrab::{
-    AlStatusCode, Command, DefaultLock, MainDevice, MainDeviceConfig, PduStorage, SubDeviceGroup,
-    Timeouts,
+    AlStatusCode, Command, DefaultLock, EtherCrabWireRead, MainDevice, MainDeviceConfig,
+    PduStorage, SubDeviceGroup, Timeouts,
 };
 
 use link::Link;
@@ -38,11 +38,8 @@ const SYNC_START: u16 = 0x0990;
 const SYNC0_PERIOD: u16 = 0x09A0;
 const SYNC0_ON: u8 = 3; // cyclic operation, with pulses
 const SYNC_AHEAD_NS: u64 = 100_000_000; // of the first pulse
-const OP: u8 = 0x08;
-const EXCHANGE_PERIOD: Duration = Duration::from_millis(1); // shortest, on the way to OP
 const SECOND: Duration = Duration::from_secs(1);
 const ANSWER: Duration = Duration::from_millis(500); // of one frame or one step
-const TO_OP: Duration = Duration::from_secs(10); // ETG.1020
 const PATIENCE: Duration = Duration::from_secs(60);
 const NO_ANSWER: i64 = -1;
 
@@ -76,7 +73,19 @@ type Group<S> = SubDeviceGroup<MOST_SLAVES, MOST_BYTES, DefaultLock, S>;
 enum Stage {
     Unknown,
     PreOp(Group<PreOp>),
+    SafeOp(Group<SafeOp>),
     Op(Group<Op>),
+}
+
+/// Evaluates with the group of a stage with process data, as what else in the others.
+macro_rules! with_process_data {
+    ($stage:expr, $group:ident => $value:expr, else $other:expr) => {
+        match $stage {
+            Stage::SafeOp($group) => $value,
+            Stage::Op($group) => $value,
+            _ => $other,
+        }
+    };
 }
 
 struct Bus {
@@ -86,6 +95,7 @@ struct Bus {
     stage: Stage,
     expected: u16,             // working counter of an exchange
     states: [u8; MOST_SLAVES], // AL states by the last exchange; 0: no answer
+    time_ns: u64,              // of the clocks at the last exchange; 0: there are none
 }
 
 impl Bus {
@@ -117,6 +127,7 @@ impl Bus {
             stage: Stage::Unknown,
             expected: 0,
             states: [0; MOST_SLAVES],
+            time_ns: 0,
         })
     }
 
@@ -159,7 +170,7 @@ impl Bus {
         Ok(slaves)
     }
 
-    /// To OP, with sync pulses of this period (0: none) for some slaves.
+    /// To SAFE-OP, with sync pulses of this period (0: none) for some slaves.
     fn start(&mut self, watchdog_ms: u32, sync_ns: u32, synced: &[u16]) -> Result<(), String> {
         let Stage::PreOp(group) = std::mem::replace(&mut self.stage, Stage::Unknown) else {
             return Err(format!("{}: scan comes before start", self.interface));
@@ -186,28 +197,21 @@ impl Bus {
         for address in watched {
             self.set_watchdog(address, watchdog_ms)?;
         }
-        match self.pump.run(group.request_into_op(device), PATIENCE) {
+        self.stage = Stage::SafeOp(group);
+        Ok(())
+    }
+
+    /// Asks all slaves for OP, which they reach with the next exchanges.
+    fn operate(&mut self) -> Result<(), String> {
+        let Stage::SafeOp(group) = std::mem::replace(&mut self.stage, Stage::Unknown) else {
+            return Err(format!("{}: start comes before operate", self.interface));
+        };
+        match self.pump.run(group.request_into_op(self.device), PATIENCE) {
             Some(Ok(group)) => self.stage = Stage::Op(group),
             Some(Err(error)) => return Err(self.explain(&error.to_string())),
             None => return Err(self.explain("no answer on the way to OP")),
         }
-        self.await_op(Duration::from_nanos(u64::from(sync_ns)).max(EXCHANGE_PERIOD))
-    }
-
-    /// Exchanges process data in the rhythm of the pulses until all slaves are in OP.
-    fn await_op(&mut self, period: Duration) -> Result<(), String> {
-        let begin = Instant::now();
-        let mut next = begin;
-        while begin.elapsed() < TO_OP {
-            next += period;
-            std::thread::sleep(next.saturating_duration_since(Instant::now()));
-            let is_complete = self.exchange(ANSWER).is_some();
-            let count = usize::from(self.device.num_subdevices() as u16);
-            if is_complete && self.states[..count].iter().all(|&state| state == OP) {
-                return Ok(());
-            }
-        }
-        Err(self.explain("no end of the way to OP"))
+        Ok(())
     }
 
     /// Sync pulses in step with the clock of the slave `first`.
@@ -300,16 +304,16 @@ impl Bus {
 
     /// Working counter of one exchange of process data; None: no answer in time.
     fn exchange(&mut self, patience: Duration) -> Option<u16> {
-        let Stage::Op(group) = &self.stage else { return None };
-        match self.pump.run(group.tx_rx_sync_system_time(self.device), patience) {
-            Some(Ok(response)) => {
-                for (known, found) in self.states.iter_mut().zip(&response.subdevice_states) {
-                    *known = u8::from(*found);
-                }
-                Some(response.working_counter)
-            }
-            _ => None,
+        let device = self.device;
+        let response = with_process_data!(&self.stage, group => {
+            self.pump.run(group.tx_rx_sync_system_time(device), patience)
+        }, else None)?;
+        let response = response.ok()?;
+        for (known, found) in self.states.iter_mut().zip(&response.subdevice_states) {
+            *known = u8::from(*found);
         }
+        self.time_ns = response.extra.unwrap_or(0);
+        Some(response.working_counter)
     }
 
     fn expect_someone(&mut self) -> Result<(), String> {
@@ -343,8 +347,7 @@ impl Bus {
             let address = FIRST_ADDRESS + i;
             match self.status(address, PATIENCE) {
                 Some((status, code)) if status & ERROR_FLAG != 0 => named.push(format!(
-                    "slave {} of {count} ({address:#06x}) stays in {}: AL status code {code:#06x}, \
-                     {}",
+                    "slave {} of {count} ({address:#06x}) stays in {}: AL status code {}",
                     i + 1,
                     state_name(status),
                     AlStatusCode::from(code)
@@ -380,9 +383,17 @@ fn abort_code(error: Error) -> i64 {
 
 fn name_of(text: &str) -> [u8; NAME_BYTES] {
     let mut name = [0; NAME_BYTES];
-    let length = text.len().min(NAME_BYTES - 1);
-    name[..length].copy_from_slice(&text.as_bytes()[..length]);
+    put_text(text, &mut name);
     name
+}
+
+/// As much of a text as there is room for, zero-terminated.
+fn put_text(text: &str, room: &mut [u8]) {
+    let length = text.len().min(room.len().saturating_sub(1));
+    room[..length].copy_from_slice(&text.as_bytes()[..length]);
+    if let Some(end) = room.get_mut(length) {
+        *end = 0;
+    }
 }
 
 impl bus_master {
@@ -540,6 +551,21 @@ pub unsafe extern "C" fn bus_master_start(
 }
 
 /// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_operate(master: *mut bus_master) -> bool {
+    let master = &mut *master;
+    let Some(bus) = &mut master.open else { return false };
+    match guarded(|| bus.operate()) {
+        Ok(()) => true,
+        Err(message) => {
+            master.fail(message);
+            false
+        }
+    }
+}
+
+/// # Safety
 /// `master` comes from `bus_master_open`; `outputs` and `inputs` point to numbers.
 #[no_mangle]
 pub unsafe extern "C" fn bus_master_sizes(
@@ -549,11 +575,12 @@ pub unsafe extern "C" fn bus_master_sizes(
     inputs: *mut usize,
 ) -> bool {
     let Some(bus) = &(*master).open else { return false };
-    let Stage::Op(group) = &bus.stage else { return false };
-    let Ok(slave) = group.subdevice(bus.device, index) else { return false };
-    *outputs = slave.outputs_raw().len();
-    *inputs = slave.inputs_raw().len();
-    true
+    with_process_data!(&bus.stage, group => {
+        let Ok(slave) = group.subdevice(bus.device, index) else { return false };
+        *outputs = slave.outputs_raw().len();
+        *inputs = slave.inputs_raw().len();
+        true
+    }, else false)
 }
 
 /// # Safety
@@ -566,12 +593,13 @@ pub unsafe extern "C" fn bus_master_set_outputs(
     size: usize,
 ) {
     let Some(bus) = &(*master).open else { return };
-    let Stage::Op(group) = &bus.stage else { return };
-    let Ok(slave) = group.subdevice(bus.device, index) else { return };
-    let mut outputs = slave.outputs_raw_mut();
-    if outputs.len() == size {
-        outputs.copy_from_slice(std::slice::from_raw_parts(data, size));
-    }
+    with_process_data!(&bus.stage, group => {
+        let Ok(slave) = group.subdevice(bus.device, index) else { return };
+        let mut outputs = slave.outputs_raw_mut();
+        if outputs.len() == size {
+            outputs.copy_from_slice(std::slice::from_raw_parts(data, size));
+        }
+    }, else {})
 }
 
 /// # Safety
@@ -584,12 +612,13 @@ pub unsafe extern "C" fn bus_master_inputs(
     size: usize,
 ) {
     let Some(bus) = &(*master).open else { return };
-    let Stage::Op(group) = &bus.stage else { return };
-    let Ok(slave) = group.subdevice(bus.device, index) else { return };
-    let inputs = slave.inputs_raw();
-    if inputs.len() == size {
-        std::slice::from_raw_parts_mut(data, size).copy_from_slice(&inputs);
-    }
+    with_process_data!(&bus.stage, group => {
+        let Ok(slave) = group.subdevice(bus.device, index) else { return };
+        let inputs = slave.inputs_raw();
+        if inputs.len() == size {
+            std::slice::from_raw_parts_mut(data, size).copy_from_slice(&inputs);
+        }
+    }, else {})
 }
 
 /// # Safety
@@ -600,6 +629,24 @@ pub unsafe extern "C" fn bus_master_exchange(master: *mut bus_master, patience_u
     let patience = Duration::from_micros(u64::from(patience_us));
     let counter = catch_unwind(AssertUnwindSafe(|| bus.exchange(patience)));
     counter.ok().flatten().map_or(-1, i32::from)
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_time_ns(master: *const bus_master) -> u64 {
+    (&(*master).open).as_ref().map_or(0, |bus| bus.time_ns)
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_explain(master: *mut bus_master) {
+    let master = &mut *master;
+    let Some(bus) = &mut master.open else { return };
+    match guarded(|| Ok(bus.explain("no end of the way to OP"))) {
+        Ok(message) | Err(message) => master.fail(message),
+    }
 }
 
 /// # Safety
@@ -648,6 +695,24 @@ pub unsafe extern "C" fn bus_master_status(
     *status = (found & 0x1F) as u8;
     *code = found_code;
     true
+}
+
+/// # Safety
+/// `text` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_status_code_words(code: u16, text: *mut u8, size: usize) {
+    put_text(&AlStatusCode::from(code).to_string(), std::slice::from_raw_parts_mut(text, size));
+}
+
+/// # Safety
+/// `text` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_abort_code_words(code: u32, text: *mut u8, size: usize) {
+    let words = match CoeAbortCode::unpack_from_slice(&code.to_le_bytes()) {
+        Ok(known) => known.to_string(),
+        Err(_) => format!("{code:#010x}"),
+    };
+    put_text(&words, std::slice::from_raw_parts_mut(text, size));
 }
 
 /// # Safety
