@@ -80,7 +80,7 @@ class Reactions {
   /// Torque of active limit j on the twin per unit of the split.
   MatrixUpTo<kMaxTwin, kMaxReactions> columns_;
   /// Torque on the twin of a unit reaction of each stop.
-  MatrixUpTo<kMaxTwin, surfaces::kMostFacing> stop_torque_;
+  MatrixUpTo<kMaxTwin, kMostStops> stop_torque_;
   VectorA rest_;  ///< Unexplained part of the constraint torque
   ConstraintDirections directions_;
   hqp::Problem problem_;

@@ -465,7 +465,7 @@ void Tasks::fill_gantry(const TaskInput& input) noexcept {
   }
 }
 
-// The distance d of E to a plane in front of it, d'' = n^T (J_a ddq_a + dJ_a dq_a): the solid
+// The distance d of a point to a plane in front of it, d'' = row ddq_a + bias (stops.h): the solid
 // curves away from its plane, so that this is the least.
 void Tasks::fill_stops(const TaskInput& input) noexcept {
   const int first = static_cast<int>(limit_rows_.size()) - stop_count_;

@@ -13,7 +13,7 @@
 ///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
 ///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a, ddq_p)
 ///                   aim of the gantry, where the law leads it
-///                   inner ranges, then posture, where the manipulator has a joint to spare
+///                   inner ranges and posture, where the manipulator has a joint to spare
 ///   law paper       dynamics, range and norm of the constraint torques; paper_law.h
 ///
 /// Rows have the weight 1 / rating in law gauss, none in law paper. No allocation after

@@ -30,6 +30,11 @@ void check_twin_model(const TwinModel& twin) {
           ": at most " + std::to_string(kMaxConditionalLimits) + " conditional limits");
   require(std::ssize(twin.spheres) <= kMaxSpheres,
           ": at most " + std::to_string(kMaxSpheres) + " collision spheres");
+  for (const CollisionSphere& sphere : twin.spheres) {
+    require(sphere.frame >= 0 && sphere.p.allFinite() && sphere.radius >= 0.0 &&
+                std::isfinite(sphere.radius),
+            ": a collision sphere needs a frame, a finite centre and a finite radius >= 0");
+  }
   require(kMassScale.contains(twin.mass_scale), ": mass_scale must be 0.1..10");
 }
 

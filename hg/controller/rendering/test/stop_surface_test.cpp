@@ -340,6 +340,29 @@ TwinModel body_with_corners(double half, double radius) {
   return twin;
 }
 
+// 20 degrees of freedom, pushed down onto a floor.
+TEST(StopSurface, AFloorCarriesALongChainWithASphere) {
+  constexpr double kFloor = -0.01;  // m, the end effector begins at 0
+  TwinModel twin = unlimited_twin(
+      model::ChainModel::from_urdf_text(snake(20, 1.0), "snake.urdf", {.gravity = false}), "l20");
+  twin.spheres = {{.frame = twin.chain.frame("l10"), .radius = 0.005}};
+  Rendering rendering(
+      device_with(3.0), twin, without_synchronisation(),
+      surfaces::Environment({stop(surfaces::Plane{}, {0.0, 0.0, kFloor})}, kDt, {kMass, kMass}));
+  RenderingState state = rendering.start(kPosture);
+  LawResult result;
+  for (int k = 0; k < 400; ++k) {
+    state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, -20.0 * Vector6::Unit(2));
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    ASSERT_LT(budget_gap(result, rendering.twin_chain().M()), 1e-9);
+    rendering.integrate(state);
+    ASSERT_GT(rendering.twin_chain().pose(twin.end_effector).p.z(), kFloor - 5e-4);
+  }
+  EXPECT_EQ(result.contact.surface, 0);
+  EXPECT_GT(result.contact.force.z(), 1.0);
+}
+
 // A hand that pulls and turns at random, differently every 0.2 s, with dampers as above.
 struct RandomHand {
   std::mt19937 random;
