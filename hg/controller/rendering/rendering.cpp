@@ -138,9 +138,9 @@ void check_stops(const DeviceModel& device, const RenderingOptions& options) {
 
 // A sphere inside of a stop may ask for any turn of a free body where its lever is short and the
 // device holds the end effector back. The limit is beyond what a hand does.
-TwinModel with_turning_limit(TwinModel twin) {
+TwinModel with_turning_limit(TwinModel twin, const surfaces::Environment& environment) {
   constexpr double kFastest = 500.0;  // rad/s^2
-  if (twin.spheres.empty()) return twin;
+  if (twin.spheres.empty() || !environment.has_stops()) return twin;
   for (TwinDof& dof : twin.dofs) {
     const bool turns_freely = dof.q_index < 0 && dof.is_angle;
     if (turns_freely) dof.limits.ddq_max = std::min(dof.limits.ddq_max, kFastest);
@@ -153,7 +153,7 @@ TwinModel with_turning_limit(TwinModel twin) {
 Rendering::Rendering(DeviceModel device, TwinModel twin, const RenderingOptions& options,
                      surfaces::Environment environment)
     : device_((check_rendering(device, twin, options), std::move(device))),
-      twin_(with_turning_limit(std::move(twin))),
+      twin_(with_turning_limit(std::move(twin), environment)),
       device_now_(device_.chain),
       twin_now_(twin_.chain),
       options_(options),
@@ -282,7 +282,12 @@ void Rendering::feel_surfaces(const LawInput& input, RenderingState& state,
   const Eigen::Vector3d p_E = twin_now_.pose(twin_.end_effector).p;
   const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
   if (environment_.has_stops()) {
-    stops_ = find_stops(environment_, {twin_, twin_now_, L_}, stop_rating_);
+    const VectorA& dq = state.twin.dq_a;
+    VectorA ddq_max(dq.size());
+    for (int i = 0; i < dq.size(); ++i) {
+      ddq_max[i] = effective_limits(twin_, i, dq[i], state.inner).limits.ddq_max;
+    }
+    stops_ = find_stops(environment_, {twin_, twin_now_, L_, dq, ddq_max}, stop_rating_);
   }
   Eigen::Vector3d push = input.robot.w_H.head<3>();
   if (!environment_.surfaces().empty()) push += push_of_twin(result.budget);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace hg::rendering {
 namespace {
@@ -42,7 +41,8 @@ VectorA row_of(const model::ChainData& chain, const Point& point, const Vector3d
 }
 
 // The acceleration along `row` with which a point brakes when a force pushes it, so that the end
-// effector keeps to `rating` and every joint to its own.
+// effector keeps to `rating`, and with which all joints together can. A joint at its limit leaves
+// the rest to the others.
 double rating_along(const TwinNow& twin, const VectorA& row, double rating) noexcept {
   constexpr double kFixed = 1e-12;  // 1/kg
   const auto factor = twin.L.triangularView<Eigen::Lower>();
@@ -52,18 +52,25 @@ double rating_along(const TwinNow& twin, const VectorA& row, double rating) noex
   if (mobility < kFixed) return rating;
   factor.transpose().solveInPlace(ddq);
   const Vector3d of_E = twin.chain.jacobian(twin.model.end_effector).topRows<3>() * ddq;
-  double force = rating / std::max(mobility, of_E.cwiseAbs().maxCoeff());
-  for (int i = 0; i < ddq.size(); ++i) {
-    force = std::min(force, twin.model.dofs[i].limits.ddq_max / std::abs(ddq[i]));
+  double of_joints = 0.0;
+  for (int i = 0; i < row.size(); ++i) {
+    if (row[i] != 0.0) of_joints += std::abs(row[i]) * twin.ddq_max[i];
   }
-  return force * mobility;
+  return std::min(rating * mobility / std::max(mobility, of_E.cwiseAbs().maxCoeff()), of_joints);
 }
 
-// That along the motion of a point.
+// That with which a point comes to rest along its motion, when each joint brakes as it can.
 double rating_of(const TwinNow& twin, const Point& point, double rating) noexcept {
   const double speed = point.v.norm();
   if (speed == 0.0) return rating;
-  return rating_along(twin, row_of(twin.chain, point, point.v / speed), rating);
+  const auto& J = twin.chain.jacobian(point.frame);
+  double way = 0.0;
+  for (int i = 0; i < twin.dq.size(); ++i) {
+    const Vector3d along = J.col(i).head<3>() + Vector3d(J.col(i).tail<3>()).cross(point.lever);
+    way += along.norm() * twin.dq[i] * twin.dq[i] / (2.0 * twin.ddq_max[i]);
+  }
+  const double of_E = rating_along(twin, row_of(twin.chain, point, point.v / speed), rating);
+  return 1.0 / std::max(1.0 / of_E, 2.0 * way / (speed * speed));
 }
 
 Stop stop_of(const TwinNow& twin, const Point& point, const surfaces::Facing& facing, double radius,
@@ -79,49 +86,29 @@ Stop stop_of(const TwinNow& twin, const Point& point, const surfaces::Facing& fa
           .rating = rating_along(twin, row, rating)};
 }
 
-// How far away it would come to rest, m.
-double margin(const Stop& stop) noexcept {
-  return stop.distance + stop.speed * std::abs(stop.speed) / (2.0 * stop.rating);
-}
-
-// Keeps the stops with the least margin, in their order.
-void keep(const Stop& stop, std::span<Stop> kept) noexcept {
-  const auto unused = std::ranges::find(kept, -1, &Stop::surface);
-  auto last = unused;
-  if (unused == kept.end()) {
-    const auto farthest = std::ranges::max_element(kept, {}, margin);
-    if (margin(*farthest) <= margin(stop)) return;
-    std::rotate(farthest, farthest + 1, kept.end());
-    last = kept.end() - 1;
-  }
-  *last = stop;
-}
-
 }  // namespace
 
 int stop_count(const surfaces::Environment& environment, const TwinModel& twin) noexcept {
   if (!environment.has_stops()) return 0;
-  return twin.spheres.empty() ? surfaces::kMostFacing : kMostStops;
+  return (1 + static_cast<int>(twin.spheres.size())) * surfaces::kMostFacing;
 }
 
 Stops find_stops(const surfaces::Environment& environment, const TwinNow& twin,
                  double rating) noexcept {
   Stops stops;
-  const Point E = point_on(twin.chain, twin.model.end_effector, Vector3d::Zero());
-  const auto facing = environment.stops(E.p, E.v, rating_of(twin, E, rating));
-  for (std::size_t i = 0; i < facing.size(); ++i) {
-    if (facing[i].surface >= 0) stops[i] = stop_of(twin, E, facing[i], 0.0, rating);
-  }
-  const std::span<Stop> of_spheres = std::span(stops).subspan(surfaces::kMostFacing);
-  for (const CollisionSphere& sphere : twin.model.spheres) {
-    const Point point = point_on(twin.chain, sphere.frame, sphere.p);
-    for (const surfaces::Facing& found :
-         environment.stops(point.p, point.v, rating_of(twin, point, rating), sphere.radius)) {
-      if (found.surface < 0) continue;
-      Stop stop = stop_of(twin, point, found, sphere.radius, rating);
-      stop.bias = counted(stop.bias, stop.distance);
-      keep(stop, of_spheres);
+  auto next = stops.begin();
+  const auto add_stops_of = [&](const Point& point, double radius) {
+    const auto planes = environment.stops(point.p, point.v, rating_of(twin, point, rating), radius);
+    for (const surfaces::Facing& facing : planes) {
+      if (facing.surface >= 0) *next = stop_of(twin, point, facing, radius, rating);
+      ++next;
     }
+  };
+  add_stops_of(point_on(twin.chain, twin.model.end_effector, Vector3d::Zero()), 0.0);
+  for (const CollisionSphere& sphere : twin.model.spheres) {
+    const auto first = next;
+    add_stops_of(point_on(twin.chain, sphere.frame, sphere.p), sphere.radius);
+    std::for_each(first, next, [](Stop& stop) { stop.bias = counted(stop.bias, stop.distance); });
   }
   return stops;
 }

@@ -12,9 +12,8 @@
 
 namespace hg::rendering {
 
-/// Rows of all spheres together, those with the least margin to brake
-inline constexpr int kMostSphereStops = 4;
-inline constexpr int kMostStops = surfaces::kMostFacing + kMostSphereStops;
+/// Rows of E and of all spheres
+inline constexpr int kMostStops = (1 + kMaxSpheres) * surfaces::kMostFacing;
 
 /// A point of the twin in front of a stop.
 struct Stop {
@@ -32,16 +31,18 @@ struct TwinNow {
   const TwinModel& model;
   const model::ChainData& chain;  ///< after update()
   const MatrixA& L;               ///< M_a = L L^T
+  const VectorA& dq;              ///< Joint velocity
+  const VectorA& ddq_max;         ///< Acceleration with which each joint brakes
 };
 
-/// Stops of E first, then those of spheres, in the order of TwinModel::spheres.
+/// kMostFacing stops of E, then as many of each sphere, in the order of TwinModel::spheres.
 using Stops = std::array<Stop, kMostStops>;
 
 /// Number of stops that can act: none without surfaces that are stops.
 int stop_count(const surfaces::Environment& environment, const TwinModel& twin) noexcept;
 
 /// The stops of a twin whose end effector brakes with at most `rating` (m/s^2) along each axis of
-/// B. A point brakes as hard as end effector and joints, which follow it, can.
+/// B. A point brakes as hard as the end effector, which follows it, and the joints together can.
 Stops find_stops(const surfaces::Environment& environment, const TwinNow& twin,
                  double rating) noexcept;
 

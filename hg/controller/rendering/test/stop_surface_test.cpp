@@ -231,6 +231,45 @@ TEST(StopSurface, ASphereNearAHingeBrakesAsTheHingeCan) {
   }
 }
 
+constexpr const char* kTwoSlides = R"(<robot name="slides"><link name="base"/>
+  <link name="x"><inertial><mass value="2"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="to_x" type="prismatic"><parent link="base"/><child link="x"/>
+    <axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="0" velocity="9"/></joint>
+  <link name="y"><inertial><mass value="2"/>
+    <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="to_y" type="prismatic"><parent link="x"/><child link="y"/>
+    <axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="0" velocity="9"/></joint></robot>)";
+
+// Two slides that brake with 0.1 and 10 m/s^2, moving along the second at 1 m/s, before a wall at
+// 45 degrees: the second one can brake in time alone.
+TEST(StopSurface, AJointThatBrakesHardHelpsOneThatHardlyBrakes) {
+  constexpr double kAhead = 0.3;  // along the wall's normal, m
+  TwinModel twin = unlimited_twin(
+      model::ChainModel::from_urdf_text(kTwoSlides, "slides.urdf", {.gravity = false}), "y");
+  twin.dofs[0].limits.ddq_max = 0.1;
+  twin.dofs[1].limits.ddq_max = 10.0;
+  const Vector3d normal = Vector3d(-1.0, -1.0, 0.0).normalized();
+  Surface wall = stop(surfaces::Plane{}, -kAhead * normal);
+  wall.pose.R = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal).matrix();
+  Rendering rendering(device_with(10.0), twin, without_synchronisation(),
+                      surfaces::Environment({wall}, kDt, {kMass, kMass}));
+  RenderingState state = rendering.start(kPosture);
+  state.twin.dq_a[1] = 1.0;
+  LawResult result;
+  double deepest = -kInfinity;
+  for (int k = 0; k < 3000; ++k) {
+    state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, 10.0 * Vector6::Unit(1));
+    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    rendering.integrate(state);
+    const Vector3d p = {state.twin.q_a[0], state.twin.q_a[1], 0.0};
+    deepest = std::max(deepest, -normal.dot(p) - kAhead);
+  }
+  EXPECT_LT(deepest, 1e-4);
+  EXPECT_GT(deepest, -1e-3);
+}
+
 // A free body that carries a sphere beside its end effector, above a floor that is a stop.
 struct Carrying {
   static constexpr double kRadius = 0.05;
@@ -380,6 +419,52 @@ struct RandomHand {
   }
 };
 
+// A box with spheres at its corners, pressed and turned into the corner of a floor and two walls,
+// where up to seven of them touch eleven planes.
+TEST(StopSurface, ABoxIsHeldInACorner) {
+  constexpr double kHalf = 0.1, kRadius = 0.02, kGap = 0.2;  // m; from the middle to each plane
+  std::vector<Surface> planes(3, stop(surfaces::Plane{}, Vector3d::Zero()));
+  for (int axis = 0; axis < 3; ++axis) {
+    planes[axis].pose.p = kStart - kGap * Vector3d::Unit(axis);
+    planes[axis].pose.R =
+        Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::Unit(axis)).matrix();
+  }
+  Rendering rendering(device_with(3.0), body_with_corners(kHalf, kRadius),
+                      without_synchronisation(),
+                      surfaces::Environment(planes, kDt, {kMass, kMass}));
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    RenderingState state = rendering.start(kPosture);
+    LawResult result;
+    double deepest = -kInfinity;
+    Vector6 pull;
+    for (int k = 0; k < 4000; ++k) {
+      if (k % 400 == 0) {
+        for (double& value : pull) value = any(random);
+        pull.head<3>() = 40.0 * (pull.head<3>() - Vector3d::Ones());  // into the corner
+      }
+      state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
+      const Eigen::Quaterniond turn(state.twin.q_a.segment<4>(3));
+      Vector6 w = pull;
+      w.head<3>() -= 20.0 * (turn * state.twin.dq_a.head<3>());
+      w.tail<3>() -= 0.2 * (turn * state.twin.dq_a.segment<3>(3));
+      ASSERT_EQ(rendering.step({.robot = robot_with(kGantryAtHome, kPosture, w)}, state, result),
+                SolverStatus::kSolved);
+      ASSERT_LT(budget_gap(result, rendering.twin_chain().M()), 1e-8);  // of 80 N
+      rendering.integrate(state);
+      for (const CollisionSphere& sphere : rendering.twin().spheres) {
+        const Vector3d p = state.twin.q_a.head<3>() + turn * sphere.p - kStart;
+        deepest = std::max(deepest, kRadius - kGap - p.minCoeff());
+      }
+    }
+    EXPECT_LT(deepest, 1e-3);
+    EXPECT_GT(deepest, -1e-3);
+    EXPECT_GE(result.contact.surface, 0);
+  }
+}
+
 // Spheres of a millimetre and of a metre, at the corners and in the middle of a body.
 TEST(StopSurface, SpheresAtTheCornersOfABodyStayBetweenTwoStops) {
   struct Case {
@@ -414,6 +499,7 @@ TEST(StopSurface, SpheresAtTheCornersOfABodyStayBetweenTwoStops) {
       }
     }
     EXPECT_LT(deepest, 1e-3);
+    EXPECT_GT(deepest, -1e-3);
     EXPECT_LT(state.twin.dq_a.head<3>().norm(), 2.0);  // 40 N on 20 Ns/m
   }
 }
