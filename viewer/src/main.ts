@@ -143,7 +143,7 @@ class Page {
 
   private async load(scene: Scene): Promise<void> {
     this.release(); // the handle is elsewhere now
-    const is_first = this.world === null;
+    const is_other = this.world?.scene.device.name !== scene.device.name; // than seen so far, if any
     this.toolbar.load(scene);
     this.stop.load(scene);
     this.replay.load(scene);
@@ -154,7 +154,10 @@ class Page {
     this.hand_controls.load(scene);
     document.body.dataset.source = scene.source;
     this.stage.load(scene.box, scene.floor_z_m);
-    if (is_first) this.cameras.frame(scene.box);
+    if (is_other) {
+      this.cameras.frame(scene.box);
+      this.has_looked = false;
+    }
     const world = await World.load(scene, this.stage, this.layers).catch((error: unknown) => {
       this.notices.show("world", error instanceof Error ? error.message : String(error));
       return null;

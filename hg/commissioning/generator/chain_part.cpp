@@ -6,6 +6,10 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <ranges>
+#include <vector>
+
+#include "hg/model/chain_data.h"
 
 namespace hg::generator {
 
@@ -16,15 +20,47 @@ model::ChainModel read_part(const ChainPart& part) {
   return model::ChainModel::from_urdf_file(part.urdf, options);
 }
 
-int held_frame(const model::ChainModel& chain) {
-  constexpr std::array<const char*, 6> kHints = {"handle", "tcp", "tool", "ee", "grip", "hand"};
-  const auto& names = chain.frame_names();
-  for (const char* hint : kHints) {
-    for (std::size_t i = names.size(); i-- > 0;) {
-      if (names[i].find(hint) != std::string::npos) return static_cast<int>(i);
+namespace {
+
+// Short hints are words of their own: "ee" is not in "screen".
+bool is_named(const std::string& name, const std::string& hint) {
+  const auto is_letter = [&](std::size_t i) {
+    return i < name.size() && std::isalpha(static_cast<unsigned char>(name[i])) != 0;
+  };
+  const bool is_word = hint.size() <= 3;
+  for (std::size_t at = name.find(hint); at != std::string::npos; at = name.find(hint, at + 1)) {
+    if (!is_word || !(is_letter(at - 1) || is_letter(at + hint.size()))) return true;
+  }
+  return false;
+}
+
+// frames, in their order, that at least so many degrees of freedom move
+std::vector<int> moved_frames(const model::ChainModel& chain, int degrees) {
+  constexpr double kMoved = 1e-9;  // m or rad per rad or m
+  model::ChainData data(chain);
+  data.update_kinematics(chain.integrate(chain.neutral(), VectorA::Constant(chain.nv(), 0.3)),
+                         VectorA::Zero(chain.nv()));
+  std::vector<int> frames;
+  for (std::size_t i = 0; i < chain.frame_names().size(); ++i) {
+    const model::Jacobian J = data.jacobian(static_cast<int>(i));
+    if ((J.colwise().norm().array() > kMoved).count() >= degrees) {
+      frames.push_back(static_cast<int>(i));
     }
   }
-  return static_cast<int>(names.size()) - 1;
+  return frames;
+}
+
+}  // namespace
+
+int held_frame(const model::ChainModel& chain, int degrees) {
+  constexpr std::array<const char*, 6> kHints = {"handle", "tcp", "tool", "ee", "grip", "hand"};
+  const std::vector<int> frames = moved_frames(chain, degrees);
+  for (const char* hint : kHints) {
+    for (const int frame : std::views::reverse(frames)) {
+      if (is_named(chain.frame_names()[frame], hint)) return frame;
+    }
+  }
+  return frames.empty() ? -1 : frames.back();
 }
 
 std::string rounded(double value) {

@@ -17,9 +17,9 @@ struct ChainPart {
 /// Reads the part as a chain. Throws SetupError as ChainModel::from_urdf_file.
 model::ChainModel read_part(const ChainPart& part);
 
-/// Index of the last frame with a name of a held frame (handle, tcp, tool, ...), else of the last
-/// frame.
-int held_frame(const model::ChainModel& chain);
+/// Of the frames that at least `degrees` degrees of freedom move, the index of the last one with a
+/// name of a held frame (handle, tcp, tool, ...), else of the last one; -1: there are none.
+int held_frame(const model::ChainModel& chain, int degrees);
 
 /// Number with two significant digits in usual notation: 0.0023, 1.2, 120.
 std::string rounded(double value);

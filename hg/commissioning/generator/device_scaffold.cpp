@@ -160,7 +160,7 @@ struct Reach {
   double speed = 0.0, acceleration = 0.0;
 };
 
-Reach reach_of(DeviceDraft& d) {
+Reach reach_of(DeviceDraft& d, const std::string& source) {
   PostureSampler sampler(d.ranges);
   Reach reach;
   std::array<std::vector<double>, 3> speeds, accelerations;
@@ -183,6 +183,7 @@ Reach reach_of(DeviceDraft& d) {
     }
   }
   const auto fifth_percentile = [](std::vector<double>& values) {
+    if (values.empty()) return 0.0;
     const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
     std::ranges::nth_element(values, place);
     return *place;
@@ -192,6 +193,11 @@ Reach reach_of(DeviceDraft& d) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     reach.speed = std::min(reach.speed, fifth_percentile(speeds[axis]));
     reach.acceleration = std::min(reach.acceleration, fifth_percentile(accelerations[axis]));
+    if (reach.speed > 0.0) continue;
+    throw SetupError(fmt::format(
+        "{}: the joints hardly move '{}' along {}; a device needs an end that moves in all three "
+        "directions: choose the arm with --root-link and --tip-link",
+        source, d.chain.model().frame_names()[d.handle], "xyz"[axis]));
   }
   return reach;
 }
@@ -330,7 +336,12 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
                 .posture = {},
                 .shapes = {}};
   d.n_p = gantry_joints(d.chain.model(), part.urdf.generic_string());
-  d.handle = held_frame(d.chain.model());
+  d.handle = held_frame(d.chain.model(), d.chain.model().nv());
+  if (d.handle < 0) {
+    throw SetupError(part.urdf.generic_string() + ": no link is moved by all " +
+                     std::to_string(d.chain.model().nv()) +
+                     " joints, so that a hand could hold it");
+  }
   d.ranges = joint_ranges(d.chain.model());
   for (std::size_t i = 0; i < d.ranges.size(); ++i) {
     // more than a turn says that the joint has no stops, only cables
@@ -343,7 +354,7 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
   d.singular = singular_values(d.chain.model(), d.handle, d.n_p, d.ranges);
   d.posture = best_posture(d);
   leave_singularities(d);
-  const Reach reach = reach_of(d);
+  const Reach reach = reach_of(d, part.urdf.generic_string());
 
   std::string text = fmt::format(
       "# {} as a device, from {}.\n"

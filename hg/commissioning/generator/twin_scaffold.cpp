@@ -56,7 +56,7 @@ Mechanism make_mechanism(const ChainPart& part) {
     throw SetupError(part.urdf.generic_string() + ": joint " + joint.name +
                      ": is floating; a draft is made for joints with one coordinate");
   }
-  d.end_effector = held_frame(d.chain.model());
+  d.end_effector = held_frame(d.chain.model(), 1);
   d.ranges = joint_ranges(d.chain.model());
   const int n = d.chain.model().nv();
   d.start.resize(n);

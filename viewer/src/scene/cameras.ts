@@ -49,6 +49,7 @@ export class Cameras {
 
   // Looks into the cell through its open side, from beside and above the person.
   frame(box: SceneBox): void {
+    this.first_sight = null;
     this.low.set(...box.min_m);
     this.high.set(...box.max_m);
     this.seen_first.addVectors(this.low, this.high).multiplyScalar(0.5);

@@ -1,5 +1,6 @@
 #include "hg/commissioning/generator/scaffold.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "hg/commissioning/generator/postures.h"
@@ -168,6 +169,43 @@ TEST(Scaffold, TooFewJointsAreRefusedWithAdvice) {
       message_of([] { draft_device(kGate, ".", Drives::kIdeal, "").device; });
   EXPECT_NE(message.find("six or seven manipulator joints"), std::string::npos) << message;
   EXPECT_NE(message.find("--tip-link"), std::string::npos) << message;
+}
+
+// A URDF of a whole robot: a screen ("ee") and a handle on links that the arm does not move.
+TEST(Scaffold, TheHandleIsAFrameThatTheWholeArmMoves) {
+  const TemporaryFolder folder;
+  std::string urdf = read_file(kArm.urdf);
+  const std::size_t end = urdf.rfind("</robot>");
+  ASSERT_NE(end, std::string::npos);
+  const std::string root = model::ChainModel::from_urdf_file(kArm.urdf, {}).frame_names()[0];
+  for (const char* name : {"screen", "cart_handle"}) {
+    urdf.insert(end, std::string("<link name='") + name + "'/><joint name='to_" + name +
+                         "' type='fixed'><parent link='" + root + "'/><child link='" + name +
+                         "'/></joint>");
+  }
+  const auto file = folder.write("robot.urdf", urdf);
+  const auto device = config::load_device(folder.write(
+      "robot.yaml", draft_device({file, "", ""}, folder.path(), Drives::kIdeal, "").device));
+  const std::string handle = device.model.chain.frame_names()[device.model.handle];
+  EXPECT_EQ(handle, "handle");
+}
+
+TEST(Scaffold, AnArmThatMovesInAPlaneIsRefused) {
+  const TemporaryFolder folder;
+  std::string urdf = "<robot name='flat'><link name='l0'/>";
+  for (int i = 1; i <= 6; ++i) {
+    urdf += fmt::format(
+        "<link name='l{1}'><inertial><mass value='1'/><inertia ixx='0.01' iyy='0.01' izz='0.01' "
+        "ixy='0' ixz='0' iyz='0'/></inertial></link><joint name='j{1}' type='revolute'>"
+        "<parent link='l{0}'/><child link='l{1}'/><origin xyz='0.2 0 0'/><axis xyz='0 0 1'/>"
+        "<limit lower='-2' upper='2' effort='9' velocity='2'/></joint>",
+        i - 1, i);
+  }
+  const auto file = folder.write("flat.urdf", urdf + "</robot>");
+  const std::string message = message_of([&] {
+    draft_device({file, "", ""}, folder.path(), Drives::kIdeal, "");
+  });
+  EXPECT_NE(message.find("hardly move 'l6' along z"), std::string::npos) << message;
 }
 
 TEST(Scaffold, NamesAreQuotedWhereYamlNeedsIt) {
