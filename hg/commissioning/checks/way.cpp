@@ -18,6 +18,7 @@ constexpr double kFirst = 1.0;       // s, from the grasp to the first motion
 constexpr double kBeyond = 0.1;      // of a range, how far beyond its ends the hand pulls
 constexpr double kRest = 1.0;        // s, at each end
 constexpr double kSlow = 4.0;        // times the shortest duration, back to the start
+constexpr double kCalm = 0.4;        // of the largest speed, in the second trial
 constexpr double kShortest = 0.5;    // s, of one motion
 constexpr double kLongest = 60.0;    // s, of one motion: a joint that takes longer is not led
 constexpr double kCoasting = 1.5;    // s, time constant of a twin that is let go
@@ -26,6 +27,7 @@ constexpr double kTurnSpeed = 1.0;   // rad/s, the same where the handle turns o
 constexpr double kSpeedShare = 0.9;  // of the twin's own limits
 constexpr double kPullShare = 0.3;   // of what a hand pulls and turns with
 constexpr double kAtLimit = 0.1;     // s, from which a limit counts as in the way
+constexpr double kAtSpeed = 0.2;     // s, the same for the largest speed of a joint
 constexpr double kNearLever = 0.02;  // m, below it a joint turns the handle on the spot
 constexpr double kReached = 0.02;    // share of a range within which an end counts as reached
 
@@ -78,9 +80,10 @@ std::vector<int> led_joints(const rendering::TwinModel& twin, const person::Hand
 }
 
 // Each joint from its start to its upper end, to its lower end, and slowly back to the start, where
-// drives stick and slip. As people do, the hand pulls on at an end.
+// drives stick and slip. As people do, the hand pulls on at an end. `pace`: share of the largest
+// speed.
 person::Script script_through(const rendering::TwinModel& twin, const person::HandImpedance& hand,
-                              const std::vector<int>& led, model::ChainData& chain) {
+                              const std::vector<int>& led, double pace, model::ChainData& chain) {
   person::Script script = {.frame = person::ScriptFrame::kTwinJoints};
   script.start[person::kGripChannel] = 1.0;
   double t = kFirst;
@@ -91,7 +94,8 @@ person::Script script_through(const rendering::TwinModel& twin, const person::Ha
     double at = start;
     for (const double to : {limits.q_max + beyond, limits.q_min - beyond, start}) {
       const double fastest = duration_of(twin, hand, chain, dof, std::abs(to - at));
-      const double duration = to == start ? kSlow * fastest : fastest;
+      const double paced = std::max(fastest, std::min(fastest / pace, kLongest));
+      const double duration = to == start ? kSlow * fastest : paced;
       script.segments.push_back({t, duration, dof, person::Blend::kTo, to});
       t += duration + kRest;
       at = to;
@@ -114,7 +118,8 @@ struct Trial {
   std::vector<int> led;
 };
 
-Trial make_trial(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {
+Trial make_trial(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
+                 double pace) {
   Trial trial = {.scenario = {.title = {},
                               .description = {},
                               .device = device,
@@ -136,7 +141,7 @@ Trial make_trial(const config::SimulatedDeviceConfig& device, const config::Twin
   scenario.changes.push_back({0.0, {Parameter::kGravity, -1, 0.0}});
   const person::HandImpedance& hand = scenario.script.hand;
   trial.led = led_joints(model, hand, chain);
-  scenario.script.script = script_through(model, hand, trial.led, chain);
+  scenario.script.script = script_through(model, hand, trial.led, pace, chain);
   return trial;
 }
 
@@ -146,7 +151,8 @@ class Watch {
   explicit Watch(const Trial& trial)
       : trial_(trial),
         positions_(trial.scenario.device.model),
-        at_limit_s_(trial.scenario.device.model.limit_count()) {
+        at_limit_s_(trial.scenario.device.model.limit_count()),
+        at_speed_s_(at_limit_s_.size()) {
     for (const int dof : trial.led) {
       const double q = position(trial.scenario.twin.model.q_start, dof);
       reached_.push_back({q, q});
@@ -184,15 +190,24 @@ class Watch {
     return q[trial_.scenario.twin.model.dofs[dof].q_index];
   }
 
+  // Adds a period to the time for which limit `i` has been in a state, and keeps the longest.
+  void count(bool is_so, std::size_t i, double shortest, std::vector<double>& so_far_s,
+             double& longest_s, std::string& name) const {
+    so_far_s[i] = is_so ? so_far_s[i] + trial_.scenario.device.model.dt() : 0.0;
+    if (so_far_s[i] < shortest || so_far_s[i] <= longest_s) return;
+    longest_s = so_far_s[i];
+    name = trial_.scenario.limits[i].name;
+  }
+
   void look_at_limits(const CycleRecord& record) {
     for (std::size_t i = 0; i < at_limit_s_.size(); ++i) {
       const LimitReport& limit = record.limits[i];
-      const bool is_at_end =
-          limit.state != LimitState::kInactive && limit.cause == LimitCause::kPosition;
-      at_limit_s_[i] = is_at_end ? at_limit_s_[i] + trial_.scenario.device.model.dt() : 0.0;
-      if (at_limit_s_[i] < kAtLimit || at_limit_s_[i] <= way_.at_limit_s) continue;
-      way_.at_limit_s = at_limit_s_[i];
-      way_.limit = trial_.scenario.limits[i].name;
+      const bool acts = limit.state != LimitState::kInactive;
+      count(acts && limit.cause == LimitCause::kPosition, i, kAtLimit, at_limit_s_, way_.at_limit_s,
+            way_.limit);
+      if (trial_.scenario.limits[i].kind != LimitKind::kManipulatorJoint) continue;
+      count(acts && limit.cause == LimitCause::kVelocity, i, kAtSpeed, at_speed_s_, way_.rushed_s,
+            way_.rushed);
     }
   }
 
@@ -209,7 +224,7 @@ class Watch {
 
   const Trial& trial_;
   rendering::LimitPositions positions_;
-  std::vector<double> at_limit_s_, values_;
+  std::vector<double> at_limit_s_, at_speed_s_, values_;
   std::vector<Interval> reached_;
   Way way_;
 };
@@ -226,6 +241,10 @@ std::string trouble_of(const Way& way) {
   if (!way.limit.empty()) {
     add(fmt::format("{} of the device stands at its limit for {:.1f} s", way.limit,
                     way.at_limit_s));
+  }
+  if (!way.rushed.empty()) {
+    add(fmt::format("{} of the device moves at its largest speed for {:.1f} s", way.rushed,
+                    way.rushed_s));
   }
   if (!way.exceeded.empty()) {
     add(fmt::format("{} of the device leaves its limit by {:.1f} mm or mrad", way.exceeded,
@@ -245,17 +264,23 @@ bool take_script_through_ranges(config::Scenario& scenario) {
   chain.update(twin.q_start, VectorA::Zero(twin.chain.nv()));
   const std::vector<int> led = led_joints(twin, hand, chain);
   if (led.empty()) return false;
-  scenario.script.script = script_through(twin, hand, led, chain);
+  scenario.script.script = script_through(twin, hand, led, 1.0, chain);
   return true;
 }
 
 Way lead(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {
   if (!has_script(twin.model)) return {};
-  const Trial trial = make_trial(device, twin);
-  scenario::Session session(trial.scenario);
-  Watch watch(trial);
-  while (session.advance()) watch.look(session.sample());
-  return watch.result(session.record());
+  // a joint to spare takes another way at another speed
+  Way way;
+  for (const double pace : {1.0, kCalm}) {
+    const Trial trial = make_trial(device, twin, pace);
+    scenario::Session session(trial.scenario);
+    Watch watch(trial);
+    while (session.advance()) watch.look(session.sample());
+    way = watch.result(session.record());
+    if (!trouble_of(way).empty()) break;
+  }
+  return way;
 }
 
 }  // namespace hg::checks

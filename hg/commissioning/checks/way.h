@@ -20,9 +20,11 @@ struct Way {
   std::string fault;        ///< Fault that ended the trial; empty: none
   double at_limit_s = 0.0;  ///< Longest time at which one limit of the device stood at its end, s
   std::string limit;        ///< That limit; empty: none stood there for long
-  double excess = 0.0;      ///< Largest true excess over a limit of the device, rad or m
-  double shaken_s = 0.0;    ///< Time in which hand and device oscillated against each other, s
-  std::string exceeded;     ///< That limit; empty: none by more than kExcessAllowed
+  double rushed_s = 0.0;  ///< Longest time in which a joint of the device was at its largest speed
+  std::string rushed;     ///< That joint; empty: none was for long
+  double excess = 0.0;    ///< Largest true excess over a limit of the device, rad or m
+  double shaken_s = 0.0;  ///< Time in which hand and device oscillated against each other, s
+  std::string exceeded;   ///< That limit; empty: none by more than kExcessAllowed
 };
 
 /// Share from which a way counts as whole.

@@ -326,8 +326,8 @@ Trial try_out(const std::string& yaml, const std::string& urdf, const std::strin
 bool is_better(const checks::Way& a, const checks::Way& b) {
   const auto whole = [](const checks::Way& way) { return std::min(way.share, checks::kWholeWay); };
   if (whole(a) != whole(b)) return whole(a) > whole(b);
-  return std::tuple(!a.fault.empty(), a.excess, a.at_limit_s) <
-         std::tuple(!b.fault.empty(), b.excess, b.at_limit_s);
+  return std::tuple(!a.fault.empty(), a.excess, a.at_limit_s, a.rushed_s) <
+         std::tuple(!b.fault.empty(), b.excess, b.at_limit_s, b.rushed_s);
 }
 
 }  // namespace

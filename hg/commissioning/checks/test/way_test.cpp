@@ -92,6 +92,9 @@ TEST(Way, TroubleSaysHowFarAndWhatIsInTheWay) {
       "mrad");
   EXPECT_EQ(trouble_of({.fault = "tracking lost"}),
             "led through its whole range by a hand: the trial ends in a fault, tracking lost");
+  EXPECT_EQ(trouble_of({.rushed_s = 0.31, .rushed = "m3"}),
+            "led through its whole range by a hand: m3 of the device moves at its largest speed "
+            "for 0.3 s");
   EXPECT_EQ(trouble_of({.shaken_s = 0.44}),
             "led through its whole range by a hand: hand and device oscillate against each other "
             "for 0.4 s");
