@@ -226,12 +226,25 @@ Findings inspect_spheres(const config::Scenario& scenario) {
   const auto is_stop = [](const surfaces::Surface& surface) {
     return surface.contact == surfaces::Contact::kStop;
   };
-  if (scenario.twin.model.spheres.empty()) return {};
-  if (std::ranges::any_of(scenario.surfaces, is_stop)) return {};
+  const rendering::TwinModel& twin = scenario.twin.model;
+  if (twin.spheres.empty()) return {};
   Collector out(scenario.sources, scenario.places);
-  out.add(Severity::kNote, "twin",
-          "its collision_spheres meet nothing, since no surface of the scenario is a stop",
-          "give a surface 'contact: stop'");
+  if (std::ranges::none_of(scenario.surfaces, is_stop)) {
+    out.add(Severity::kNote, "twin",
+            "its collision_spheres meet nothing, since no surface of the scenario is a stop",
+            "give a surface 'contact: stop'");
+    return std::move(out.findings);
+  }
+  model::ChainData chain(twin.chain);
+  chain.update_kinematics(twin.q_start, VectorA::Zero(twin.chain.nv()));
+  for (std::size_t i = 0; i < twin.spheres.size(); ++i) {
+    const int frame = twin.spheres[i].frame;
+    if (!chain.jacobian(frame).isZero(0.0)) continue;
+    out.add(Severity::kWarning, "twin",
+            fmt::format("its collision_spheres[{}] is on '{}', which no joint moves", i,
+                        twin.chain.frame_names()[frame]),
+            "choose a link that moves");
+  }
   return std::move(out.findings);
 }
 

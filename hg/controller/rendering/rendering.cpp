@@ -125,7 +125,8 @@ void check_rendering(const DeviceModel& device, const TwinModel& twin,
 
 namespace {
 
-void check_stops(const DeviceModel& device, const RenderingOptions& options) {
+void check_stops(const DeviceModel& device, const TwinModel& twin, const RenderingOptions& options,
+                 const surfaces::Environment& environment) {
   if (options.law != Law::kGauss || options.bounds != Bounds::kRecoverable) {
     throw SetupError("surfaces with 'contact: stop' need law gauss with bounds recoverable");
   }
@@ -133,6 +134,13 @@ void check_stops(const DeviceModel& device, const RenderingOptions& options) {
     throw SetupError(
         "surfaces with 'contact: stop' need a Cartesian limit of the handle with ddq_max in "
         "device.yaml: with it the handle brakes before them");
+  }
+  const std::size_t most = surfaces::kMaxStopSearches / (1 + twin.spheres.size());
+  if (environment.stop_triangles() > most) {
+    throw SetupError("surfaces that are stops: at most " + std::to_string(most) +
+                     " triangles in all with " + std::to_string(twin.spheres.size()) +
+                     " collision spheres of the twin, got " +
+                     std::to_string(environment.stop_triangles()));
   }
 }
 
@@ -168,7 +176,7 @@ Rendering::Rendering(DeviceModel device, TwinModel twin, const RenderingOptions&
       solver_(tasks_.problem().capacity()),
       solution_(tasks_.problem().capacity()),
       kept_problems_(std::make_unique<hqp::ProblemCapture>(tasks_.problem().capacity())) {
-  if (environment_.has_stops()) check_stops(device_, options_);
+  if (environment_.has_stops()) check_stops(device_, twin_, options_, environment_);
   solver_options_.max_iterations =
       std::max(kActiveSets, kActiveSetsPerRow * tasks_.problem().rows());
 }

@@ -438,7 +438,14 @@ TEST(Spheres, ThatMeetNoSurfaceAreNoted) {
   EXPECT_EQ(findings[0].place.line, 6);  // twin: ...
   EXPECT_NE(findings[0].what.find("collision_spheres meet nothing"), std::string::npos);
   scenario.surfaces.push_back({.name = "chair", .contact = surfaces::Contact::kStop});
+  const rendering::TwinModel& twin = scenario.twin.model;
+  scenario.twin.model.spheres = {{.frame = twin.end_effector}};
   EXPECT_TRUE(inspect_spheres(scenario).empty());
+  scenario.twin.model.spheres.push_back({.frame = twin.chain.frame("base")});
+  const Findings fixed = inspect_spheres(scenario);
+  ASSERT_EQ(fixed.size(), 1u);
+  EXPECT_EQ(fixed[0].severity, Severity::kWarning);
+  EXPECT_EQ(fixed[0].what, "its collision_spheres[1] is on 'base', which no joint moves");
 }
 
 TEST(Pair, TwinThatIsTooMuchWorkForTheRateIsFound) {

@@ -51,6 +51,15 @@ bool is_beside(const Surface& surface, const Vector3d& point, const Facing& behi
   return is_beside;
 }
 
+std::size_t count_stop_triangles(const std::vector<Surface>& surfaces) {
+  std::size_t triangles = 0;
+  for (const Surface& surface : surfaces) {
+    const Mesh* mesh = std::get_if<Mesh>(&surface.shape);
+    if (mesh != nullptr && surface.contact == Contact::kStop) triangles += mesh->triangles().size();
+  }
+  return triangles;
+}
+
 }  // namespace
 
 void check_surfaces(const std::vector<Surface>& surfaces) {
@@ -58,12 +67,8 @@ void check_surfaces(const std::vector<Surface>& surfaces) {
     throw SetupError("surfaces: at most " + std::to_string(kMaxSurfaces) + ", got " +
                      std::to_string(surfaces.size()));
   }
-  std::size_t triangles = 0;
-  for (const Surface& surface : surfaces) {
-    check_surface(surface);
-    const Mesh* mesh = std::get_if<Mesh>(&surface.shape);
-    if (mesh != nullptr && surface.contact == Contact::kStop) triangles += mesh->triangles().size();
-  }
+  for (const Surface& surface : surfaces) check_surface(surface);
+  const std::size_t triangles = count_stop_triangles(surfaces);
   if (triangles > kMaxStopTriangles) {
     throw SetupError("surfaces that are stops: at most " + std::to_string(kMaxStopTriangles) +
                      " triangles in all, got " + std::to_string(triangles));
@@ -71,10 +76,12 @@ void check_surfaces(const std::vector<Surface>& surfaces) {
 }
 
 Environment::Environment(std::vector<Surface> surfaces, double period, const Interval& mass)
-    : surfaces_((check_surfaces(surfaces), std::move(surfaces))), mass_(mass), period_(period) {
-  has_stops_ = std::ranges::any_of(
-      surfaces_, [](const Surface& surface) { return surface.contact == Contact::kStop; });
-}
+    : surfaces_((check_surfaces(surfaces), std::move(surfaces))),
+      mass_(mass),
+      period_(period),
+      has_stops_(std::ranges::any_of(
+          surfaces_, [](const Surface& surface) { return surface.contact == Contact::kStop; })),
+      stop_triangles_(count_stop_triangles(surfaces_)) {}
 
 double Environment::damping_of(const Surface& surface, double mass_scale) const noexcept {
   if (surface.damping) return *surface.damping;

@@ -28,8 +28,9 @@
 namespace hg::surfaces {
 
 inline constexpr std::size_t kMaxSurfaces = 64;
-/// Limit for all stops together, for their computing time
+// Limits for all stops together, for their computing time:
 inline constexpr std::size_t kMaxStopTriangles = 1500;
+inline constexpr std::size_t kMaxStopSearches = 3 * kMaxStopTriangles;  ///< points times triangles
 inline constexpr int kMaxRounds = 4;  ///< rounds in which the proxy follows a curved surface
 inline constexpr int kMaxSweeps = 5 * kMaxRounds;
 
@@ -71,6 +72,8 @@ class Environment {
 
   /// Whether some surfaces act as stops. Those exert no force.
   bool has_stops() const noexcept { return has_stops_; }
+  /// Number of triangles of all meshes that are stops.
+  std::size_t stop_triangles() const noexcept { return stop_triangles_; }
   /// Planes of stop surfaces with the smallest margin for a handle with this `velocity` that brakes
   /// with `ddq_max` (m/s^2). Unused entries, and planes too far to matter, have no surface. Around
   /// the handle is a sphere of `radius` (m); distances are those of its centre.
@@ -114,6 +117,7 @@ class Environment {
   Interval mass_;  ///< mass of the body, kg
   double period_ = 0.0;
   bool has_stops_ = false;
+  std::size_t stop_triangles_ = 0;
 };
 
 }  // namespace hg::surfaces

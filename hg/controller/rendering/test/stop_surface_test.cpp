@@ -402,6 +402,29 @@ TEST(StopSurface, AFloorCarriesALongChainWithASphere) {
   EXPECT_GT(result.contact.force.z(), 1.0);
 }
 
+// A mesh of 588 triangles is within the computing time of a twin with six spheres, not with eight.
+TEST(StopSurface, SpheresShareTheTrianglesThatCanBeSearched) {
+  std::vector<std::array<Vector3d, 3>> triangles;
+  for (int i = 0; i < 49; ++i) {
+    const surfaces::Mesh box = mesh_of_box({0.1, 0.1, 0.1});
+    for (const auto& triangle : box.triangles()) {
+      auto& moved = triangles.emplace_back(triangle.corners);
+      for (Vector3d& corner : moved) corner.x() += 0.2 * i;
+    }
+  }
+  const Surface row = stop(surfaces::Mesh(triangles), {0.0, 9.0, 0.0});
+  TwinModel twin = body_with_corners(0.1, 0.02);
+  const auto start = [&] {
+    Rendering(device_with(3.0), twin, without_synchronisation(),
+              surfaces::Environment({row}, kDt, {kMass, kMass}));
+  };
+  EXPECT_EQ(message_of(start),
+            "surfaces that are stops: at most 500 triangles in all with 8 collision spheres of the "
+            "twin, got 588");
+  twin.spheres.resize(6);
+  EXPECT_NO_THROW(start());
+}
+
 // A hand that pulls and turns at random, differently every 0.2 s, with dampers as above.
 struct RandomHand {
   std::mt19937 random;
