@@ -12,6 +12,7 @@
 #include "apps/hapticgiant/bench_command.h"
 #include "apps/hapticgiant/bus_command.h"
 #include "apps/hapticgiant/check_command.h"
+#include "apps/hapticgiant/commission_command.h"
 #include "apps/hapticgiant/doctor_command.h"
 #include "apps/hapticgiant/experiment_command.h"
 #include "apps/hapticgiant/experiments/recording_commands.h"
@@ -105,6 +106,7 @@ int main(int argc, char** argv) {
   apps::add_explain(app, exit_code);
   apps::add_simulate(app, exit_code);
   apps::add_start_test(app, exit_code);
+  apps::add_commission(app, exit_code);
   apps::add_check(app, exit_code);
   apps::add_new(app, exit_code);
   apps::add_hqp(app, exit_code);

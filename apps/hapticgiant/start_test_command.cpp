@@ -10,71 +10,26 @@
 #include <utility>
 
 #include "apps/hapticgiant/interruption.h"
-#include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/run_command.h"
-#include "apps/hapticgiant/run_setup.h"
-#include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/commissioning/start_test/device_station.h"
 #include "hg/commissioning/start_test/machine_memory.h"
 #include "hg/commissioning/start_test/memory.h"
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
-#include "hg/scenario/assembly.h"
-#include "hg/scenario/remote/ethercat_setup.h"
 #include "hg/scenario/remote/franka_setup.h"
-#include "hg/scenario/remote/remote_setup.h"
 
 namespace hg::apps {
 
-namespace {
-
-std::unique_ptr<ethercat::EthercatDevice> connect_machine(const StartTestArguments& arguments,
-                                                          const config::Scenario& scenario) {
-  const ethercat::EthercatConfig config = scenario::ethercat_config(
-      arguments.device_address, arguments.machine, scenario, arguments.is_fast);
-  if (config.machine.moves_with_frames) {
-    throw SetupError(
-        "start-test: the segment is a simulation, whose stop button the bus does not reach; leave "
-        "--device-address out");
-  }
-  return std::make_unique<ethercat::EthercatDevice>(config);
-}
-
-}  // namespace
-
-int start_test(const StartTestArguments& arguments) {
+int start_test(const MachineOptions& arguments) {
   if (scenario::is_franka(arguments.device_address)) {
     throw SetupError("start-test: a Franka tests its brakes and stop inputs itself, see Desk");
   }
-  RunArguments run;
-  run.world = arguments.world;
-  run.device_address = arguments.device_address;
-  run.recordings = arguments.recordings;
-  const config::Scenario scenario = make_scenario(run);
-  runtime::check_thread_options({.priority = arguments.priority});
-  make_folder(arguments.recordings);
-
-  std::unique_ptr<device::Device> device;
-  device::ConnectedDevice* remote = nullptr;
-  bool is_simulated = true;
-  if (arguments.device_address.empty()) {
-    device = scenario::make_simulated_device(scenario);
-  } else if (scenario::is_ethercat(arguments.device_address)) {
-    auto connected = connect_machine(arguments, scenario);
-    is_simulated = false;
-    remote = connected.get();
-    device = std::move(connected);
-  } else {
-    auto connected = scenario::connect_device(
-        arguments.device_address, scenario::key_of(arguments.key_file), scenario,
-        std::string("hapticgiant run ") + kVersion, arguments.is_fast);
-    is_simulated = connected->welcome().is_simulated;
-    remote = connected.get();
-    device = std::move(connected);
-  }
+  const config::Scenario scenario = make_machine_scenario(arguments);
+  Machine machine = connect_machine(arguments, scenario, "start-test");
+  device::ConnectedDevice* const remote = machine.remote;
+  const bool is_simulated = machine.is_simulated;
   const std::string file = start_test::start_test_file(
       arguments.recordings, scenario.device, is_simulated ? "" : arguments.device_address);
   check_writable(file);
@@ -94,7 +49,7 @@ int start_test(const StartTestArguments& arguments) {
   keep({});  // whatever ends this program: an older result counts no more
 
   const std::atomic<bool>& interrupted = watch_interruption();
-  start_test::DeviceStation station(scenario, std::move(device), is_simulated, interrupted,
+  start_test::DeviceStation station(scenario, std::move(machine.device), is_simulated, interrupted,
                                     [](double time_s, const std::string& words) {
                                       print_out(fmt::format("{:8.1f} s  {}\n", time_s, words));
                                     });
@@ -126,7 +81,7 @@ int start_test(const StartTestArguments& arguments) {
 }
 
 void add_start_test(CLI::App& app, int& exit_code) {
-  const auto arguments = std::make_shared<StartTestArguments>();
+  const auto arguments = std::make_shared<MachineOptions>();
   CLI::App* command = app.add_subcommand("start-test",
                                          "Brakes and stop inputs, step by step, before the first "
                                          "run of a day (docs/reference/start_test.md).");
@@ -134,28 +89,7 @@ void add_start_test(CLI::App& app, int& exit_code) {
       "Examples:\n"
       "  hapticgiant start-test                   the simulated device, with a simulated operator\n"
       "  hapticgiant start-test --device my_arm_device.yaml --device-address 192.168.1.20:4810");
-  add_scenario_options(*command, arguments->world);
-  command->add_option("--device-address", arguments->device_address,
-                      "HOST:PORT of a remote device instead of a simulated one, or "
-                      "ethercat://INTERFACE of a machine on a bus");
-  command
-      ->add_option("--machine", arguments->machine,
-                   "machine.yaml of a bus; default: the one beside the device file")
-      ->needs("--device-address");
-  command
-      ->add_option("--key-file", arguments->key_file,
-                   "secret that the remote device has, too (docs/reference/device_protocol.md)")
-      ->needs("--device-address");
-  command
-      ->add_flag("--fast", arguments->is_fast, "lock-step with a remote device that is simulated")
-      ->needs("--device-address");
-  command
-      ->add_option("--priority", arguments->priority,
-                   "SCHED_FIFO priority with a remote device, 1..99; 0: an ordinary thread")
-      ->check(number_that("from 0 to 99", [](double v) { return v >= 0.0 && v <= 99.0; }))
-      ->capture_default_str();
-  command->add_option("--recordings", arguments->recordings, "folder that keeps the result")
-      ->capture_default_str();
+  add_machine_options(*command, *arguments);
   command->callback([arguments, &exit_code] { exit_code = start_test(*arguments); });
 }
 

@@ -1,6 +1,7 @@
 /// What `run` requires of a remote device that is no simulation: a start test that counts, and a
 /// posture that is the one in which the last run has left it.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <string>
 #include <thread>
 
+#include "apps/hapticgiant/commission_command.h"
 #include "apps/hapticgiant/prepared_run.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/start_test_command.h"
@@ -261,7 +263,7 @@ TEST_F(MachineTest, ADemoLeavesTheResultOfAMachine) {
   arguments_.device_address = machine.address();
   keep_result(scenario.device);
   for (const std::string& address : {std::string(), demo.address()}) {
-    apps::StartTestArguments arguments;
+    apps::MachineOptions arguments;
     arguments.device_address = address;
     arguments.is_fast = true;
     arguments.recordings = folder_.string();
@@ -270,6 +272,36 @@ TEST_F(MachineTest, ADemoLeavesTheResultOfAMachine) {
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
   EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(MachineTest, ASimulationIsCommissionedHereAndBehindAWire) {
+  const config::Scenario scenario = scenario::load(arguments_.world);
+  Machine machine(scenario, true);
+  for (const std::string& address : {std::string(), machine.address()}) {
+    apps::MachineOptions options;
+    options.device_address = address;
+    options.is_fast = true;
+    options.recordings = folder_.string();
+    EXPECT_EQ(apps::commission(options), 0);
+    EXPECT_TRUE(std::filesystem::remove(folder_ / "commission_HapticGiant_simulated.json"));
+  }
+}
+
+// The tests have no terminal.
+TEST_F(MachineTest, AMachineIsCommissionedOnlyAtATerminal) {
+  const config::Scenario scenario = scenario::load(arguments_.world);
+  Machine machine(scenario);
+  apps::MachineOptions options;
+  options.device_address = machine.address();
+  options.is_fast = true;
+  options.recordings = folder_.string();
+  const int terminal = dup(STDIN_FILENO), none = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  dup2(none, STDIN_FILENO);
+  expect_part(message_of([&] { apps::commission(options); }),
+              "a machine moves only while a person holds the space bar");
+  dup2(terminal, STDIN_FILENO);
+  close(none);
+  close(terminal);
 }
 
 TEST_F(MachineTest, AServerBusyWithTheSessionBeforeIsTriedAgain) {

@@ -101,6 +101,11 @@ std::string start_test_file(const std::string& folder, const config::DeviceConfi
   return file_of(folder, "start_test", device.name, address.empty() ? "simulated" : address);
 }
 
+std::string commission_file(const std::string& folder, const config::DeviceConfig& device,
+                            const std::string& address) {
+  return file_of(folder, "commission", device.name, address.empty() ? "simulated" : address);
+}
+
 std::string check_start_test(const MachineMemory& memory, const config::DeviceConfig& device) {
   const std::string file = start_test_file(memory.folder, device, memory.address);
   Validity validity = {.objection = "there is none"};

@@ -28,6 +28,10 @@ std::string sha256_of(const config::DeviceConfig& device);
 std::string start_test_file(const std::string& folder, const config::DeviceConfig& device,
                             const std::string& address);
 
+/// The same of the result of its commissioning.
+std::string commission_file(const std::string& folder, const config::DeviceConfig& device,
+                            const std::string& address);
+
 /// Message on whether brakes and stop inputs were tested. Throws SetupError if they were not,
 /// unless `memory` waives the test.
 std::string check_start_test(const MachineMemory& memory, const config::DeviceConfig& device);

@@ -1,0 +1,101 @@
+#include "apps/hapticgiant/commission_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <ctime>
+#include <memory>
+
+#include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/output.h"
+#include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/terminal_crew.h"
+#include "apps/hapticgiant/version.h"
+#include "hg/commissioning/bring_up/bring_up.h"
+#include "hg/commissioning/bring_up/simulated_crew.h"
+#include "hg/commissioning/start_test/machine_memory.h"
+#include "hg/commissioning/start_test/memory.h"
+#include "hg/core/error.h"
+#include "hg/runtime/control_thread.h"
+#include "hg/scenario/remote/ethercat_setup.h"
+#include "hg/scenario/remote/franka_setup.h"
+
+namespace hg::apps {
+namespace {
+
+using start_test::Outcome;
+
+void print_step(double time_s, const std::string& words) {
+  print_out(fmt::format("{:8.1f} s  {}\n", time_s, words));
+}
+
+}  // namespace
+
+int commission(const MachineOptions& options) {
+  if (scenario::is_franka(options.device_address)) {
+    throw SetupError("commission: a Franka is commissioned by its maker, see Desk");
+  }
+  const config::Scenario scenario = make_machine_scenario(options);
+  const std::atomic<bool>& interrupted = watch_interruption();
+  Machine machine = connect_machine(options, scenario, "commission");
+  const std::string file = start_test::commission_file(
+      options.recordings, scenario.device, machine.is_simulated ? "" : options.device_address);
+  check_writable(file);
+
+  std::unique_ptr<bring_up::Crew> crew;
+  if (machine.is_simulated) {
+    crew = std::make_unique<bring_up::SimulatedCrew>(interrupted, print_step);
+  } else {
+    crew = std::make_unique<TerminalCrew>(interrupted, print_step);
+  }
+  const BackgroundOutput output(interrupted);
+  print_out(fmt::format("HapticGiant {}  first motions of {}{}\n", kVersion, scenario.device.name,
+                        machine.is_simulated ? ", simulated, with a simulated person" : ""));
+  if (!machine.is_simulated) {
+    print_out(
+        "keys        space bar, held: the machine may move; y, n: answers; Ctrl-C: drives off\n");
+  }
+  bring_up::Rig rig(scenario.device, *machine.device, *crew);
+  if (machine.remote != nullptr && !options.is_fast) {
+    runtime::become_real_time({.priority = options.priority});
+  }
+  const std::vector<bring_up::Item> items =
+      bring_up::run(rig, {.falls_silent = machine.remote != nullptr && !options.is_fast &&
+                                          !scenario::is_ethercat(options.device_address)});
+  if (machine.remote != nullptr) machine.remote->close(FaultCode::kNone);
+
+  const bool has_passed = start_test::has_passed(items);
+  write_output(file, start_test::to_json({.device = scenario.device.name,
+                                          .address = options.device_address,
+                                          .version = kVersion,
+                                          .files_sha256 = start_test::sha256_of(scenario.device),
+                                          .ended = std::time(nullptr),
+                                          .is_simulated = machine.is_simulated,
+                                          .has_passed = has_passed,
+                                          .items = items}));
+  const auto count = [&](Outcome outcome) {
+    return std::ranges::count(items, outcome, &bring_up::Item::outcome);
+  };
+  print_out(fmt::format("\n  commission   {}: {} passed, {} failed, {} not tested\n",
+                        has_passed ? "PASSED" : "FAILED", count(Outcome::kPassed),
+                        count(Outcome::kFailed), count(Outcome::kUntested)));
+  print_out(fmt::format("  kept in      {}\n", file));
+  return has_passed ? 0 : 1;
+}
+
+void add_commission(CLI::App& app, int& exit_code) {
+  const auto options = std::make_shared<MachineOptions>();
+  CLI::App* command =
+      app.add_subcommand("commission",
+                         "First motions of a new machine: is it connected as its file says? "
+                         "(docs/reference/commission.md)");
+  command->footer(
+      "Examples:\n"
+      "  hapticgiant commission                   the simulated device, with a simulated person\n"
+      "  hapticgiant commission --device my_arm_device.yaml --device-address 192.168.1.20:4810");
+  add_machine_options(*command, *options);
+  command->callback([options, &exit_code] { exit_code = commission(*options); });
+}
+
+}  // namespace hg::apps
