@@ -557,6 +557,7 @@ class Words(unittest.TestCase):
                                ("set imu.ax much", "expected a number, got 'much'"),
                                ("fall imu off 1", "expected init, preop or safeop, got 'off'"),
                                ("trip panel 1", "'panel' has no faults"),
+                               ("brake imu", "'imu' has no brake"),
                                ("trip axis_1 0x12345", "expected a code of 16 bits"),
                                ("after 5", "cannot read 'after 5'"),
                                ("loose 1", "cannot read 'loose 1'; commands: after, lose")):
@@ -571,6 +572,7 @@ class Words(unittest.TestCase):
                             ("io a\nio a", "line 2: there is a slave 'a' already"),
                             ("imu a turn=9", "line 1: unknown key 'turn', expected vendor"),
                             ("drive a drift=5000", "drift: expected a number from -1000 to 1000"),
+                            ("drive a watchdog=no", "watchdog: expected on or off, got 'no'"),
                             ("drive a joint=8", "joint: expected 1 to 7, got '8'"),
                             ("drive a mapping=any",
                              "mapping: expected free, fixed or joint, got 'any'")):
