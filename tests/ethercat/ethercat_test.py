@@ -22,6 +22,7 @@ skipped (exit code 77), and so is a master that cannot be installed.
 import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -536,6 +537,18 @@ class Bus(unittest.TestCase):
         self.assertEqual(wire.exchange(FPRD, (0x1000, 0x0420), b"\0\0"), (b"\xfa\xff", 1))
         wire.close()
         segment.close()
+
+    def test_watch_names_slaves_without_watchdog(self):
+        with tempfile.NamedTemporaryFile("w") as file:
+            file.write("drive a\ndrive b watchdog=off\nimu c watchdog=off\nio d watchdog=off\n")
+            file.flush()
+            segment = bus.Segment(SEGMENT, file.name)
+            tried = subprocess.run([PROGRAM, "bus", "watch", bus.MASTER_END, "--seconds", "0.1"],
+                                   capture_output=True, text=True, timeout=100)
+            segment.close()
+        found = re.findall(r"slave (\d) .*: its watchdog is switched off \(bit 6 of the control byte "
+                           r"(0x..) of sync manager (\d)\)", tried.stdout)
+        self.assertEqual(found, [("2", "0x24", "2"), ("4", "0x04", "0")], tried.stdout + tried.stderr)
 
     def test_watch_counts_and_ends(self):
         segment = bus.Segment(SEGMENT)

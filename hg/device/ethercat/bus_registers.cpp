@@ -27,7 +27,8 @@ constexpr std::uint32_t kPulsesWrong = 0x05;
 
 const char* const kNoAnswer = "does not answer when its registers are read";
 
-// What is wrong with the watchdog of a slave with outputs; empty: nothing.
+}  // namespace
+
 std::string watchdog_fault(Bus& bus, std::size_t slave) {
   const auto count = bus.read_register(slave, kSyncManagerCount, 1);
   if (!count) return kNoAnswer;
@@ -46,8 +47,6 @@ std::string watchdog_fault(Bus& bus, std::size_t slave) {
   }
   return has_outputs ? "" : "none of its sync managers has its outputs, and so a watchdog";
 }
-
-}  // namespace
 
 std::vector<std::string> watchdog_faults(Bus& bus, const Machine& machine) {
   std::vector<std::string> result;

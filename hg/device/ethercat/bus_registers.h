@@ -11,8 +11,12 @@
 
 namespace hg::ethercat {
 
-/// One sentence for each slave with outputs whose watchdog is switched off, or that does not say
-/// so. From SAFE-OP on.
+/// What is wrong with the watchdog of a slave with outputs: it is switched off, or the slave does
+/// not say so; empty: nothing. From SAFE-OP on.
+std::string watchdog_fault(Bus& bus, std::size_t slave);
+
+/// The same of all slaves of a machine: one sentence for each slave with outputs whose watchdog is
+/// switched off, or that does not say so. From SAFE-OP on.
 std::vector<std::string> watchdog_faults(Bus& bus, const Machine& machine);
 
 /// Looks at the sync pulses of the slaves that use them.

@@ -116,7 +116,7 @@ void EthercatDevice::check_pulses() {
     const std::vector<std::string> sentences = check.faults();
     if (sentences.empty()) return;
     if (now_ns() > deadline) throw SetupError(fmt::format("{}", fmt::join(sentences, "\n")));
-    sleep_until(now_ns() + kClockPause_ns);
+    if (config_.is_fast) sleep_until(now_ns() + kClockPause_ns);
   }
 }
 
@@ -224,11 +224,11 @@ void EthercatDevice::read(SensorFrame& sensors) noexcept {
   ++counts_.received;
   if (has_command_) frame_.answered_sequence = command_.sequence;
   take_in();
+  look_at_step();
   look_at_counter(counter);
   look_at_states();
   look_at_drives();
   look_at_sensors();
-  look_at_step();
   look_at_bus_errors(counter);
   if (recovery_ > 0) look_at_recovery(counter);
   repeat(sensors);
@@ -274,6 +274,13 @@ void EthercatDevice::take_in() noexcept {
 void EthercatDevice::suspect(Cause cause, std::size_t slave) noexcept {
   suspect_ = cause;
   suspected_ = slave;
+}
+
+// Outputs that come with a pulse are taken a period too late or too early.
+void EthercatDevice::look_at_step() noexcept {
+  if (!has_pulses() || config_.machine.moves_with_frames || pace_.is_in_step()) return;
+  frame_.bus_errors = 1;
+  suspect(Cause::kOutOfStep, 0);
 }
 
 void EthercatDevice::look_at_counter(int counter) noexcept {
@@ -328,13 +335,6 @@ void EthercatDevice::look_at_sensors() noexcept {
     ++frame_.bus_errors;
     suspect(station.error != 0 ? Cause::kSensor : Cause::kNoSamples, i);
   }
-}
-
-// Outputs that come with a pulse are taken a period too late or too early.
-void EthercatDevice::look_at_step() noexcept {
-  if (!has_pulses() || config_.machine.moves_with_frames || pace_.is_in_step()) return;
-  ++frame_.bus_errors;
-  suspect(Cause::kOutOfStep, 0);
 }
 
 // The monitor stops the machine; the cause is kept for farewell().
@@ -511,7 +511,7 @@ void EthercatDevice::close(FaultCode) noexcept {
   command_.enable = false;
   while (holding_ > 0 && !is_silent()) exchange_once();
   is_stopping_ = true;
-  for (int i = 0; i < kStopCycles && any_has_power() && !is_silent(); ++i) exchange_once();
+  for (int i = 0; i < kStopCycles && any_has_power(); ++i) exchange_once();
   is_in_use_ = false;
   for (int i = 0; i < kEndCycles; ++i) exchange_once();
   for (std::size_t i = 0; i < stations_.size(); ++i) {

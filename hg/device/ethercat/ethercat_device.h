@@ -48,7 +48,7 @@ class EthercatDevice final : public device::ConnectedDevice {
   void read(SensorFrame& sensors) noexcept override;
   void write(const CommandFrame& command) noexcept override;
 
-  /// Stops drives that are on, switches all off, and takes the slaves back to PRE-OP, within 1 s.
+  /// Stops drives that are on, switches all off, and takes the slaves back to PRE-OP, within 2 s.
   void close(FaultCode reason) noexcept override;
   std::string farewell() const override;
   LinkCounts counts() const noexcept override { return counts_; }
@@ -97,12 +97,12 @@ class EthercatDevice final : public device::ConnectedDevice {
   void keep_stopping() noexcept;
   void repeat(SensorFrame& sensors) noexcept;
   void suspect(Cause cause, std::size_t slave) noexcept;
+  void look_at_step() noexcept;
   void look_at_counter(int counter) noexcept;
   void look_at_states() noexcept;
   void look_at_drives() noexcept;
   void look_at_drive(std::size_t slave, bool is_enabled) noexcept;
   void look_at_sensors() noexcept;
-  void look_at_step() noexcept;
   void look_at_bus_errors(int counter) noexcept;
   void look_at_recovery(int counter) noexcept;
   bool is_well(std::size_t slave) const noexcept;

@@ -109,6 +109,20 @@ TEST(EthercatDevice, WithoutAnswersGoesOnTellingDrivesToStop) {
   EXPECT_FALSE(bench.any_moves());
 }
 
+TEST(EthercatDevice, WithoutAnswersGivesDrivesTimeToStopAtItsEnd) {
+  Bench bench;
+  bench.connect_and_enable();
+  bench.segment.answers = false;
+  bench.cycle(kSilence, true);
+  int quick_stops = 0;
+  bench.segment.on_exchange = [&] {
+    quick_stops += bench.segment.drives[0].control == kQuickStop ? 1 : 0;
+  };
+  bench.device().close(FaultCode::kDeviceSilent);
+  EXPECT_GE(quick_stops, 100);
+  EXPECT_EQ(bench.segment.drives[0].control, kDisableVoltage);
+}
+
 TEST(EthercatDevice, AFewLostFramesAreNoSilence) {
   Bench bench;
   bench.connect_and_enable();
