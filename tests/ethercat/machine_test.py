@@ -401,6 +401,9 @@ class Start(unittest.TestCase):
                     capture_output=True, text=True, timeout=PATIENCE)
             self.assertEqual(tried.returncode, 2, tried.stdout)
             self.assertIn("no start test of HapticGiant that counts: there is none", tried.stderr)
+            pathlib.Path(file.name).write_text(text.replace("answer_s: 0.0005", "answer_s: 0.0015"))
+            self.refused("answer_s: must be at most a period, 0.001 s, got 0.0015",
+                         arguments=("--machine", file.name))
 
     def test_with_a_file_that_does_not_fit_the_device_is_refused(self):
         for old, new, sentence in (

@@ -23,10 +23,10 @@ constexpr int kCallCycles = 200;                     // between two calls to OP
 constexpr int kRecoveryCycles = 500;                 // until all slaves and drives are well again
 constexpr int kStopCycles = 200;                     // until no drive has power
 constexpr int kEndCycles = 20;                       // until all drives are off
-constexpr int kClockCycles = 10;                     // between two looks at the clocks
-constexpr std::int64_t kClockPause_ns = 20'000'000;  // the same, for sync pulses
-constexpr std::int64_t kPulsePatience_ns = 1'000'000'000;  // until they come
-constexpr std::int64_t kClocksApart = 20;                  // most, share of a period
+constexpr int kClockCycles = 10;                     // between two looks at them
+constexpr std::int64_t kClockPause_ns = 20'000'000;  // the same, of exchanges without a period
+constexpr int kPulseLooks = 50;                  // until sync pulses come and clocks are together
+constexpr std::int64_t kClocksApart = 20;        // most, share of a period
 constexpr double kEnabling = 2.0;                // s until drives follow, with slow brakes
 constexpr std::uint32_t kStatusPatience = 2000;  // us, once, for the reason of a fault
 constexpr std::uint32_t kClosePatience = 5000;   // us
@@ -110,14 +110,14 @@ bool EthercatDevice::has_pulses() const noexcept {
 void EthercatDevice::check_pulses() {
   if (!has_pulses()) return;
   PulseCheck check(*bus_, config_.machine, static_cast<std::uint32_t>(period_ns_ / kClocksApart));
-  const std::int64_t deadline = now_ns() + kPulsePatience_ns;
-  while (true) {
+  std::vector<std::string> sentences;
+  for (int look = 0; look < kPulseLooks; ++look) {
     for (int i = 0; i < kClockCycles; ++i) exchange();
-    const std::vector<std::string> sentences = check.faults();
+    sentences = check.faults();
     if (sentences.empty()) return;
-    if (now_ns() > deadline) throw SetupError(fmt::format("{}", fmt::join(sentences, "\n")));
     if (config_.is_fast) sleep_until(now_ns() + kClockPause_ns);
   }
+  throw SetupError(fmt::format("{}", fmt::join(sentences, "\n")));
 }
 
 bool EthercatDevice::is_silent() const noexcept { return lost_in_a_row_ >= kSilent; }

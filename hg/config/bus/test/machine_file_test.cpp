@@ -161,9 +161,19 @@ TEST(MachineFile, TwoSlavesCannotBeTheSameButton) {
         "machine.yaml:21:", "slaves[3].inputs[1].is: slave 'panel'"}) {
     EXPECT_NE(fault.find(words), std::string::npos) << fault;
   }
-  std::string twice = kPanel;
-  twice.replace(twice.find("dead_man"), 8, "emergency_stop");
-  EXPECT_NE(fault_of(kAxis + drive("one", "m1", "cst") + twice).find("only one can count"),
+  // other inputs are those of their slave
+  const auto counters = [](const std::string& first, const std::string& second) {
+    const auto slave = [](const std::string& name, const std::string& inputs) {
+      return "  - {name: " + name + ", vendor: 1, product: 1, revision: 1, inputs: [" + inputs +
+             "]}\n";
+    };
+    return fault_of(kAxis + drive("one", "m1", "cst") + kPanel + slave("force", first) +
+                    slave("imu", second));
+  };
+  const std::string counter = "{object: 0x6020, bits: 32, is: sample_counter}";
+  EXPECT_EQ(counters(counter, counter), "no error");
+  EXPECT_NE(counters(counter + ", " + counter, counter)
+                .find("slaves[3].inputs[1].is: slave 'force' tells this already in line 21"),
             std::string::npos);
 }
 
