@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
+#include <cstdint>
 
 #include "hg/config/bus/machine_schema.h"
 #include "hg/config/loader.h"
