@@ -53,6 +53,7 @@ int bus_check(const std::string& interface_name, const std::string& file) {
   if (!sentences.empty()) return 1;
   print_out(fmt::format("{} slaves on {} are those of {}, settings and watchdogs read back\n",
                         found.size(), interface_name, file));
+  for (const std::string& words : ethercat::stop_words(master, machine)) print_out(words + "\n");
   return 0;
 }
 

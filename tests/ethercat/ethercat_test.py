@@ -22,6 +22,7 @@ skipped (exit code 77), and so is a master that cannot be installed.
 import math
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -537,6 +538,18 @@ class Bus(unittest.TestCase):
         wire.close()
         segment.close()
 
+    def test_watch_names_slaves_without_watchdog(self):
+        with tempfile.NamedTemporaryFile("w") as file:
+            file.write("drive a\ndrive b watchdog=off\nimu c watchdog=off\nio d watchdog=off\n")
+            file.flush()
+            segment = bus.Segment(SEGMENT, file.name)
+            tried = subprocess.run([PROGRAM, "bus", "watch", bus.MASTER_END, "--seconds", "0.1"],
+                                   capture_output=True, text=True, timeout=100)
+            segment.close()
+        found = re.findall(r"slave (\d) .*: its watchdog is switched off \(bit 6 of the control byte "
+                           r"(0x..) of sync manager (\d)\)", tried.stdout)
+        self.assertEqual(found, [("2", "0x24", "2"), ("4", "0x04", "0")], tried.stdout + tried.stderr)
+
     def test_watch_counts_and_ends(self):
         segment = bus.Segment(SEGMENT)
         tried = subprocess.run([PROGRAM, "bus", "watch", bus.MASTER_END, "--seconds", "0.1"],
@@ -557,6 +570,7 @@ class Words(unittest.TestCase):
                                ("set imu.ax much", "expected a number, got 'much'"),
                                ("fall imu off 1", "expected init, preop or safeop, got 'off'"),
                                ("trip panel 1", "'panel' has no faults"),
+                               ("brake imu", "'imu' has no brake"),
                                ("trip axis_1 0x12345", "expected a code of 16 bits"),
                                ("after 5", "cannot read 'after 5'"),
                                ("loose 1", "cannot read 'loose 1'; commands: after, lose")):
@@ -571,6 +585,7 @@ class Words(unittest.TestCase):
                             ("io a\nio a", "line 2: there is a slave 'a' already"),
                             ("imu a turn=9", "line 1: unknown key 'turn', expected vendor"),
                             ("drive a drift=5000", "drift: expected a number from -1000 to 1000"),
+                            ("drive a watchdog=no", "watchdog: expected on or off, got 'no'"),
                             ("drive a joint=8", "joint: expected 1 to 7, got '8'"),
                             ("drive a mapping=any",
                              "mapping: expected free, fixed or joint, got 'any'")):

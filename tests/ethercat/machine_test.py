@@ -194,6 +194,8 @@ class Check(unittest.TestCase):
             self.assertEqual(code, 0, said)
             self.assertIn("11 slaves on master0 are those of", said)
             self.assertEqual([slave["status"] for slave in one.show()], [2] * 11)
+            self.assertIn("slave 3 (m1): quick stop (0x605a): slows down on its quick stop ramp; "
+                          "shutdown (0x605b): power off at once; ", said)
             wire = bus.Wire()
             for address in [*range(0x1000, 0x1008), 0x100A]:  # 2 s in units of 100 us
                 self.assertEqual(wire.exchange(bus.FPRD, (address, 0x0420), b"\0\0"),
@@ -208,14 +210,18 @@ class Check(unittest.TestCase):
                     ("value: 1956", "value: 5000",
                      "slave 3 (m1): object 0x6072:0 does not take 5000: abort code 0x06090030: "
                      "Value range"),
+                    ("- {object: 0x6072, bits: 16, value: 1956}",
+                     "- {object: 0x605C, bits: 16, value: -1}",
+                     "slave 3 (m1): object 0x605c:0, what the drive does at 'disable operation', "
+                     "is -1, expected is 0 to 1"),
                     ("{object: 0x6071, bits: 16, is: target_torque, scale: 0.06}",
-                     "{object: 0x60FF, bits: 32, is: target_torque}",
+                     "{object: 0x60FF, bits: 32, is: target_torque, scale: 0.06}",
                      "slave 5 (m3): entry 2 of its outputs is 0x6071:0 of 16 bits, expected is "
                      "0x60ff:0 of 32 bits\nslave 6 (m4): entry 2"),
                     ("is: sensor_fault}\n      - {object: 0x6020, bits: 32, is: sample_counter}",
                      "is: sensor_fault}",
                      "slave 9 (wrist): its inputs have 8 entries, expected are 7"),
-                    ("slaves:\n", "slaves:\n  - {name: new, vendor: 1, product: 1, revision: 1}\n",
+                    ("slaves:\n", "slaves:\n  - {name: new, vendor: 0x00FFFF02, product: 1, revision: 1}\n",
                      "11 slaves found, expected are 12\nslave 1 (new): vendor 0x00ffff00 found")):
                 with self.subTest(sentence):
                     code, said = self.check_with(old, new)
@@ -241,6 +247,7 @@ class Faults(unittest.TestCase):
                 self.assertIn(word, said)
             self.assertEqual(summary["allocations_in_loop"], 0)
             self.expect_brakes(one)
+            self.states = one.show()
 
     def expect_brakes(self, one):
         """Drives that are not reached any more are stopped by their watchdogs."""
@@ -264,8 +271,11 @@ class Faults(unittest.TestCase):
         self.assertEqual((summary["link"]["lost"], summary["link"]["held"]), (4, 4), said)
 
     def test_silence(self):
+        """Nobody answers, but all hear that they must stop, long before their watchdogs act."""
         self.run_until("lose 1000000 any", "fieldbus answers are missing",
                        "master0: no answer to 10 frames in a row")
+        self.assertEqual([(slave["drive"], slave["error"]) for slave in self.states[:8]],
+                         [("SwitchOnDisabled", 0)] * 8)
 
     def test_late_frames(self):
         self.run_until("late 3 400000", "fieldbus answers are missing",
@@ -292,6 +302,11 @@ class Faults(unittest.TestCase):
     def test_a_drive_that_trips(self):
         self.run_until("trip m1 0x3210", "drive reports a fault",
                        "slave 3 (m1), address 0x1002: the drive has failed: ", "error 0x3210")
+
+    def test_a_drive_that_no_longer_follows(self):
+        self.run_until("brake m3", "drive reports a fault",
+                       "slave 5 (m3), address 0x1004: the drive no longer follows its commands: "
+                       "'operation enabled'")
 
     def test_a_sensor_that_is_broken(self):
         self.run_until("trip wrist 7", "fieldbus answers are missing",
@@ -351,9 +366,31 @@ class Start(unittest.TestCase):
             self.refused("master0: the bus is not HapticGiant:", "9 slaves found, expected are 11",
                          "slave 1 (ppu1): product 0x00000101 found, expected is 0x00000110")
 
+    def test_of_slaves_that_would_not_stop_by_themselves_is_refused(self):
+        for key, sentence in (
+                ("watchdog", "slave 4 (m2): its watchdog is switched off (bit 6 of the control byte "
+                 "0x24 of sync manager 2): without frames it would go on with its last outputs"),
+                ("pulses", "slave 4 (m2): its sync pulses do not come (register 0x0990 stands)")):
+            with self.subTest(key), tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
+                file.write(re.sub(r"(drive +m2 .*)", rf"\1 {key}=off", LAYOUT.read_text()))
+                file.flush()
+                with segment(file.name):
+                    self.refused(sentence)
+
+    def test_of_a_machine_that_says_it_were_a_simulation_is_refused(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+            file.write(FILE.read_text().replace("vendor: 0x00FFFF00", "vendor: 0x00000002", 1))
+            file.flush()
+            self.refused("moves_with_frames: slave 'ppu1' is no simulated one",
+                         arguments=("--machine", file.name))
+
     def test_of_a_machine_keeps_time_and_needs_a_start_test(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
-            file.write(FILE.read_text().replace("moves_with_frames: true", "moves_with_frames: false"))
+            text = FILE.read_text()
+            for key, value in (("moves_with_frames", "false"), ("watchdog_s", "0.05"),
+                               ("answer_s", "0.0005")):
+                text = re.sub(f"\n{key}: .*", f"\n{key}: {value}", text)
+            file.write(text)
             file.flush()
             self.refused("--fast: HapticGiant keeps its own time",
                          arguments=("--machine", file.name))
@@ -364,6 +401,9 @@ class Start(unittest.TestCase):
                     capture_output=True, text=True, timeout=PATIENCE)
             self.assertEqual(tried.returncode, 2, tried.stdout)
             self.assertIn("no start test of HapticGiant that counts: there is none", tried.stderr)
+            pathlib.Path(file.name).write_text(text.replace("answer_s: 0.0005", "answer_s: 0.0015"))
+            self.refused("answer_s: must be at most a period, 0.001 s, got 0.0015",
+                         arguments=("--machine", file.name))
 
     def test_with_a_file_that_does_not_fit_the_device_is_refused(self):
         for old, new, sentence in (

@@ -45,12 +45,15 @@ void describe(V& v, ethercat::Entry<Meaning>& entry) {
   v.whole("subindex", entry.subindex, kMostSubindex, "its subindex");
   v.whole("bits", entry.bits, 32, "its size in the process data", Need::kRequired);
   v.choice("is", entry.meaning, Choices<Meaning>(meanings), "what it means");
-  v.number("scale", entry.scale, {.lb = -1e3, .ub = 1e3},
-           "SI units (m, rad, Nm, N, degrees Celsius, per s, per s^2) per count; negative: the "
-           "other way round");
+  v.number(
+      "scale", entry.scale, {.lb = -1e3, .ub = 1e3},
+      "SI units (m, rad, Nm, N, degrees Celsius, per s, per s^2) per count, of what has a unit "
+      "required; negative: the other way round");
   v.number("offset", entry.offset, {.lb = -1e3, .ub = 1e3}, "SI units at the number 0");
   v.flag("inverted", entry.is_inverted, "of a switch: 0 says yes");
   v.rule(entry.bits > 0, "bits", "must be 1 to 32");
+  v.rule(v.is_given("scale") || !ethercat::is_measure(entry.meaning), "is",
+         "needs a scale: how many SI units a count is");
   v.rule(entry.scale != 0.0, "scale", "must not be 0");
   v.rule(entry.object != 0 || entry.meaning == Meaning::kNothing, "is",
          "a gap (object 0) has no meaning");
@@ -139,16 +142,25 @@ void describe(V& v, ethercat::Slave& slave, const std::vector<std::string>& join
 }
 
 template <class V>
-void describe(V& v, ethercat::Machine& machine, const std::vector<std::string>& joints) {
-  v.words("name", machine.name, "name of the machine", Need::kRequired);
+void describe_times(V& v, ethercat::Machine& machine) {
   v.number(
       "watchdog_s", machine.watchdog_s, {.lb = 1e-3, .ub = 6.5},
       "a slave that gets no outputs for so long leaves OP; set and verified at every start, of "
-      "every slave with outputs");
+      "every slave with outputs; of a machine at most 0.1 s");
   v.number("answer_s", machine.answer_s, {.lb = 1e-5, .ub = 1.0},
-           "a frame that takes longer to come back is lost");
+           "a frame that takes longer to come back is lost; of a machine at most one period");
+  v.number("brake_closing_s", machine.brake_closing_s, {.lb = 0.0, .ub = 0.2},
+           "until a brake that was told to close holds: torques stay for so long, and drives on, "
+           "where an output open_brakes leads the brakes; must be given for a machine with drives");
   v.flag("moves_with_frames", machine.moves_with_frames,
-         "a simulated segment, which moves by one period with each frame: `run --fast` is allowed");
+         "a simulated segment, which moves by one period with each frame: `run --fast` is allowed; "
+         "all its slaves have vendors 0x00ffff00 to 0x00ffffff, which nobody has");
+}
+
+template <class V>
+void describe(V& v, ethercat::Machine& machine, const std::vector<std::string>& joints) {
+  v.words("name", machine.name, "name of the machine", Need::kRequired);
+  describe_times(v, machine);
   v.list(
       "slaves",
       [&](auto& child) {

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <thread>
 
+#include "hg/device/ethercat/bus_registers.h"
+
 namespace hg::ethercat {
 namespace {
 
@@ -45,6 +47,13 @@ BusWatchResult watch_bus(const std::string& interface_name, const BusWatchOption
   Master master(interface_name);
   const std::vector<BusSlave> slaves = master.scan();
   const int expected = master.start(options.watchdog_ms, 0);
+  for (std::size_t i = 0; i < slaves.size(); ++i) {
+    if (master.sizes(i).outputs == 0) continue;
+    if (const std::string fault = watchdog_fault(master, i); !fault.empty()) {
+      report(0.0, fmt::format("slave {} ({:#06x}, {}): {}", i + 1, slaves[i].address,
+                              slaves[i].name, fault));
+    }
+  }
   master.operate(slaves.size(), [] { std::this_thread::sleep_for(kPeriod); });
   report(0.0, fmt::format("{} slaves in OP, working counter {}", slaves.size(), expected));
 

@@ -30,7 +30,8 @@ struct BusWatchResult {
 
 /// Takes all slaves to OP with outputs of zero, so that drives stay off, and exchanges process data
 /// at 1 kHz until the time is over or `interrupted`. Each change of what is wrong is given to
-/// `report`, with the time in s and the slaves that have left OP. Throws SetupError.
+/// `report`, with the time in s and the slaves that have left OP, and before it the slaves whose
+/// watchdog is switched off. Throws SetupError.
 BusWatchResult watch_bus(const std::string& interface_name, const BusWatchOptions& options,
                          const std::atomic<bool>& interrupted,
                          const std::function<void(double, const std::string&)>& report);

@@ -69,12 +69,19 @@ inline bool has_failed(DriveState state) noexcept {
   return state == DriveState::kFault || state == DriveState::kFaultReactionActive;
 }
 
+/// Whether its motor has power.
+inline bool has_power(DriveState state) noexcept {
+  return state == DriveState::kOperationEnabled || state == DriveState::kQuickStopActive ||
+         state == DriveState::kFaultReactionActive;
+}
+
 /// Whether the drive follows its targets: enabled, and its brake is open (bit 12).
 inline bool is_following(std::uint16_t status) noexcept {
   return state_of(status) == DriveState::kOperationEnabled && (status & 0x1000U) != 0;
 }
 
 inline constexpr std::uint16_t kDisableVoltage = 0x00;
+inline constexpr std::uint16_t kQuickStop = 0x02;  ///< stops from every state without fault
 inline constexpr std::uint16_t kShutDown = 0x06;
 inline constexpr std::uint16_t kSwitchOn = 0x07;
 inline constexpr std::uint16_t kEnableOperation = 0x0F;

@@ -8,17 +8,25 @@
 #include "hg/core/error.h"
 #include "hg/core/monotonic_clock.h"
 #include "hg/device/ethercat/bus_check.h"
+#include "hg/device/ethercat/bus_registers.h"
+#include "hg/device/ethercat/master.h"
 
 namespace hg::ethercat {
 namespace {
 
-constexpr std::uint32_t kSilent = 10;            // exchanges without an answer in a row
-constexpr std::uint32_t kNoticed = 3;            // exchanges that are not complete, as rule 109
-constexpr int kStartCycles = 1000;               // until all drives are without fault
-constexpr int kStepCycles = 5000;                // until frames are in step with the clocks
-constexpr int kCallCycles = 200;                 // between two calls to OP
-constexpr int kRecoveryCycles = 500;             // until all slaves and drives are well again
-constexpr int kEndCycles = 20;                   // until all drives are off
+constexpr std::uint32_t kSilent = 10;                // exchanges without an answer in a row
+constexpr std::uint32_t kNoticed = 3;                // exchanges that are not complete, as rule 109
+constexpr std::uint32_t kIgnored = 3;                // samples in which a drive does not follow
+constexpr int kStartCycles = 1000;                   // until all drives are without fault
+constexpr int kStepCycles = 5000;                    // until frames are in step with the clocks
+constexpr int kCallCycles = 200;                     // between two calls to OP
+constexpr int kRecoveryCycles = 500;                 // until all slaves and drives are well again
+constexpr int kStopCycles = 200;                     // until no drive has power
+constexpr int kEndCycles = 20;                       // until all drives are off
+constexpr int kClockCycles = 10;                     // between two looks at them
+constexpr std::int64_t kClockPause_ns = 20'000'000;  // the same, of exchanges without a period
+constexpr int kPulseLooks = 50;                  // until sync pulses come and clocks are together
+constexpr std::int64_t kClocksApart = 20;        // most, share of a period
 constexpr double kEnabling = 2.0;                // s until drives follow, with slow brakes
 constexpr std::uint32_t kStatusPatience = 2000;  // us, once, for the reason of a fault
 constexpr std::uint32_t kClosePatience = 5000;   // us
@@ -31,13 +39,16 @@ std::uint32_t us(double seconds) noexcept {
 }  // namespace
 
 EthercatDevice::EthercatDevice(const EthercatConfig& config)
+    : EthercatDevice(config, std::make_unique<Master>(config.interface_name)) {}
+
+EthercatDevice::EthercatDevice(const EthercatConfig& config, std::unique_ptr<Bus> bus)
     : config_(config),
-      master_(config.interface_name),
+      bus_(std::move(bus)),
       patience_us_(us(config.machine.answer_s)),
       period_ns_(ns(1.0 / config.rate_Hz)),
       pace_(now_ns(), period_ns_) {
-  found_ = master_.scan();
-  const std::vector<std::string> sentences = differences(master_, found_, config_.machine);
+  found_ = bus_->scan();
+  const std::vector<std::string> sentences = differences(*bus_, found_, config_.machine);
   if (!sentences.empty()) {
     throw SetupError(fmt::format("{}: the bus is not {}:\n{}", config_.interface_name,
                                  config_.machine.name, fmt::join(sentences, "\n")));
@@ -49,7 +60,8 @@ EthercatDevice::EthercatDevice(const EthercatConfig& config)
         "off: is this computer busy, or not real-time (hapticgiant doctor)?",
         config_.interface_name, pace_.error_ns() / 1000));
   }
-  master_.operate(found_.size(), [&] { wait_for_turn(); });
+  check_pulses();
+  bus_->operate(found_.size(), [&] { wait_for_turn(); });
   await_drives();
   rest();
 }
@@ -60,12 +72,12 @@ EthercatDevice::~EthercatDevice() { close(fault_); }
 void EthercatDevice::start() {
   const std::vector<Slave>& slaves = config_.machine.slaves;
   for (std::size_t i = 0; i < slaves.size(); ++i) {
-    if (slaves[i].is_synchronous) master_.use_sync(i);
+    if (slaves[i].is_synchronous) bus_->use_sync(i);
   }
   const std::uint32_t watchdog_ms = us(config_.machine.watchdog_s) / 1000;
-  expected_ = master_.start(watchdog_ms, static_cast<std::uint32_t>(period_ns_));
+  expected_ = bus_->start(watchdog_ms, static_cast<std::uint32_t>(period_ns_));
   for (std::size_t i = 0; i < slaves.size(); ++i) {
-    const auto [outputs, inputs] = master_.sizes(i);
+    const auto [outputs, inputs] = bus_->sizes(i);
     const std::size_t bytes_out = bits_of(slaves[i].outputs) / 8;
     const std::size_t bytes_in = bits_of(slaves[i].inputs) / 8;
     if (outputs != bytes_out || inputs != bytes_in) {
@@ -76,17 +88,43 @@ void EthercatDevice::start() {
     stations_.push_back({.outputs = std::vector<std::uint8_t>(bytes_out),
                          .inputs = std::vector<std::uint8_t>(bytes_in)});
   }
-  has_followed_.assign(slaves.size(), false);
+  const std::vector<std::string> sentences = watchdog_faults(*bus_, config_.machine);
+  if (!sentences.empty()) throw SetupError(fmt::format("{}", fmt::join(sentences, "\n")));
+  watches_.resize(slaves.size());
+  hold_cycles_ =
+      static_cast<std::uint32_t>(std::ceil(config_.machine.brake_closing_s * config_.rate_Hz));
+  for (const Slave& slave : slaves) {
+    for (const Entry<Output>& entry : slave.outputs) {
+      has_brake_outputs_ = has_brake_outputs_ || entry.meaning == Output::kOpenBrakes;
+    }
+  }
   frame_.q_m = VectorM::Zero(config_.n_m);
   frame_.q_p = VectorP::Zero(config_.n_p);
+}
+
+bool EthercatDevice::has_pulses() const noexcept {
+  return std::ranges::any_of(config_.machine.slaves, &Slave::is_synchronous);
+}
+
+// By what the slaves themselves say: sync pulses come, and clocks are together.
+void EthercatDevice::check_pulses() {
+  if (!has_pulses()) return;
+  PulseCheck check(*bus_, config_.machine, static_cast<std::uint32_t>(period_ns_ / kClocksApart));
+  std::vector<std::string> sentences;
+  for (int look = 0; look < kPulseLooks; ++look) {
+    for (int i = 0; i < kClockCycles; ++i) exchange();
+    sentences = check.faults();
+    if (sentences.empty()) return;
+    if (config_.is_fast) sleep_until(now_ns() + kClockPause_ns);
+  }
+  throw SetupError(fmt::format("{}", fmt::join(sentences, "\n")));
 }
 
 bool EthercatDevice::is_silent() const noexcept { return lost_in_a_row_ >= kSilent; }
 
 // Drives want their frames between the sync pulses before they go to OP. False: they are not.
 bool EthercatDevice::come_into_step() noexcept {
-  const bool has_pulses = std::ranges::any_of(config_.machine.slaves, &Slave::is_synchronous);
-  if (!has_pulses || config_.machine.moves_with_frames) return true;
+  if (!has_pulses() || config_.machine.moves_with_frames) return true;
   pace_.restart();
   for (int i = 0; i < kStepCycles && !pace_.is_settled() && !is_silent(); ++i) exchange();
   return pace_.is_settled();
@@ -113,14 +151,16 @@ void EthercatDevice::await_drives() {
   if (!has_answer) {
     throw SetupError(config_.interface_name + ": exchanges of process data stay incomplete");
   }
-  while (is_off(culprit_)) ++culprit_;
+  std::size_t slave = 0;
+  while (is_off(slave)) ++slave;
+  blame(Cause::kDrive, slave);
   throw SetupError(slave_name(config_.machine, culprit_) + ": the drive stays in " + drive_words());
 }
 
 // To SAFE-OP, where no slave waits for frames.
 void EthercatDevice::rest() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    master_.request_state(i, kSafeOp, kStatusPatience);
+    bus_->request_state(i, kSafeOp, kStatusPatience);
   }
   exchanged_ns_ = 0;
 }
@@ -139,9 +179,10 @@ void EthercatDevice::wake() noexcept {
   come_into_step();
   recovery_ = kStartCycles + 1;
   for (int i = 0; i < kStartCycles && recovery_ > 0 && !is_silent(); ++i) {
-    if (exchange() < 0) continue;
+    const int counter = exchange();
+    if (counter < 0) continue;
     take_in();
-    look_at_recovery();
+    look_at_recovery(counter);
     if (i % kCallCycles == 0) call_to_op();
   }
   recovery_ = 0;
@@ -157,16 +198,19 @@ void EthercatDevice::wait_for_turn() noexcept {
 int EthercatDevice::exchange() noexcept {
   wait_for_turn();
   put_out();
-  const int counter = master_.exchange(patience_us_);
+  const int counter = bus_->exchange(patience_us_);
   exchanged_ns_ = now_ns();
   lost_in_a_row_ = counter < 0 ? lost_in_a_row_ + 1 : 0;
-  if (counter >= 0 && master_.time_ns() != 0) pace_.follow(master_.time_ns());
+  if (counter >= 0 && bus_->time_ns() != 0) pace_.follow(bus_->time_ns());
   return counter;
 }
 
 void EthercatDevice::read(SensorFrame& sensors) noexcept {
   ++sequence_;
-  if (fault_ == FaultCode::kDeviceSilent) return repeat(sensors);
+  if (fault_ == FaultCode::kDeviceSilent) {
+    keep_stopping();
+    return repeat(sensors);
+  }
   if (fault_ == FaultCode::kNone && has_paused()) wake();
   is_in_use_ = true;
   const int counter = exchange();
@@ -180,12 +224,13 @@ void EthercatDevice::read(SensorFrame& sensors) noexcept {
   ++counts_.received;
   if (has_command_) frame_.answered_sequence = command_.sequence;
   take_in();
+  look_at_step();
   look_at_counter(counter);
   look_at_states();
   look_at_drives();
   look_at_sensors();
   look_at_bus_errors(counter);
-  if (recovery_ > 0) look_at_recovery();
+  if (recovery_ > 0) look_at_recovery(counter);
   repeat(sensors);
 }
 
@@ -200,15 +245,27 @@ void EthercatDevice::repeat(SensorFrame& sensors) noexcept {
 void EthercatDevice::take_lost() noexcept {
   ++counts_.lost;
   ++counts_.held;
+  if (recovery_ > 0) --recovery_;
   frame_.bus_errors = static_cast<std::uint32_t>(stations_.size());
   suspect(Cause::kIncomplete, 0);
   look_at_bus_errors(0);
-  if (is_silent()) stop(Cause::kSilent, 0, FaultCode::kDeviceSilent);
+  if (is_silent()) fall_silent();
+}
+
+// Nobody answers, but slaves may hear.
+void EthercatDevice::keep_stopping() noexcept {
+  ++counts_.sent;
+  if (exchange() < 0) {
+    ++counts_.lost;
+    return;
+  }
+  ++counts_.received;
+  take_in();
 }
 
 void EthercatDevice::take_in() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    master_.get_inputs(i, stations_[i].inputs);
+    bus_->get_inputs(i, stations_[i].inputs);
     take_inputs(config_.machine.slaves[i], config_.n_p, config_.n_m, stations_[i], frame_);
   }
 }
@@ -217,6 +274,13 @@ void EthercatDevice::take_in() noexcept {
 void EthercatDevice::suspect(Cause cause, std::size_t slave) noexcept {
   suspect_ = cause;
   suspected_ = slave;
+}
+
+// Outputs that come with a pulse are taken a period too late or too early.
+void EthercatDevice::look_at_step() noexcept {
+  if (!has_pulses() || config_.machine.moves_with_frames || pace_.is_in_step()) return;
+  frame_.bus_errors = 1;
+  suspect(Cause::kOutOfStep, 0);
 }
 
 void EthercatDevice::look_at_counter(int counter) noexcept {
@@ -229,7 +293,7 @@ void EthercatDevice::look_at_counter(int counter) noexcept {
 // under control.
 void EthercatDevice::look_at_states() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    if (master_.state(i) == kOp) continue;
+    if (bus_->state(i) == kOp) continue;
     ++frame_.bus_errors;
     if (is_drive(i)) {
       stop(Cause::kLeftOp, i, FaultCode::kDriveFault);
@@ -240,7 +304,7 @@ void EthercatDevice::look_at_states() noexcept {
 }
 
 void EthercatDevice::look_at_drives() noexcept {
-  const bool is_enabled = has_command_ && command_.enable && fault_ == FaultCode::kNone;
+  const bool is_enabled = may_move();
   enabling_ = is_enabled ? enabling_ + 1 : 0;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
     if (is_drive(i)) look_at_drive(i, is_enabled);
@@ -248,20 +312,24 @@ void EthercatDevice::look_at_drives() noexcept {
 }
 
 void EthercatDevice::look_at_drive(std::size_t slave, bool is_enabled) noexcept {
+  Watch& watch = watches_[slave];
   const DriveState state = state_of(stations_[slave].status);
   if (has_failed(state)) stop(Cause::kDrive, slave, FaultCode::kDriveFault);
-  if (is_enabled && has_followed_[slave] && state != DriveState::kOperationEnabled) {
+  const bool must_follow = is_enabled && watch.has_followed;
+  if (must_follow && state != DriveState::kOperationEnabled) {
     stop(Cause::kDisabled, slave, FaultCode::kDriveFault);
   }
   const bool follows = is_following(stations_[slave].status);
-  has_followed_[slave] = is_enabled && (has_followed_[slave] || follows);
+  watch.ignored = must_follow && !follows ? watch.ignored + 1 : 0;
+  if (watch.ignored >= kIgnored) stop(Cause::kNotFollowing, slave, FaultCode::kDriveFault);
+  watch.has_followed = is_enabled && (watch.has_followed || follows);
   const bool is_overdue = enabling_ > kEnabling * config_.rate_Hz;
-  if (is_overdue && !has_followed_[slave]) stop(Cause::kNotEnabled, slave, FaultCode::kDriveFault);
+  if (is_overdue && !watch.has_followed) stop(Cause::kNotEnabled, slave, FaultCode::kDriveFault);
 }
 
 void EthercatDevice::look_at_sensors() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    if (is_drive(i) || master_.state(i) != kOp) continue;
+    if (is_drive(i) || bus_->state(i) != kOp) continue;
     const Station& station = stations_[i];
     if (station.has_new_samples && station.error == 0) continue;
     ++frame_.bus_errors;
@@ -277,10 +345,19 @@ void EthercatDevice::look_at_bus_errors(int counter) noexcept {
   blame(suspect_, suspected_);
 }
 
+// While the machine recovers, look_at_recovery() decides.
 void EthercatDevice::stop(Cause cause, std::size_t slave, FaultCode fault) noexcept {
-  if (fault_ != FaultCode::kNone || (recovery_ > 0 && cause != Cause::kSilent)) return;
+  if (fault_ != FaultCode::kNone || recovery_ > 0) return;
   fault_ = fault;
   blame(cause, slave);
+}
+
+// A machine that stands with another fault keeps its cause, unless it recovers from that.
+void EthercatDevice::fall_silent() noexcept {
+  if (fault_ != FaultCode::kNone && recovery_ == 0) return;
+  recovery_ = 0;
+  fault_ = FaultCode::kDeviceSilent;
+  blame(Cause::kSilent, 0);
 }
 
 // The reason of a slave that has left OP is asked for once.
@@ -288,12 +365,15 @@ void EthercatDevice::blame(Cause cause, std::size_t slave) noexcept {
   cause_ = cause;
   culprit_ = slave;
   culprit_status_ = {};
+  culprit_word_ = stations_[slave].status;
+  culprit_mode_ = stations_[slave].mode_now;
   if (cause != Cause::kLeftOp) return;
-  if (const auto status = master_.status(slave, kStatusPatience)) culprit_status_ = *status;
+  if (const auto status = bus_->status(slave, kStatusPatience)) culprit_status_ = *status;
 }
 
 void EthercatDevice::write(const CommandFrame& command) noexcept {
-  if (command.panel.reset && !was_reset_) recover();
+  // a reset in the middle of a stop under control would end it
+  if (command.panel.reset && !was_reset_ && !command.enable) recover();
   was_reset_ = command.panel.reset;
   command_ = command;
   has_command_ = true;
@@ -308,54 +388,109 @@ bool EthercatDevice::is_finite(const CommandFrame& command) const noexcept {
          command.tau_m.allFinite();
 }
 
-// Slaves are called back to OP; drives are reset by their next control words.
+// Slaves are called back to OP; drives are reset by their next control words, and do not move until
+// all are well.
 void EthercatDevice::recover() noexcept {
   if (cause_ == Cause::kNone || cause_ == Cause::kSilent) return;
   recovery_ = kRecoveryCycles;
+  for (std::size_t i = 0; i < stations_.size(); ++i) watches_[i].was_well = is_well(i);
   call_to_op();
 }
 
 // Asks slaves in SAFE-OP for OP, and forgives those that have fallen there.
 void EthercatDevice::call_to_op() noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    if (master_.state(i) == kOp) continue;
-    master_.request_state(i, kSafeOp | kErrorFlag, kStatusPatience);
-    master_.request_state(i, kOp, kStatusPatience);
+    if (bus_->state(i) == kOp) continue;
+    bus_->request_state(i, kSafeOp | kErrorFlag, kStatusPatience);
+    bus_->request_state(i, kOp, kStatusPatience);
   }
 }
 
-void EthercatDevice::look_at_recovery() noexcept {
+bool EthercatDevice::is_well(std::size_t slave) const noexcept {
+  if (bus_->state(slave) != kOp) return false;
+  const Station& station = stations_[slave];
+  return is_drive(slave) ? !has_failed(state_of(station.status)) : station.error == 0;
+}
+
+// What was well since the reset, and is not any more, ends the recovery.
+void EthercatDevice::look_at_recovery(int counter) noexcept {
   --recovery_;
+  bool are_well = counter == expected_;
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    if (master_.state(i) != kOp) return;
-    const Station& station = stations_[i];
-    if (is_drive(i) ? has_failed(state_of(station.status)) : station.error != 0) return;
+    const bool was_well = watches_[i].was_well;
+    watches_[i].was_well = is_well(i);
+    if (was_well && !watches_[i].was_well && is_in_use_) return fail_again(i);
+    are_well = are_well && watches_[i].was_well;
   }
+  if (!are_well) return;
   recovery_ = 0;
   fault_ = FaultCode::kNone;
   cause_ = Cause::kNone;
 }
 
+// Without a slave that is no drive the monitor keeps the machine stopped.
+void EthercatDevice::fail_again(std::size_t slave) noexcept {
+  recovery_ = 0;
+  if (is_drive(slave)) fault_ = FaultCode::kDriveFault;
+  const Cause own = is_drive(slave) ? Cause::kDrive : Cause::kSensor;
+  blame(bus_->state(slave) == kOp ? own : Cause::kLeftOp, slave);
+}
+
+// Whether drives follow commands in the next exchange.
+bool EthercatDevice::may_move() const noexcept {
+  const bool is_sound = fault_ == FaultCode::kNone && recovery_ == 0;
+  return has_command_ && command_.enable && is_in_use_ && is_sound;
+}
+
+// After commands with drives on, the last targets are held until the brakes have closed, where
+// drives hear them at all. A drive that leads its own brake is told at once.
 void EthercatDevice::put_out() noexcept {
+  const bool enables = may_move();
+  const bool is_stopping = is_stopping_ || fault_ == FaultCode::kDeviceSilent;
+  const bool holds = !enables && holding_ > 0 && !is_stopping;
+  if (enables) {
+    held_ = command_;
+    held_.dq_m.setZero();
+    held_.dq_p.setZero();
+    holding_ = hold_cycles_;
+  } else if (holds) {
+    held_.panel = command_.panel;
+    --holding_;
+  } else {
+    holding_ = 0;
+  }
   Orders orders{.command = has_command_ ? &command_ : nullptr};
-  orders.enables = has_command_ && command_.enable && fault_ == FaultCode::kNone && is_in_use_;
-  orders.opens_brakes = orders.enables && all_follow();
+  if (holds) orders.command = &held_;
+  orders.enables = enables || holds;
+  orders.opens_brakes = enables && all_follow();
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    orders.control_word = control_word_for(i, orders.enables);
+    const bool is_on = state_of(stations_[i].status) == DriveState::kOperationEnabled;
+    orders.control_word = control_word_for(i, enables || (holds && has_brake_outputs_ && is_on));
     put_outputs(config_.machine.slaves[i], config_.n_p, orders, frame_, stations_[i]);
-    master_.set_outputs(i, stations_[i].outputs);
+    bus_->set_outputs(i, stations_[i].outputs);
   }
 }
 
 bool EthercatDevice::all_follow() const noexcept {
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    if (is_drive(i) && !has_followed_[i]) return false;
+    if (is_drive(i) && !watches_[i].has_followed) return false;
   }
   return true;
 }
 
+bool EthercatDevice::any_has_power() const noexcept {
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    if (is_drive(i) && has_power(state_of(stations_[i].status))) return true;
+  }
+  return false;
+}
+
 // Drives are off until the first read(); a drive in another mode is not enabled.
 std::uint16_t EthercatDevice::control_word_for(std::size_t slave, bool enables) const noexcept {
+  // what is known of them may be old
+  if (is_stopping_ || fault_ == FaultCode::kDeviceSilent) {
+    return is_in_use_ ? kQuickStop : kDisableVoltage;
+  }
   const Station& station = stations_[slave];
   const DriveState state = state_of(station.status);
   // a reset needs an edge
@@ -368,23 +503,27 @@ std::uint16_t EthercatDevice::control_word_for(std::size_t slave, bool enables) 
 void EthercatDevice::close(FaultCode) noexcept {
   if (is_closed_) return;
   is_closed_ = true;
-  is_in_use_ = false;
   recovery_ = 0;
   patience_us_ = std::min(patience_us_, kClosePatience);
-  for (int i = 0; i < kEndCycles; ++i) {
+  const auto exchange_once = [&] {
     if (exchange() >= 0) take_in();
-  }
+  };
+  command_.enable = false;
+  while (holding_ > 0 && !is_silent()) exchange_once();
+  is_stopping_ = true;
+  for (int i = 0; i < kStopCycles && any_has_power(); ++i) exchange_once();
+  is_in_use_ = false;
+  for (int i = 0; i < kEndCycles; ++i) exchange_once();
   for (std::size_t i = 0; i < stations_.size(); ++i) {
-    master_.request_state(i, kPreOp, kClosePatience);
+    bus_->request_state(i, kPreOp, kClosePatience);
   }
 }
 
-// State of the drive that has stopped the machine.
+// State of the drive that has stopped the machine, then; its error code may come later.
 std::string EthercatDevice::drive_words() const {
-  const Station& station = stations_[culprit_];
   return fmt::format("'{}' (mode {}, status word {:#06x}, error {:#06x})",
-                     to_string(state_of(station.status)), station.mode_now, station.status,
-                     station.error);
+                     to_string(state_of(culprit_word_)), culprit_mode_, culprit_word_,
+                     stations_[culprit_].error);
 }
 
 std::string EthercatDevice::farewell() const {
@@ -410,6 +549,13 @@ std::string EthercatDevice::farewell() const {
     case Cause::kNotEnabled:
       return named(
           fmt::format("the drive does not follow after {:g} s: {}", kEnabling, drive_words()));
+    case Cause::kNotFollowing:
+      return named("the drive no longer follows its commands: " + drive_words());
+    case Cause::kOutOfStep:
+      return fmt::format(
+          "{} frames in a row were out of step with the sync pulses, the last one by {} us: is "
+          "this computer busy, or not real-time (hapticgiant doctor)?",
+          kNoticed, pace_.error_ns() / 1000);
     case Cause::kSensor:
       return named(fmt::format("the sensor reports fault {:#06x}", stations_[culprit_].error));
     case Cause::kNoSamples:

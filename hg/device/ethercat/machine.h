@@ -53,6 +53,15 @@ enum class Input : std::uint8_t {
   kInputsDisagree,
 };
 
+/// Whether an entry has a value in SI units, else a number, a switch or nothing.
+inline constexpr bool is_measure(Output meaning) noexcept {
+  return meaning == Output::kTargetPosition || meaning == Output::kTargetVelocity ||
+         meaning == Output::kTargetTorque;
+}
+inline constexpr bool is_measure(Input meaning) noexcept {
+  return Input::kLinkPosition <= meaning && meaning <= Input::kAngularRateZ;
+}
+
 /// How a drive is led: modes of CiA 402, with their numbers.
 enum class DriveMode : std::uint8_t { kNone = 0, kCsp = 8, kCsv = 9, kCst = 10 };
 
@@ -91,6 +100,9 @@ struct Machine {
   std::string name;
   double watchdog_s = 0.1;  ///< without outputs for so long a slave leaves OP
   double answer_s = 5e-4;   ///< a frame that takes longer is lost
+  /// Until a brake that was told to close holds. For so long torques stay, and drives on, where the
+  /// output open_brakes leads the brakes.
+  double brake_closing_s = 0.0;
   /// The slaves move a period with each frame, whenever it comes: a simulated segment.
   bool moves_with_frames = false;
   std::vector<Slave> slaves;

@@ -65,6 +65,15 @@ ObjectResult Master::write(std::size_t slave, ObjectKey object, std::size_t byte
                                            data, bytes)};
 }
 
+std::optional<std::uint32_t> Master::read_register(std::size_t slave, std::uint16_t address,
+                                                   std::size_t bytes) {
+  std::uint32_t value = 0;
+  std::uint8_t data[sizeof value] = {};
+  if (!bus_master_read_register(master_.get(), slave, address, data, bytes)) return {};
+  std::memcpy(&value, data, sizeof data);
+  return value;
+}
+
 bool Master::set_watchdog(std::size_t slave, std::uint32_t watchdog_ms) {
   return bus_master_set_watchdog(master_.get(), slave, watchdog_ms);
 }

@@ -39,6 +39,8 @@ class Pace {
   void restart() noexcept { settled_ = 0; }
   /// Whether the last frames have passed near the middle between two pulses.
   bool is_settled() const noexcept { return settled_ >= kSettled; }
+  /// Whether the last frame has passed far enough from both pulses beside it.
+  bool is_in_step() const noexcept { return std::abs(error_ns_) < period_ns_ / 5 * 2; }
   /// How late the last frame was, against the middle.
   std::int64_t error_ns() const noexcept { return error_ns_; }
 

@@ -27,7 +27,7 @@ void take_inputs(const Slave& slave, int n_p, int n_m, Station& station,
 /// What all slaves are told.
 struct Orders {
   const CommandFrame* command = nullptr;  ///< null: none has come yet
-  bool enables = false;                   ///< drives follow it
+  bool enables = false;                   ///< its targets are those of the drives
   bool opens_brakes = false;
   std::uint16_t control_word = 0;  ///< of this drive
 };

@@ -100,6 +100,15 @@ void check_inputs(const std::filesystem::path& file, const ethercat::Machine& ma
   }
 }
 
+// A frame that is waited for longer would be in the way of the next one, which may have to stop the
+// drives.
+void check_times(const std::filesystem::path& file, const ethercat::Machine& machine,
+                 double rate_Hz) {
+  if (machine.moves_with_frames || machine.answer_s * rate_Hz <= 1.0) return;
+  throw SetupError(fmt::format("{}: answer_s: must be at most a period, {:g} s, got {:g}",
+                               file.generic_string(), 1.0 / rate_Hz, machine.answer_s));
+}
+
 }  // namespace
 
 bool is_ethercat(const std::string& address) { return address.starts_with(kScheme); }
@@ -131,6 +140,7 @@ ethercat::EthercatConfig ethercat_config(const std::string& address,
   result.machine = config::load_machine(used, reader, joints);
   check_modes(used, result.machine, device);
   check_inputs(used, result.machine, device);
+  check_times(used, result.machine, result.rate_Hz);
   if (is_fast && !result.machine.moves_with_frames) {
     throw SetupError("--fast: " + result.machine.name + " keeps its own time, leave it out");
   }

@@ -50,6 +50,11 @@ int64_t bus_master_read_object(bus_master* master, size_t index, uint16_t object
 int64_t bus_master_write_object(bus_master* master, size_t index, uint16_t object, uint8_t subindex,
                                 const uint8_t* data, size_t size);
 
+/// Reads a register of 1, 2 or 4 bytes of the controller of a slave of the last scan, in any state.
+/// False: no answer.
+bool bus_master_read_register(bus_master* master, size_t index, uint16_t address, uint8_t* data,
+                              size_t size);
+
 /// Sets the watchdog of process data of a slave, 1 to 6553 ms, and reads it back. False: it is
 /// another one.
 bool bus_master_set_watchdog(bus_master* master, size_t index, uint32_t watchdog_ms);

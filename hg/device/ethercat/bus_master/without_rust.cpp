@@ -24,6 +24,8 @@ int64_t bus_master_write_object(bus_master*, size_t, uint16_t, uint8_t, const ui
   return -1;
 }
 
+bool bus_master_read_register(bus_master*, size_t, uint16_t, uint8_t*, size_t) { return false; }
+
 bool bus_master_set_watchdog(bus_master*, size_t, uint32_t) { return false; }
 
 void bus_master_use_sync(bus_master*, size_t) {}

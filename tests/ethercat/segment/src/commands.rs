@@ -6,7 +6,8 @@ use crate::line::Line;
 use crate::registers::TIME_DELAY;
 use crate::slave::{INIT, PRE_OP, SAFE_OP};
 
-const COMMANDS: &str = "after, lose, late, miscount, fall, refuse, open, close, trip, set, show";
+const COMMANDS: &str =
+    "after, lose, late, miscount, fall, refuse, open, close, trip, brake, set, show";
 
 pub fn execute(line: &mut Line, command: &str, now_ns: u64) -> String {
     match run(line, command, now_ns) {
@@ -71,6 +72,12 @@ fn run(line: &mut Line, command: &str, now_ns: u64) -> Result<String, String> {
                 return Err(format!("'{name}' has no faults"));
             }
             line.slaves[i].give_inputs();
+        }
+        ["brake", name] => {
+            let i = find(line, name)?;
+            if !line.slaves[i].device.close_brake() {
+                return Err(format!("'{name}' has no brake"));
+            }
         }
         ["set", channel, value] => set(line, channel, value)?,
         ["show"] => return Ok(show(line, now_ns)),

@@ -37,6 +37,10 @@ pub trait Device {
     fn trip(&mut self, _code: u16) -> bool {
         false
     }
+    /// Closes the brake of a drive for good; false: it has none.
+    fn close_brake(&mut self) -> bool {
+        false
+    }
     /// What it does, as members of a JSON object, with a comma in front of each.
     fn describe(&self) -> String;
 }

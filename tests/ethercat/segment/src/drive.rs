@@ -14,6 +14,10 @@ const ERROR_CODE: u16 = 0x603F;
 const CONTROL_WORD: u16 = 0x6040;
 const STATUS_WORD: u16 = 0x6041;
 const QUICK_STOP_OPTION: u16 = 0x605A;
+const SHUTDOWN_OPTION: u16 = 0x605B;
+const DISABLE_OPTION: u16 = 0x605C;
+const HALT_OPTION: u16 = 0x605D;
+const FAULT_OPTION: u16 = 0x605E;
 const MODE: u16 = 0x6060;
 const MODE_NOW: u16 = 0x6061;
 const POSITION: u16 = 0x6064;
@@ -432,6 +436,11 @@ impl Device for Drive {
         self.publish(false);
         true
     }
+    fn close_brake(&mut self) -> bool {
+        self.objects.set(DIGITAL_OUTPUTS, 1, 1);
+        self.objects.set(DIGITAL_OUTPUTS, 2, 1);
+        true
+    }
     fn describe(&self) -> String {
         format!(
             ",\"drive\":\"{:?}\",\"error\":{},\"mode\":{},\"position\":{},\"torque_Nm\":{:.6},\
@@ -477,8 +486,12 @@ fn add_settings(objects: &mut Dictionary, options: &DriveOptions) {
     let far = i32::MAX;
     let rated = (options.rated_torque * 1000.0) as u32; // mNm
     let modes = 1u32 << 7 | 1 << 8 | 1 << 9;
-    let settings: [(u16, u8, Vec<u8>, Access); 14] = [
+    let settings: [(u16, u8, Vec<u8>, Access); 18] = [
         (QUICK_STOP_OPTION, 0, 2i16.to_le_bytes().into(), ReadWrite),
+        (SHUTDOWN_OPTION, 0, 0i16.to_le_bytes().into(), ReadWrite),
+        (DISABLE_OPTION, 0, 0i16.to_le_bytes().into(), ReadWrite),
+        (HALT_OPTION, 0, 1i16.to_le_bytes().into(), ReadWrite),
+        (FAULT_OPTION, 0, 2i16.to_le_bytes().into(), ReadWrite),
         (FOLLOWING_WINDOW, 0, window.to_le_bytes().into(), ReadWrite),
         (FOLLOWING_TIME, 0, 10u16.to_le_bytes().into(), ReadWrite), // ms
         (MOST_TORQUE, 0, 3000u16.to_le_bytes().into(), ReadWrite),  // per mille

@@ -3,10 +3,10 @@
 
 use crate::clock::Clock;
 use crate::registers::*;
+use crate::sii::WATCHDOG_TRIGGER;
 
 const MEMORY: usize = 0x3000; // registers and 8 KiB of RAM
 const MAILBOX_FULL: u8 = 0x08; // status of a sync manager
-const WATCHDOG_TRIGGER: u8 = 0x40; // control of a sync manager
 const EEPROM_READ_8: u8 = 0x40; // status of the EEPROM: eight bytes at a time
 const EEPROM_ERROR: u8 = 0x20;
 
@@ -71,6 +71,8 @@ pub struct Esc {
     pub events: Events,
     opened: [bool; SYNC_MANAGER_TOTAL as usize],
     pub output_manager: usize,
+    /// Its sync pulses come where a master has switched them on.
+    pub has_pulses: bool,
     last_outputs_ns: u64,
     watchdog_expired: bool,
 }
@@ -90,6 +92,7 @@ impl Esc {
             events: Events::default(),
             opened: [false; SYNC_MANAGER_TOTAL as usize],
             output_manager,
+            has_pulses: true,
             last_outputs_ns: 0,
             watchdog_expired: false,
         };
@@ -319,11 +322,31 @@ impl Esc {
             let time = self.system_time(now_ns);
             self.set(SYSTEM_TIME, &time.to_le_bytes());
         }
+        if self.clock.is_some()
+            && self.has_pulses
+            && (reads(SYNC_STATUS, 1) || reads(SYNC_START, 8))
+        {
+            self.refresh_pulses(now_ns);
+        }
         if let Some(clock) = &self.clock {
             if reads(TIME_DIFFERENCE, 4) {
                 let difference = clock.difference_register();
                 self.set(TIME_DIFFERENCE, &difference.to_le_bytes());
             }
+        }
+    }
+
+    // whether the first pulse is still to come, and the time of the next one
+    fn refresh_pulses(&mut self, now_ns: u64) {
+        let (start, period) = (self.u64(SYNC_START), u64::from(self.u32(SYNC0_CYCLE)));
+        if self.u8(SYNC_ACTIVATION) & 3 != 3 || period == 0 {
+            return;
+        }
+        let time = self.system_time(now_ns);
+        self.set(SYNC_STATUS, &[u8::from(time < start)]);
+        if time >= start {
+            let next = start + ((time - start) / period + 1) * period;
+            self.set(SYNC_START, &next.to_le_bytes());
         }
     }
 

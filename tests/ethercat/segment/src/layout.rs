@@ -15,7 +15,7 @@ const VENDOR: u32 = 0x00FF_FF00; // not given to anyone
 const COUNTS_PER_TURN: f64 = 1_048_576.0;
 const RATED_TORQUE: f64 = 1.0; // Nm
 
-const KEYS: &str = "vendor, product, revision, serial, drift";
+const KEYS: &str = "vendor, product, revision, serial, drift, watchdog, pulses";
 const DRIVE_KEYS: &str = "turn, rated, mapping, joint, axis";
 
 /// What a line of the file says.
@@ -24,6 +24,8 @@ struct Entry<'a> {
     name: &'a str,
     identity: Identity,
     drift_ppm: f64,
+    has_watchdog: bool, // of its outputs
+    has_pulses: bool,
     drive: DriveOptions,
 }
 
@@ -67,6 +69,8 @@ fn parse(line: &str, position: usize) -> Result<Entry<'_>, String> {
             serial: position as u32 + 1,
         },
         drift_ppm: 0.0,
+        has_watchdog: true,
+        has_pulses: true,
         drive: DriveOptions {
             counts_per_turn: COUNTS_PER_TURN,
             mapping: Mapping::Free,
@@ -89,6 +93,8 @@ fn set(entry: &mut Entry, key: &str, value: &str) -> Result<(), String> {
         "revision" => entry.identity.revision = whole(key, value)?,
         "serial" => entry.identity.serial = whole(key, value)?,
         "drift" => entry.drift_ppm = number(key, value, -1000.0, 1000.0)?,
+        "watchdog" => entry.has_watchdog = is_on(key, value)?,
+        "pulses" => entry.has_pulses = is_on(key, value)?,
         _ if entry.kind == 0 => return set_drive(&mut entry.drive, key, value),
         _ => return Err(format!("unknown key '{key}', expected {KEYS}")),
     }
@@ -112,6 +118,14 @@ fn set_drive(drive: &mut DriveOptions, key: &str, value: &str) -> Result<(), Str
         _ => return Err(format!("unknown key '{key}', expected {KEYS}, {DRIVE_KEYS}")),
     }
     Ok(())
+}
+
+fn is_on(key: &str, value: &str) -> Result<bool, String> {
+    match value {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(format!("{key}: expected on or off, got '{value}'")),
+    }
 }
 
 // counted from 1 in the file
@@ -154,5 +168,7 @@ fn make(entry: &Entry, position: usize) -> Slave {
     };
     // a plain slave has no clock
     let clock = device.has_mailbox().then(|| Clock::new(position, entry.drift_ppm));
-    Slave::new(entry.name, name, id, device, clock)
+    let mut slave = Slave::new(entry.name, name, id, device, clock, entry.has_watchdog);
+    slave.esc.has_pulses = entry.has_pulses;
+    slave
 }

@@ -32,6 +32,8 @@ pub const TIME_DELAY: u16 = 0x0928;
 pub const TIME_DIFFERENCE: u16 = 0x092C;
 pub const SPEED_COUNTER: u16 = 0x0930;
 pub const SYNC_ACTIVATION: u16 = 0x0981;
+pub const SYNC_STATUS: u16 = 0x0984;
+pub const SYNC_START: u16 = 0x0990; // read: the next pulse
 pub const SYNC0_CYCLE: u16 = 0x09A0;
 pub const RAM: u16 = 0x1000;
 

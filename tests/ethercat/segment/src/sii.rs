@@ -43,7 +43,16 @@ pub fn areas(has_mailbox: bool) -> &'static [Area] {
     }
 }
 
-pub fn eeprom(id: &Identity, name: &str, has_mailbox: bool, objects: &Dictionary) -> Vec<u8> {
+/// Control of a sync manager: its outputs restart the watchdog.
+pub const WATCHDOG_TRIGGER: u8 = 0x40;
+
+pub fn eeprom(
+    id: &Identity,
+    name: &str,
+    has_mailbox: bool,
+    has_watchdog: bool,
+    objects: &Dictionary,
+) -> Vec<u8> {
     let mut image = vec![0; 0x80];
     image[0] = 0x08; // process data interface: 8 bit
     image[14] = checksum(&image[..14]);
@@ -68,7 +77,7 @@ pub fn eeprom(id: &Identity, name: &str, has_mailbox: bool, objects: &Dictionary
     add_category(&mut image, 10, &strings(name));
     add_category(&mut image, 30, &general(has_mailbox));
     add_category(&mut image, 40, if has_mailbox { &[1, 2, 3, 0] } else { &[1, 2] });
-    add_category(&mut image, 41, &sync_managers(has_mailbox, objects));
+    add_category(&mut image, 41, &sync_managers(has_mailbox, has_watchdog, objects));
     add_category(&mut image, 50, &pdos(INPUT_ASSIGNMENT, has_mailbox, objects));
     add_category(&mut image, 51, &pdos(OUTPUT_ASSIGNMENT, has_mailbox, objects));
     image.resize(SIZE, 0xFF); // the end of the categories, and nothing behind it
@@ -109,7 +118,7 @@ fn general(has_mailbox: bool) -> [u8; 32] {
     bytes
 }
 
-fn sync_managers(has_mailbox: bool, objects: &Dictionary) -> Vec<u8> {
+fn sync_managers(has_mailbox: bool, has_watchdog: bool, objects: &Dictionary) -> Vec<u8> {
     let mut bytes = Vec::new();
     for area in areas(has_mailbox) {
         let length = match area.kind {
@@ -119,7 +128,8 @@ fn sync_managers(has_mailbox: bool, objects: &Dictionary) -> Vec<u8> {
         };
         bytes.extend(area.start.to_le_bytes());
         bytes.extend(length.to_le_bytes());
-        bytes.extend([area.control, 0, 1, area.kind]);
+        let control = if has_watchdog { area.control } else { area.control & !WATCHDOG_TRIGGER };
+        bytes.extend([control, 0, 1, area.kind]);
     }
     bytes
 }

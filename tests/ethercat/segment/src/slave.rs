@@ -54,9 +54,10 @@ impl Slave {
         identity: &Identity,
         device: Box<dyn Device>,
         clock: Option<Clock>,
+        has_watchdog: bool,
     ) -> Slave {
         let has_mailbox = device.has_mailbox();
-        let eeprom = sii::eeprom(identity, type_name, has_mailbox, device.objects());
+        let eeprom = sii::eeprom(identity, type_name, has_mailbox, has_watchdog, device.objects());
         let output_manager = if has_mailbox { 2 } else { 0 };
         // simple slaves read four bytes of their EEPROM at a time
         let esc = Esc::new(eeprom, has_mailbox, clock, output_manager);

@@ -296,6 +296,22 @@ impl Bus {
         self.pump.run(write, PATIENCE).ok_or(NO_ANSWER)?.map_err(abort_code)
     }
 
+    /// Reads a register of a slave's controller; false: no answer.
+    fn read_register(&mut self, address: u16, register: u16, data: &mut [u8]) -> bool {
+        let device = self.device;
+        let ask = Command::fprd(address, register);
+        let read = async {
+            match data.len() {
+                1 => data.copy_from_slice(&[ask.receive::<u8>(device).await?]),
+                2 => data.copy_from_slice(&ask.receive::<[u8; 2]>(device).await?),
+                4 => data.copy_from_slice(&ask.receive::<[u8; 4]>(device).await?),
+                _ => return Err(Error::Internal),
+            }
+            Ok(())
+        };
+        matches!(self.pump.run(read, PATIENCE), Some(Ok(())))
+    }
+
     /// Asks a slave for another state; its answer is in the next exchanges.
     fn request_state(&mut self, address: u16, state: u16, patience: Duration) -> bool {
         let request = Command::fpwr(address, AL_CONTROL).send(self.device, state);
@@ -498,6 +514,25 @@ pub unsafe extern "C" fn bus_master_write_object(
     let data = std::slice::from_raw_parts(data, size);
     let done = catch_unwind(AssertUnwindSafe(|| bus.write_object(index, (object, subindex), data)));
     done.unwrap_or(Err(NO_ANSWER)).err().unwrap_or(0)
+}
+
+/// # Safety
+/// `master` comes from `bus_master_open`; `data` points to `size` bytes.
+#[no_mangle]
+pub unsafe extern "C" fn bus_master_read_register(
+    master: *mut bus_master,
+    index: usize,
+    register: u16,
+    data: *mut u8,
+    size: usize,
+) -> bool {
+    let master = &mut *master;
+    let (Some(bus), Some(slave)) = (&mut master.open, master.slaves.get(index)) else {
+        return false;
+    };
+    let data = std::slice::from_raw_parts_mut(data, size);
+    catch_unwind(AssertUnwindSafe(|| bus.read_register(slave.address, register, data)))
+        .unwrap_or(false)
 }
 
 /// # Safety
