@@ -1,14 +1,18 @@
 #include "apps/hapticgiant/machine_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <utility>
 
 #include "apps/hapticgiant/option_checks.h"
+#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/commissioning/doctor/gate.h"
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/scenario/assembly.h"
@@ -38,6 +42,13 @@ void add_machine_options(CLI::App& command, MachineOptions& options) {
                   "SCHED_FIFO priority with a remote device, 1..99; 0: an ordinary thread")
       ->check(number_that("from 0 to 99", [](double v) { return v >= 0.0 && v <= 99.0; }))
       ->capture_default_str();
+  command
+      .add_option("--despite", options.despite,
+                  "items of the doctor that are bad about this computer and are to be let pass, as "
+                  "NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->needs("--device-address");
   command.add_option("--recordings", options.recordings, "folder that keeps the result")
       ->capture_default_str();
 }
@@ -53,6 +64,18 @@ config::Scenario make_machine_scenario(const MachineOptions& options) {
   return scenario;
 }
 
+namespace {
+
+// In lock-step a late computer does no harm.
+void check_computer(const MachineOptions& options, const config::Scenario& scenario) {
+  if (options.is_fast) return;
+  const std::string passed = doctor::check_ready(scenario.device.model.rate_Hz,
+                                                 {.priority = options.priority}, options.despite);
+  if (!passed.empty()) print_out(fmt::format("computer    {}\n", passed));
+}
+
+}  // namespace
+
 Machine connect_machine(const MachineOptions& options, const config::Scenario& scenario,
                         const std::string& command) {
   if (options.device_address.empty()) return {.device = scenario::make_simulated_device(scenario)};
@@ -64,14 +87,24 @@ Machine connect_machine(const MachineOptions& options, const config::Scenario& s
                        ": the segment is a simulation, whose stop button the bus does not reach; "
                        "leave --device-address out");
     }
+    check_computer(options, scenario);
     auto connected = std::make_unique<ethercat::EthercatDevice>(config);
     device::ConnectedDevice* const remote = connected.get();
     return {.device = std::move(connected), .remote = remote, .is_simulated = false};
   }
-  auto connected = scenario::connect_device(
-      options.device_address, scenario::key_of(options.key_file), scenario,
-      std::string("hapticgiant ") + command + " " + kVersion, options.is_fast);
+  const auto connect = [&](double busy_patience_s) {
+    return scenario::connect_device(
+        options.device_address, scenario::key_of(options.key_file), scenario,
+        std::string("hapticgiant ") + command + " " + kVersion, options.is_fast, busy_patience_s);
+  };
+  auto connected = connect(0.0);
   const bool is_simulated = connected->welcome().is_simulated;
+  if (!is_simulated && !options.is_fast) {
+    connected->close(FaultCode::kNone);
+    check_computer(options, scenario);
+    constexpr double kFarewell = 0.5;  // s, until the server knows that the session is over
+    connected = connect(kFarewell);
+  }
   device::ConnectedDevice* const remote = connected.get();
   return {.device = std::move(connected), .remote = remote, .is_simulated = is_simulated};
 }

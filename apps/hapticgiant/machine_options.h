@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/device/connected_device.h"
@@ -22,6 +23,8 @@ struct MachineOptions {
   std::string key_file;  ///< file of the key shared with the device; empty = none
   bool is_fast = false;  ///< lock-step with a remote device
   int priority = 80;     ///< SCHED_FIFO priority, with a remote device in real time; 0 = ordinary
+  /// Items of the doctor that may be bad on a computer that drives a machine
+  std::vector<std::string> despite;
   std::string recordings = "recordings";  ///< folder for the result
 };
 

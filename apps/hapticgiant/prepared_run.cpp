@@ -6,6 +6,7 @@
 
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/commissioning/doctor/gate.h"
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/scenario/assembly.h"
@@ -39,9 +40,18 @@ PreparedRun::PreparedRun(const RunArguments& a)
   }
 }
 
+// In lock-step a late computer does no harm.
+void PreparedRun::check_computer() {
+  if (arguments.is_fast) return;
+  computer = doctor::check_ready(scenario.device.model.rate_Hz,
+                                 {.priority = arguments.priority, .cpu = arguments.cpu},
+                                 arguments.despite);
+}
+
 void PreparedRun::connect_franka() {
   if (arguments.is_fast) throw SetupError("--fast: a Franka keeps its own time, leave it out");
   if (!arguments.key_file.empty()) throw SetupError("--key-file: a Franka's protocol has no key");
+  check_computer();
   auto connected = scenario::connect_franka(arguments.device_address, scenario);
   if (arguments.moves_to_start) {
     const VectorM start = scenario::find_start(scenario.device, scenario.twin).q_m;
@@ -68,6 +78,7 @@ void PreparedRun::connect_ethercat() {
   const start_test::MachineMemory memory = machine_memory(arguments);
   if (!config.machine.moves_with_frames) {
     start_test = start_test::check_start_test(memory, scenario.device);
+    check_computer();
   }
   auto connected = std::make_unique<ethercat::EthercatDevice>(config);
   remote = connected.get();
@@ -93,6 +104,7 @@ void PreparedRun::connect_remote() {
     start_test = start_test::check_start_test(memory, scenario.device);
     posture = start_test::check_posture(memory, scenario.device, *connected);
     connected->close(FaultCode::kNone);
+    check_computer();
     // the server may not know yet that the session for the posture is over
     constexpr double kFarewell = 0.5;  // s
     connected = connect(kFarewell);

@@ -34,9 +34,12 @@ struct PreparedRun {
   std::string note;  ///< why a remote device needs no start test
   /// Messages on a machine's start test and posture; see machine_memory.h
   std::string start_test, posture;
+  /// What the doctor finds bad about this computer and --despite has let pass; empty: nothing
+  std::string computer;
 
  private:
   void connect_remote();
+  void check_computer();
   void connect_franka();
   void connect_ethercat();
 };

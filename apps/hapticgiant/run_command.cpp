@@ -302,6 +302,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   }
   if (page != nullptr) tell_missing_meshes(scenario);
   if (options.duration_s == 0.0) print_out("stop        Ctrl-C\n");
+  if (!run.computer.empty()) notify(observers, 0.0, "computer", run.computer);
   if (run.machine != nullptr) {
     notify(observers, 0.0, "start test", run.start_test);
     notify(observers, 0.0, "posture", run.posture);
@@ -339,6 +340,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));
   if (run.machine != nullptr) print_out(fmt::format("  start test   {}\n", run.start_test));
+  if (!run.computer.empty()) print_out(fmt::format("  computer     {}\n", run.computer));
   for (const std::string& line : about_machine) print_out(fmt::format("  {}\n", line));
   bool is_written = recorded.is_whole();
   try {

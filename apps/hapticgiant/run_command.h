@@ -34,6 +34,8 @@ struct RunArguments {
   /// Folder of recordings and of the stored data of a machine
   std::string recordings = "recordings";
   bool without_start_test = false;  ///< allows a machine with untested brakes
+  /// Items of the doctor that may be bad on a computer that drives a machine
+  std::vector<std::string> despite;
   /// Joints of a machine confirmed to have moved since the last run
   std::vector<std::string> confirmed_joints;
   bool has_recording = true;  ///< writes the recording and the solver's failed or slow problems

@@ -41,6 +41,13 @@ void add_run(CLI::App& app, const std::string& program, int& exit_code) {
                  "drive a machine whose brakes and stop inputs were not tested today")
       ->needs("--device-address");
   command
+      ->add_option("--despite", arguments->despite,
+                   "items of the doctor that are bad about this computer and are to be let pass, "
+                   "as NAME,NAME")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->needs("--device-address");
+  command
       ->add_option("--posture-confirmed", arguments->confirmed_joints,
                    "joints of a machine that do stand elsewhere than the last run has left them, "
                    "as NAME,NAME")

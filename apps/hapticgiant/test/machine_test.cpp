@@ -59,9 +59,10 @@ class Homed final : public device::Device {
 
 class Machine {
  public:
-  explicit Machine(const config::Scenario& scenario, bool is_simulated = false)
+  explicit Machine(const config::Scenario& scenario, bool is_simulated = false,
+                   bool is_lock_step = true)
       : world_(scenario::make_simulation(scenario)),
-        server_({"127.0.0.1", "0"}, {.actual = scenario::describe(scenario, true),
+        server_({"127.0.0.1", "0"}, {.actual = scenario::describe(scenario, is_lock_step),
                                      .server = "test",
                                      .is_simulated = is_simulated,
                                      .lock_step_timeout_s = 60.0}),
@@ -302,6 +303,16 @@ TEST_F(MachineTest, AMachineIsCommissionedOnlyAtATerminal) {
   dup2(terminal, STDIN_FILENO);
   close(none);
   close(terminal);
+}
+
+TEST_F(MachineTest, AComputerThatIsNotReadyIsOverruledByNameOnly) {
+  const config::Scenario scenario = scenario::load(arguments_.world);
+  const Machine machine(scenario, false, false);
+  arguments_.device_address = machine.address();
+  arguments_.is_fast = false;
+  arguments_.despite = {"latenes"};
+  keep_result(scenario.device);
+  expect_part(refusal(), "no item of the doctor is 'latenes', did you mean 'lateness'?");
 }
 
 TEST_F(MachineTest, AServerBusyWithTheSessionBeforeIsTriedAgain) {
