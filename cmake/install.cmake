@@ -35,6 +35,8 @@ endforeach()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/hapticgiant
   COMPONENT cpp)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/driver
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/hapticgiant/examples COMPONENT cpp)
 install(EXPORT hapticgiant NAMESPACE hapticgiant:: DESTINATION ${package_dir} COMPONENT cpp
   FILE hapticgiantTargets.cmake)
 export(EXPORT hapticgiant NAMESPACE hapticgiant:: FILE hapticgiantTargets.cmake)  # for pip

@@ -4,8 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 #include <system_error>
 
 #include "apps/hapticgiant/output.h"
@@ -16,6 +19,7 @@
 #include "hg/commissioning/generator/scaffold.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/model/urdf.h"
 
 namespace hg::apps {
@@ -109,15 +113,68 @@ int new_twin(const NewArguments& arguments) {
   return 0;
 }
 
+int new_driver(const NewDriverArguments& arguments) {
+  const std::string& name = arguments.name;
+  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '_'; };
+  const auto is_of_name = [&](unsigned char c) { return is_letter(c) || std::isdigit(c) != 0; };
+  if (name.empty() || !is_letter(name[0]) || !std::ranges::all_of(name, is_of_name)) {
+    throw SetupError("new driver: the name must have letters, digits and _ only, got '" + name +
+                     "'");
+  }
+  const fs::path templates =
+      config::installation_root() / "examples" / "driver" / arguments.language;
+  std::error_code error;
+  if (!fs::is_directory(templates, error)) {
+    throw SetupError(templates.string() + ": not part of this installation");
+  }
+  const fs::path folder = name;
+  if (fs::exists(folder, error)) throw SetupError(name + ": exists already");
+  std::string device = "DEVICE.yaml", options = "--name NAME --joints 6 --rate-hz 250";
+  if (!arguments.device.empty()) {
+    const config::DeviceConfig config =
+        config::load_device(config::find_device(arguments.device, {}));
+    device = arguments.device;
+    options = fmt::format(
+        "--name {} --joints {} --axes {} --rate-hz {:g}{}", generator::quoted(config.name),
+        config.model.n_m, config.model.n_p, config.model.rate_Hz,
+        config.control.method == tracking::Method::kDrives ? "" : " --interface torque");
+  }
+  fs::create_directory(folder);
+  for (const fs::directory_entry& entry : fs::directory_iterator(templates)) {
+    std::string text = read_file(entry.path());
+    constexpr std::string_view kName = "my_driver";
+    for (std::size_t at = text.find(kName); at != std::string::npos; at = text.find(kName, at)) {
+      text.replace(at, kName.size(), name);
+      at += name.size();
+    }
+    write_output((folder / entry.path().filename()).string(), text);
+  }
+  const std::string start =
+      arguments.language == "cpp"
+          ? fmt::format(
+                "cmake -S {0} -B {0}/build -DCMAKE_PREFIX_PATH=PREFIX && cmake --build "
+                "{0}/build\n  {0}/build/{0} {1} 127.0.0.1:4810",
+                name, device)
+          : fmt::format("python3 {}/driver.py --simulated {}", name, options);
+  print_out(
+      "{0}/ written: a stand-in that runs; put your robot into it (docs/start/own_driver.md). "
+      "Next:\n"
+      "  {1}\n"
+      "  hapticgiant commission --device {2} --device-address 127.0.0.1:4810\n",
+      name, start, device);
+  return 0;
+}
+
 void add_new(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<NewArguments>();
-  CLI::App* command =
-      app.add_subcommand("new", "Write a first device.yaml or twin.yaml for a URDF.");
+  CLI::App* command = app.add_subcommand(
+      "new", "Write a first device.yaml or twin.yaml for a URDF, or a driver to fill in.");
   command->require_subcommand(1);
   command->footer(
       "Examples:\n"
       "  hapticgiant new device my_arm.urdf\n"
-      "  hapticgiant new twin my_gate.urdf --device my_arm_device.yaml");
+      "  hapticgiant new twin my_gate.urdf --device my_arm_device.yaml\n"
+      "  hapticgiant new driver my_arm --device my_arm_device.yaml");
   const auto add = [&](const char* kind, const char* text, int (*run)(const NewArguments&)) {
     CLI::App* what = command->add_subcommand(kind, text);
     what->add_option("urdf", arguments->part.urdf, "URDF of the robot or mechanism")
@@ -141,6 +198,18 @@ void add_new(CLI::App& app, int& exit_code) {
       ->add_option(
           "--device", arguments->device,
           "device.yaml that the twin is placed for, or the name of a shipped device (fr3)");
+  const auto driver = std::make_shared<NewDriverArguments>();
+  CLI::App* what = command->add_subcommand(
+      "driver", "a driver of your own machine, to fill in: docs/start/own_driver.md");
+  what->add_option("name", driver->name, "of the driver, and of the folder that is written")
+      ->required();
+  what->add_option("--language", driver->language,
+                   "python: over the network, slow and quick to begin with; cpp: 1 kHz")
+      ->check(CLI::IsMember({"python", "cpp"}))
+      ->capture_default_str();
+  what->add_option("--device", driver->device,
+                   "device.yaml of the machine, or the name of a shipped device");
+  what->callback([driver, &exit_code] { exit_code = new_driver(*driver); });
 }
 
 }  // namespace hg::apps

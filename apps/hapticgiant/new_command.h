@@ -1,4 +1,5 @@
-/// `hapticgiant new device|twin URDF`: a commented YAML file with values read from the URDF.
+/// `hapticgiant new device|twin URDF`: a commented YAML file with values read from the URDF; `new
+/// driver NAME`: a folder with a driver of one's own to fill in.
 #pragma once
 
 #include <string>
@@ -23,6 +24,15 @@ struct NewArguments {
 /// code. Throws SetupError when the URDF cannot be used or the file exists already.
 int new_device(const NewArguments& arguments);
 int new_twin(const NewArguments& arguments);
+
+struct NewDriverArguments {
+  std::string name;                 ///< of the driver and of its folder
+  std::string language = "python";  ///< python or cpp
+  std::string device;  ///< device.yaml or name of a shipped device; empty: not known yet
+};
+
+/// Writes the folder, prints the next steps, returns the exit code. Throws SetupError.
+int new_driver(const NewDriverArguments& arguments);
 
 /// Adds the subcommands to the program; running it sets `exit_code`.
 void add_new(CLI::App& app, int& exit_code);
