@@ -17,7 +17,6 @@ constexpr std::int64_t kLook = 5'000'000;       // ns between looks at the strea
 constexpr double kCloseTime = 0.5;              // s
 constexpr double kLoadTime = 3.0;               // s until enough states show the load
 constexpr double kSameMass = 1e-3;              // kg
-constexpr double kNoMass = 0.01;                // kg
 constexpr double kGravity = 9.81;               // m/s^2
 
 constexpr double kApproachSpeed = 0.2;  // rad/s on the way to a start
@@ -127,13 +126,6 @@ RestingEstimate FrankaDevice::estimate_with(const LoadRequest& load) {
 
 void FrankaDevice::check_at_rest() {
   const RestingEstimate estimate = estimate_with(config_.load);
-  const float m_ee = state_.m_ee;
-  if (m_ee > kNoMass) {
-    throw SetupError(
-        fmt::format("{}: Desk knows an end effector of {:.2f} kg: choose none there; the mass of "
-                    "the tool stands in its file and is sent to the robot",
-                    session_.at(), m_ee));
-  }
   const std::string why = objection(estimate, impedance_.weight(estimate.q));
   if (!why.empty()) throw SetupError(session_.at() + ": " + why);
   resting_ = estimate.w_S;

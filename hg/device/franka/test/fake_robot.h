@@ -26,6 +26,7 @@ namespace hg::franka {
 /// What a robot does; may be changed while it runs.
 struct Behaviour {
   std::uint16_t version = kVersion;
+  bool accepts_any_version = false;
   bool answers = true;  ///< to Connect
   bool sends_states = true;
   bool sends_nonsense = false;  ///< a datagram that is no state before each state
@@ -215,7 +216,7 @@ class FakeRobot {
     if (!behaviour_.answers) return;
     ConnectRequest request;
     std::memcpy(&request, body.data(), sizeof request);
-    const bool fits = behaviour_.version == request.version;
+    const bool fits = behaviour_.accepts_any_version || behaviour_.version == request.version;
     const ConnectAnswer response = {.status = static_cast<std::uint8_t>(fits ? 0 : 1),
                                     .version = behaviour_.version};
     answer(header.command, header.id, std::as_bytes(std::span(&response, 1)));

@@ -341,6 +341,8 @@ TEST(FrankaDevice, RefusesWhatItCannotUse) {
   Behaviour heavy;
   for (int i = 0; i < kJoints; ++i) heavy.tau_ext[i] = static_cast<float>(weight[i]);
   expect_says(refusal_of(heavy), "contains the weight of the arm");
+  heavy.m_ee = 0.73F;  // the server's fault comes before what the user can change
+  expect_says(refusal_of(heavy), "contains the weight of the arm");
 }
 
 }  // namespace
