@@ -23,8 +23,10 @@
 #   make lint    checks names and some common mistakes (clang-tidy)
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
-#   make franka  runs the driver of the Franka against franka-sim, an independent server, in an
-#                environment of its own (175 MB); MINUTE=1 measures its loop for a minute instead
+#   make franka  runs the driver of the Franka against franka-sim, an independent server, and compares
+#                it with pylibfranka, the maker's client, in an environment of their own (180 MB).
+#                FRANKY=1: against franky-sim, too (660 MB); MINUTES=10 measures its loop for so long
+#                instead
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -97,7 +99,8 @@ arms: build
 	@.venv/bin/python tools/compare_arms.py $(BUILD)/hapticgiant docs/reports/arms.md
 
 franka: build
-	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(MINUTE),--minute)
+	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(FRANKY),--franky) \
+	  $(if $(MINUTES),--minutes $(MINUTES))
 
 bench-instructions:
 	@tools/setup.sh count

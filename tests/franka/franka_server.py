@@ -1,16 +1,20 @@
 """franka-sim's server with our arm, a hand at its grip, and an estimate of the hand's wrench.
 
     franka_server.py URDF --port N [--pull N] [--away RAD] [--estimate weight|opposite|none]
-                     [--torque-rate NM_PER_S] [--without-time-limits]
+                     [--torque-rate NM_PER_S] [--without-time-limits] [--in-reflex]
+                     [--counts FILE]
 
 Runs in the environment that franka_test.py makes. The model is made from the numbers of our URDF,
 without meshes; a tool of 0.35 kg is part of it. Its joints start --away from where the drawer is
-held. Without time limits a busy computer does not make it stop for late commands. The hand pulls along x of the base for two seconds,
-pushes back for two, 1.5 s after a motion by torques has begun.
+held. Without time limits a busy computer does not make it stop for late commands. The hand pulls
+along x of the base for two seconds, pushes back for two, 1.5 s after a motion by torques has begun.
+With --in-reflex it stands in an old reflex when a client comes. The file of --counts says after a
+motion how many cycles it had and how many were not answered in time.
 """
 
 import argparse
 import contextlib
+import json
 import logging
 import math
 import os
@@ -28,6 +32,7 @@ FRICTION = [0.5, 0.5, 0.5, 0.5, 0.3, 0.3, 0.3]  # Nm
 FLANGE = 0.107  # m behind the last joint
 HANDLE = 0.09  # m behind the flange
 TOOL = {"mass": "0.35", "pos": f"0 0 {FLANGE + 0.08}", "diaginertia": "0.0008 0.0008 0.0001"}
+CARTESIAN_REFLEX = 7  # number of this error
 NOISE = 0.02  # N and Nm, of the estimate
 
 
@@ -61,6 +66,19 @@ def mjcf_of(urdf):
     return ET.tostring(root, encoding="unicode")
 
 
+def pull_after(since, force):
+    """What a hand does, N, `since` s after a motion has begun: with `force` to and fro."""
+    since -= 1.5
+    sign = 1.0 if 0.0 <= since < 2.0 else -1.0 if 2.0 <= since < 4.0 else 0.0
+    return sign * force
+
+
+def before_other_programs():
+    """Runs before other programs, where that is allowed."""
+    with contextlib.suppress(OSError):
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(5))
+
+
 def make_simulation(options):
     from franka_sim import mujoco_franka_sim
     from franka_sim.control_modes import ControlMode
@@ -80,9 +98,7 @@ def make_simulation(options):
                 return np.zeros(3)
             if self.began is None:
                 self.began = self.data.time
-            since = self.data.time - self.began - 1.5
-            sign = 1.0 if 0.0 <= since < 2.0 else -1.0 if 2.0 <= since < 4.0 else 0.0
-            return np.array([sign * options.pull, 0.0, 0.0])
+            return pull_after(self.data.time - self.began, np.array([options.pull, 0.0, 0.0]))
 
         def run_simulation(self):
             """Nothing: the server below steps, one period per state that it sends."""
@@ -134,6 +150,9 @@ def limits_of_franka_sim(torque_rate):
 
 def make_server(options):
     from franka_sim import FrankaSimServer
+    from franka_sim.server.constants import RobotMode
+
+    counts = {"cycles": 0, "unanswered": 0, "in_a_row": 0}  # while torques were expected
 
     class InStep(FrankaSimServer):
         """Of a busy computer the threads of physics and states drift apart; on a robot they cannot."""
@@ -143,9 +162,25 @@ def make_server(options):
             self.physics_sim.load = self.robot_state.state["m_load"]
             self.physics_sim.step()
 
+        def start_robot_state_transmission(self, *client):
+            if options.in_reflex:
+                self.robot_state.state.update(robot_mode=RobotMode.kReflex,
+                                              errors=[i == CARTESIAN_REFLEX for i in range(41)])
+            super().start_robot_state_transmission(*client)
+
+        def _account_for_communication_cycle(self):
+            super()._account_for_communication_cycle()
+            comm = self.comm
+            if options.counts and comm.active:
+                counts["cycles"] += 1
+                counts["unanswered"] += comm.consecutive_lost > 0
+                counts["in_a_row"] = max(counts["in_a_row"], comm.consecutive_lost)
+            elif options.counts and counts["cycles"] and not options.counts.exists():
+                options.counts.write_text(json.dumps(counts))
+
     return InStep(host="127.0.0.1", port=options.port, physics_sim=make_simulation(options),
                   enable_gripper=False, enforce_comm_constraints=not options.without_time_limits,
-                    enforce_motion_limits=True)
+                  enforce_motion_limits=True)
 
 
 def main():
@@ -157,13 +192,14 @@ def main():
     parser.add_argument("--without-time-limits", action="store_true")
     parser.add_argument("--estimate", choices=("hand", "weight", "opposite", "none"), default="hand")
     parser.add_argument("--torque-rate", type=float)
+    parser.add_argument("--in-reflex", action="store_true")
+    parser.add_argument("--counts", type=pathlib.Path)
     options = parser.parse_args()
     logging.basicConfig(level=logging.WARNING)
     model = pathlib.Path(sys.prefix, "fr3.xml")
     model.write_text(mjcf_of(options.urdf), encoding="utf-8")
     os.environ["FR3_MJCF"] = str(model)
-    with contextlib.suppress(OSError):  # before other programs, where that is allowed
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(5))
+    before_other_programs()
     if options.torque_rate:
         limits_of_franka_sim(options.torque_rate)
     make_server(options).start()

@@ -1,111 +1,28 @@
-"""`hapticgiant run --device-address franka://...` against an independent server, franka-sim.
+"""`hapticgiant run --device-address franka://...` against independent servers and clients.
 
-    franka_test.py PROGRAM [--minute]
+    franka_test.py PROGRAM [--franky] [--minutes N]
 
-Real time: for a computer that is left alone (`make franka`), none of `make test`. Installs the server
-into an environment of its own, build/franka_venv (175 MB); where that fails it is skipped (exit code
-77). With --minute only the loop is measured, for 60 s.
+Real time: for a computer that is left alone (`make franka`), none of `make test`. The server
+franka-sim and the reference client pylibfranka are installed into an environment of their own,
+build/franka_venv (180 MB); where that fails it is skipped (exit code 77). With --franky the server
+franky-sim, too (build/franky_venv, 660 MB). With --minutes only the loop is measured, for N minutes.
 """
 
-import contextlib
-import functools
+import argparse
 import json
 import pathlib
-import signal
-import socket
-import subprocess
 import sys
 import tempfile
 import time
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "packages"))
-from environment import make_environment  # noqa: E402
+import harness
+from franky_test import Franky
+from harness import FRANKA_SIM, FRANKY_SIM, TOLERANT, Run, patiently, robot, run, server
+from reference_test import Reference  # noqa: F401  found by unittest
 
-VENV = ROOT / "build" / "franka_venv"
-PYTHON = VENV / "bin" / "python"
-REQUIREMENTS = ROOT / "tools" / "requirements-franka.txt"
-SERVER = ROOT / "tests" / "franka" / "franka_server.py"
-ARM = ROOT / "models" / "arms" / "fr3" / "fr3.urdf"
 SKIPPED = 77
-PATIENCE = 60  # s
-TOLERANT = "--without-time-limits"  # of a computer that is busy with other tests
-PROGRAM = None
-
-
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
-
-
-@contextlib.contextmanager
-def server(*arguments):
-    """The address of a robot; the server is ready when its port answers."""
-    port = free_port()
-    process = subprocess.Popen([PYTHON, SERVER, ARM, "--port", str(port), *arguments], cwd=ROOT,
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    try:
-        until = time.monotonic() + PATIENCE
-        while process.poll() is None and time.monotonic() < until and not listens(port):
-            time.sleep(0.1)
-        if process.poll() is not None:
-            raise AssertionError("the server has ended: " + process.stdout.read())
-        yield f"franka://127.0.0.1:{port}"
-    finally:
-        process.kill()  # it keeps nothing
-        process.communicate()
-
-
-def listens(port):
-    """Whether a program listens; asks the system, since a connection would be taken for a client."""
-    lines = pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]
-    fields = (line.split() for line in lines)
-    return any(f[1].endswith(f":{port:04X}") and f[3] == "0A" for f in fields)
-
-
-class Run:
-    """A run of the drawer in a process of its own."""
-
-    def __init__(self, address, duration_s, folder, *arguments):
-        self.summary_file = pathlib.Path(folder, "summary.json")
-        self.process = subprocess.Popen(
-            [PROGRAM, "run", "fr3/open_drawer", "--device", "fr3/fci", "--device-address", address,
-             "--no-recording", "--no-viewer", "--flight-recorder", "off", "--duration",
-             str(duration_s), "--summary", self.summary_file, *arguments],
-            cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-
-    def wait(self):
-        """Exit code, what it said, its summary (None: there is none)."""
-        said, _ = self.process.communicate(timeout=PATIENCE + 60)
-        has_summary = self.summary_file.exists() and self.summary_file.stat().st_size > 0
-        return (self.process.returncode, said,
-                json.loads(self.summary_file.read_text()) if has_summary else None)
-
-    def wait_for(self, text):
-        while line := self.process.stdout.readline():
-            if text in line:
-                return
-        raise AssertionError("never said: " + text)
-
-
-def run(address, duration_s, *arguments):
-    with tempfile.TemporaryDirectory() as folder:
-        return Run(address, duration_s, folder, *arguments).wait()
-
-
-def patiently(test):
-    """Repeats a test in which this computer was so busy that the server paused for 50 ms."""
-    @functools.wraps(test)
-    def repeated(self):
-        for attempt in range(1, 4):
-            try:
-                return test(self)
-            except AssertionError as error:
-                if "remote device is silent" not in str(error) or attempt == 3:
-                    raise
-    return repeated
+LAST_WINDOW = 100  # cycles, of which the robot has told nothing yet at the end of a motion
 
 
 class Franka(unittest.TestCase):
@@ -153,9 +70,7 @@ class Franka(unittest.TestCase):
             stopped = Run(address, 5, folder)
             stopped.wait_for("no start test")
             time.sleep(1.5)
-            stopped.process.send_signal(signal.SIGSTOP)
-            time.sleep(0.3)
-            stopped.process.send_signal(signal.SIGCONT)
+            stopped.be_silent(0.3)
             code, said, summary = stopped.wait()
             self.assertEqual(code, 3, said)
             self.assertIn("communication_constraints_violation", said)
@@ -183,23 +98,57 @@ class Franka(unittest.TestCase):
                 self.assertIn(reason, said)
 
 
-def minute():
-    """Cycles, gaps and allocations of a minute."""
-    with server("--pull", "3") as address:
-        code, said, summary = run(address, 60)
+def minutes(count):
+    """Cycles, gaps, allocations and memory of a long run, and what the robot says about it."""
+    held = {}  # MB, by seconds since the beginning
+    with tempfile.TemporaryDirectory() as folder:
+        counts = pathlib.Path(folder, "robot.json")
+        with robot("--pull", "3", "--counts", str(counts)) as port:
+            long = Run(f"franka://127.0.0.1:{port}", 60 * count, folder)
+            begin = time.monotonic()
+            while long.process.poll() is None:
+                held[time.monotonic() - begin] = long.memory_MB()
+                time.sleep(1)
+            code, said, summary = long.wait()
+        of_robot = json.loads(counts.read_text())
     print(said)
-    link = summary["link"]
-    print(f"{summary['cycles']} cycles in {summary['wall_time_s']:.1f} s, "
-          f"{summary['allocations_in_loop']} allocations, states lost {link['lost']}, filled in "
-          f"{link['held']}, answers late {link['late']}, exit code {code}")
+    link, cycle = summary["link"], summary["cycle_time_us"]
+    settled = [MB for at, MB in held.items() if at > 10 and MB > 0]
+    print(f"{summary['cycles']} cycles in {summary['wall_time_s']:.1f} s, exit code {code}")
+    print(f"cycle {cycle['median']:.0f} us (median), {cycle['p99_9']:.0f} us (99.9 %), "
+          f"{cycle['max']:.0f} us (most)")
+    print(f"{summary['allocations_in_loop']} allocations in the loop, memory "
+          f"{settled[0]:.2f} MB after 10 s, {settled[-1]:.2f} MB at the end, "
+          f"{max(settled):.2f} MB at most")
+    print(f"states: {link['received']} received, {link['lost']} lost, {link['held']} filled in; "
+          f"answers: {link['sent']} sent, {link['late']} late")
+    print(f"robot: {of_robot['cycles']} cycles in motion, {of_robot['unanswered']} without an answer "
+          f"in time, at most {of_robot['in_a_row']} in a row")
+    # each period has a frame, each cycle of the motion an answer, or it is counted
+    uncounted = {
+        "periods": summary["cycles"] - link["received"] - link["held"],
+        "cycles of the motion": of_robot["cycles"] - link["sent"] - link["lost"] - link["late"],
+        "unanswered": of_robot["unanswered"] - link["late"] - LAST_WINDOW}
+    print("not counted: " + ", ".join(f"{max(0, n)} {name}" for name, n in uncounted.items()))
+    return code or any(n > 0 for n in uncounted.values())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=pathlib.Path)
+    parser.add_argument("--franky", action="store_true")
+    parser.add_argument("--minutes", type=float)
+    options, others = parser.parse_known_args()
+    harness.PROGRAM = options.program.resolve()
+    wanted = [FRANKA_SIM] + [FRANKY_SIM] * options.franky
+    if why := "; ".join(filter(None, (environment.make() for environment in wanted))):
+        print(f"franka: skipped, {why}")
+        return SKIPPED
+    if options.minutes:
+        return minutes(options.minutes)
+    Franky.is_wanted = options.franky
+    return not unittest.main(argv=sys.argv[:1] + others, exit=False).result.wasSuccessful()
 
 
 if __name__ == "__main__":
-    PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
-    if why := make_environment(VENV, REQUIREMENTS):
-        print(f"franka: skipped, {VENV} cannot be made: {why}")
-        sys.exit(SKIPPED)
-    if "--minute" in sys.argv:
-        minute()
-    else:
-        unittest.main()
+    sys.exit(main())

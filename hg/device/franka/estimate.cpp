@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kAtRest = 0.02;      // rad/s
 constexpr double kWeightShare = 0.3;  // of the arm's weight in the estimate
+constexpr double kNoMass = 0.01;      // kg
 constexpr double kMostForce = 10.0;   // N; more is a hand or a wrong load
 constexpr double kMostTorque = 2.0;   // Nm
 
@@ -40,6 +41,7 @@ void RestingEstimate::add(const RobotState& state, const Pose& T_F_S) noexcept {
   const VectorM of_joints = joints_of(state.tau_ext_hat_filtered);
   const Vector6 of_hand = user_wrench(state, T_F_S);
   fastest = std::max(fastest, joints_of(state.dq).cwiseAbs().maxCoeff());
+  m_ee = state.m_ee;
   has_any = has_any || (of_hand.array() != 0.0).any();
   q += joints_of(state.q);
   tau_ext += of_joints;
@@ -66,6 +68,12 @@ std::string objection(const RestingEstimate& estimate, const VectorM& weight) {
         "rest, where the arm weighs {:.1f} Nm. Such a server does not subtract gravity as a Franka "
         "does, and its weight would be taken for the user's hand",
         estimate.tau_ext[heaviest], heaviest + 1, weight[heaviest]);
+  }
+  if (estimate.m_ee > kNoMass) {
+    return fmt::format(
+        "Desk knows an end effector of {:.2f} kg: choose none there; the mass of the tool stands "
+        "in its file and is sent to the robot",
+        estimate.m_ee);
   }
   if (!estimate.has_any) {
     return "its estimate of the external wrench is exactly zero: either the arm stands in a "

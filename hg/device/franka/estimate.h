@@ -21,6 +21,7 @@ struct RestingEstimate {
   int states = 0;
   double fastest = 0.0;  ///< largest speed of a joint, rad/s
   bool has_any = false;  ///< some value of the estimate was not exactly zero
+  double m_ee = 0.0;     ///< mass of the end effector that the robot knows, kg
   VectorM q = VectorM::Zero(kJoints), tau_ext = VectorM::Zero(kJoints);
   Vector6 w_S = Vector6::Zero();
 

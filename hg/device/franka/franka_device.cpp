@@ -13,11 +13,11 @@ namespace {
 constexpr std::uint64_t kStartPatience = 1000;  // states until a motion has begun
 constexpr std::uint64_t kEndPatience = 200;     // states until a motion has ended, then StopMove
 constexpr std::uint64_t kOvertaken = 100;       // states that may be older than an answer
+constexpr std::uint64_t kCyclesOfRate = 100;    // over which the robot takes its success rate
 constexpr std::int64_t kLook = 5'000'000;       // ns between looks at the stream
 constexpr double kCloseTime = 0.5;              // s
 constexpr double kLoadTime = 3.0;               // s until enough states show the load
 constexpr double kSameMass = 1e-3;              // kg
-constexpr double kNoMass = 0.01;                // kg
 constexpr double kGravity = 9.81;               // m/s^2
 
 constexpr double kApproachSpeed = 0.2;  // rad/s on the way to a start
@@ -127,13 +127,6 @@ RestingEstimate FrankaDevice::estimate_with(const LoadRequest& load) {
 
 void FrankaDevice::check_at_rest() {
   const RestingEstimate estimate = estimate_with(config_.load);
-  const float m_ee = state_.m_ee;
-  if (m_ee > kNoMass) {
-    throw SetupError(
-        fmt::format("{}: Desk knows an end effector of {:.2f} kg: choose none there; the mass of "
-                    "the tool stands in its file and is sent to the robot",
-                    session_.at(), m_ee));
-  }
   const std::string why = objection(estimate, impedance_.weight(estimate.q));
   if (!why.empty()) throw SetupError(session_.at() + ": " + why);
   resting_ = estimate.w_S;
@@ -298,15 +291,29 @@ void FrankaDevice::follow(const RobotState& state) noexcept {
     case Phase::kIdle:
       return;
     case Phase::kStarting:
-      if (has_motion) phase_ = Phase::kMoving;
+      if (has_motion) {
+        phase_ = Phase::kMoving;
+        counted_to_ = id;
+      }
       if (id - phase_since_ > kStartPatience) abort(state);
       return;
     case Phase::kMoving:
-      if (!has_motion) abort(state);
+      if (!has_motion) return abort(state);
+      count_unanswered(state);
       return;
     case Phase::kFinishing:
       if (!has_motion) phase_ = Phase::kIdle;
       return;
+  }
+}
+
+// The robot tells the share of the last 100 cycles that were answered in time.
+void FrankaDevice::count_unanswered(const RobotState& state) noexcept {
+  const float answered = state.control_command_success_rate;
+  if (state.message_id - counted_to_ < kCyclesOfRate) return;
+  counted_to_ = state.message_id;
+  if (answered >= 0.0F && answered <= 1.0F) {
+    unanswered_ += std::lround(kCyclesOfRate * (1.0F - answered));
   }
 }
 
@@ -439,6 +446,7 @@ std::string FrankaDevice::farewell() const {
 LinkCounts FrankaDevice::counts() const noexcept {
   LinkCounts counts = own_;
   counts.held = queue_.held();
+  counts.late = std::max(own_.late, unanswered_);
   counts.foreign = session_.foreign();
   return counts;
 }

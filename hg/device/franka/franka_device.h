@@ -69,6 +69,8 @@ class FrankaDevice final : public device::ConnectedDevice {
   /// Ends a motion and waits up to 0.5 s for its end.
   void close(FaultCode reason) noexcept override;
   std::string farewell() const override;
+  /// `late` are the cycles of a motion that the robot got no answer for in time, by its own count
+  /// up to its last full 100 cycles, or at least those that the driver itself knows of.
   LinkCounts counts() const noexcept override;
 
  private:
@@ -87,6 +89,7 @@ class FrankaDevice final : public device::ConnectedDevice {
   void take(const RobotState& state) noexcept;
   void take_answers() noexcept;
   void follow(const RobotState& state) noexcept;
+  void count_unanswered(const RobotState& state) noexcept;
   void abort(const RobotState& state) noexcept;
   FaultCode driver_fault() const noexcept;
   void stop(FaultCode fault, SensorFrame& sensors) noexcept;
@@ -122,6 +125,8 @@ class FrankaDevice final : public device::ConnectedDevice {
   std::uint8_t recovery_status_ = 0;    ///< answer to the last recovery, 0 = it worked
   FaultCode fault_ = FaultCode::kNone;  ///< of the connection, final
   LinkCounts own_;
+  std::uint64_t unanswered_ = 0;  ///< cycles without an answer in time, as the robot counts them
+  std::uint64_t counted_to_ = 0;  ///< message_id up to which they are counted
 };
 
 }  // namespace hg::franka

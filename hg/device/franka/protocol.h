@@ -81,6 +81,8 @@ struct ConnectRequest {
   std::uint16_t udp_port = 0;  ///< where the client waits for states
 };
 
+/// The robot decides whether the client's version is good enough; where it is not, its own version
+/// tells why. libfranka does not look at the version of a robot that accepts, either.
 struct ConnectAnswer {
   std::uint8_t status = 0;    ///< 0: connected
   std::uint16_t version = 0;  ///< version of the robot

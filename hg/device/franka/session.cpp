@@ -110,7 +110,7 @@ void Session::greet(double timeout_s) {
                                                timeout_s)) +
                      ": does another program control the robot?");
   }
-  if (answer.status == 0 && answer.version == kVersion) return;
+  if (answer.status == 0) return;
   throw SetupError(fmt::format(
       "{}: the robot speaks version {} of FCI, {} is needed (FR3 with system 5.9 or newer)", at_,
       answer.version, kVersion));

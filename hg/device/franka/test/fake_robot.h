@@ -26,6 +26,7 @@ namespace hg::franka {
 /// What a robot does; may be changed while it runs.
 struct Behaviour {
   std::uint16_t version = kVersion;
+  bool accepts_any_version = false;
   bool answers = true;  ///< to Connect
   bool sends_states = true;
   bool sends_nonsense = false;  ///< a datagram that is no state before each state
@@ -36,6 +37,7 @@ struct Behaviour {
   std::array<float, kJoints> tau_ext{};
   std::array<float, 6> K_F_ext = {0.25F, 0, 0, 0, 0, 0};
   float m_ee = 0.0F;
+  float success_rate = 1.0F;  ///< that it tells while it moves
   /// Weight of a tool that it holds with z of its flange down, N per kg that it was not told of
   float weight_per_kg = 9.81F;
   float tool_kg = 0.35F;
@@ -215,7 +217,7 @@ class FakeRobot {
     if (!behaviour_.answers) return;
     ConnectRequest request;
     std::memcpy(&request, body.data(), sizeof request);
-    const bool fits = behaviour_.version == request.version;
+    const bool fits = behaviour_.accepts_any_version || behaviour_.version == request.version;
     const ConnectAnswer response = {.status = static_cast<std::uint8_t>(fits ? 0 : 1),
                                     .version = behaviour_.version};
     answer(header.command, header.id, std::as_bytes(std::span(&response, 1)));
@@ -294,6 +296,8 @@ class FakeRobot {
     wrench[2] -= behaviour_.weight_per_kg * (behaviour_.tool_kg - state_.m_load);
     state_.K_F_ext_hat_K = wrench;
     state_.m_ee = behaviour_.m_ee;
+    const bool moves = state_.robot_mode == RobotMode::kMove;
+    state_.control_command_success_rate = moves ? behaviour_.success_rate : 0.0F;
     const auto datagram = std::as_bytes(std::span(&state_, 1));
     if (behaviour_.sends_nonsense) socket.send(datagram.first(100), client_);
     socket.send(datagram, client_);

@@ -42,6 +42,12 @@ TEST(Session, NamesTheOtherVersion) {
   expect_says(refusal(robot.address(), kLong), "speaks version 9 of FCI, 10 is needed");
 }
 
+TEST(Session, TheRobotDecidesWhetherVersionsFit) {
+  // franky-sim accepts and puts its version elsewhere; libfranka takes it as well
+  const FakeRobot robot({.version = 2560, .accepts_any_version = true});
+  EXPECT_EQ(refusal(robot.address(), kLong), "");
+}
+
 TEST(Session, NamesAClosedPort) {
   FakeRobot robot;
   const udp::Address address = robot.address();
