@@ -92,7 +92,8 @@ class Run:
     def __init__(self, address, duration_s, folder, *arguments, scenario="open_drawer"):
         self.summary_file = pathlib.Path(folder, "summary.json")
         self.process = subprocess.Popen(
-            [PROGRAM, "run", "fr3/" + scenario, "--device", "fr3/fci", "--device-address", address,
+            [PROGRAM, "run", "fr3/" + scenario, "--device", "fr3/fci", "--despite", "lateness",
+             "--device-address", address,
              "--no-recording", "--no-viewer", "--flight-recorder", "off", "--duration",
              str(duration_s), "--summary", self.summary_file, *arguments],
             cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

@@ -96,7 +96,7 @@ class Commands(unittest.TestCase):
             self.assertRegex(said, r"truth +joint limits .*; force of the user at most \d")
 
     def test_what_a_franka_cannot_be_is_refused(self):
-        fci = ("fr3/open_drawer", "--device", "fr3/fci", "--device-address")
+        fci = ("fr3/open_drawer", "--device", "fr3/fci", "--despite", "lateness", "--device-address")
         nobody = "franka://127.0.0.1:1"
         for arguments, reason in (
                 (("fr3/open_drawer", "--device-address", nobody), "lists no actuators"),
