@@ -286,8 +286,14 @@ class Steps {
     const Stroke back = rig_.lead(joint, -way);
     place_chain();
     if (std::string trouble = trouble_of(back, model_, chain_); !trouble.empty()) return trouble;
-    found_ = fmt::format("led by {:.0f} {} and back, {:.0f} ms late", 1e3 * way,
-                         is_slide(joint) ? "mm" : "mrad", 1e3 * std::max(0.0, there.late));
+    found_ = fmt::format("led by {:.0f} {} and back", 1e3 * way, is_slide(joint) ? "mm" : "mrad");
+    if (!has_torques() || joint < model_.n_p) {
+      found_ += fmt::format(", {:.0f} ms late", 1e3 * std::max(0.0, there.late));
+      return "";
+    }
+    // load, speed and stiction are in it, so that it is said and not judged
+    found_ += fmt::format(", friction {:.1f} Nm (file: {:.1f})", friction_of(there, back),
+                          model_.actuators[joint - model_.n_p].coulomb_friction);
     return "";
   }
 

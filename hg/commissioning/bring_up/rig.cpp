@@ -16,6 +16,7 @@ constexpr double kAstray = 0.03;       // rad, largest distance of a led joint f
 constexpr double kSlideAstray = 0.01;  // m
 constexpr double kStray = 0.015;       // rad, largest motion of any other joint
 constexpr double kSlideStray = 0.004;  // m
+constexpr double kMiddle = 0.15;       // share of a stroke around its middle, where it is fast
 constexpr double kBias = 0.3;          // s in which the gyroscope is read at rest
 
 // Minimum-jerk motion from 0 to 1 at the share t of its duration; derivatives by t.
@@ -190,7 +191,8 @@ Stroke Rig::lead(int joint, double way) {
   }
   const VectorPM from = positions();
   const VectorM motors_from = robot_.theta_m;
-  double t = 0.0, pace = 0.0, without_key = 0.0, lag = 0.0;
+  double t = 0.0, pace = 0.0, without_key = 0.0, lag = 0.0, torque = 0.0;
+  int in_the_middle = 0;
   const double settled = kDuration + kSettle;
   while (t < settled) {
     const bool is_held = crew_.holds_key();
@@ -222,12 +224,17 @@ Stroke Rig::lead(int joint, double way) {
     stroke.by_speed += dt() * sensors_.dq_m;
     stroke.turned += dt() * (sensors_.omega_S - bias);
     lag += dt() * (stroke.way - stroke.moved[joint]);
+    if (joint >= n_p && command_.tau_m.size() > 0 && std::abs(t / kDuration - 0.5) < kMiddle) {
+      torque += command_.tau_m[joint - n_p];
+      ++in_the_middle;
+    }
     if (is_astray(from, joint)) {
       power_off();
       stroke.is_cut = true;
       return stroke;
     }
   }
+  if (in_the_middle > 0) stroke.torque = torque / in_the_middle;
   stroke.late = lag / way;
   return stroke;
 }

@@ -97,6 +97,10 @@ const std::string& name_of(const DeviceModel& device, int joint) {
   return device.chain.joints()[joint].name;
 }
 
+double friction_of(const Stroke& there, const Stroke& back) {
+  return 0.5 * (there.way > 0.0 ? there.torque - back.torque : back.torque - there.torque);
+}
+
 std::vector<Vector3d> axes_in_sensor(const DeviceModel& device, const model::ChainData& chain) {
   const model::Jacobian& J = chain.jacobian(device.handle);
   const Eigen::Matrix3d R_S_B = (chain.pose(device.handle).R * device.T_H_S.R).transpose();

@@ -21,6 +21,7 @@ struct Stroke {
   Eigen::Vector3d turned =
       Eigen::Vector3d::Zero();  ///< Angular velocity of S in S, integrated, rad
   bool is_cut = false;          ///< The drives were switched off on the way
+  double torque = 0.0;          ///< Mean torque commanded to its motor in the middle of the way, Nm
   double late = 0.0;            ///< Time by which the encoder follows the command, s
 };
 
@@ -41,6 +42,10 @@ std::vector<Eigen::Vector3d> axes_in_sensor(const DeviceModel& device,
 /// What is wrong with joints that leave their places as soon as the drives hold them, by the change
 /// of each encoder.
 std::string trouble_of_hold(const VectorPM& moved, const DeviceModel& device);
+
+/// Dry friction of a joint of the manipulator that was led there and back, Nm: what turns its sign
+/// with the motion, weight and springs do not.
+double friction_of(const Stroke& there, const Stroke& back);
 
 /// Name of a joint or axis of the gantry.
 const std::string& name_of(const DeviceModel& device, int joint);

@@ -52,7 +52,8 @@ config::Scenario giant() { return config::load_scenario("models/scenarios/door.y
 config::Scenario ur5e() { return config::load_scenario("models/arms/ur5e/open_cupboard.yaml"); }
 
 TEST(BringUp, AMachineThatIsConnectedRightlyPasses) {
-  for (const config::Scenario& scenario : {giant(), ur5e()}) {
+  const auto fr3 = config::load_scenario("models/arms/fr3/open_drawer.yaml");
+  for (const config::Scenario& scenario : {giant(), ur5e(), fr3}) {
     const Session session(scenario, {});
     EXPECT_TRUE(session.has_passed()) << session.failure();
     EXPECT_EQ(std::ranges::count(session.items, Outcome::kUntested, &Item::outcome), 0);
