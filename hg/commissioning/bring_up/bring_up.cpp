@@ -344,7 +344,11 @@ class Steps {
           "switch the drives off and say so",
           kLongest);
     }
-    found_ = fmt::format("without commands: {}", to_string(fault));
+    if (fault == FaultCode::kDeviceSilent) {
+      return "without commands it fell silent itself: nobody knows whether its drives are off; its "
+             "driver must say goodbye";
+    }
+    found_ = fmt::format("it ended the session: {}", to_string(fault));
     return "";
   }
 
