@@ -20,6 +20,7 @@ import signal
 import socket
 import stat
 import struct
+import sys
 import time
 import zlib
 
@@ -241,6 +242,7 @@ class Server:
         self.secret, self.sessions = secrets.token_bytes(32), 0
         self.client, self.welcomed = None, collections.OrderedDict()  # by address, the last 16
         self.sequence = 0  # of the newest frame
+        self.reads_after_due = 0  # looks into the socket when the time was over, since that frame
         self.ignored = collections.Counter()
 
     def send(self, client, kind, *values):
@@ -262,7 +264,9 @@ class Server:
         """Type and fields of the next message for the session, a command unpacked; None: time is over."""
         while True:
             wait_s = max(until_s - time.monotonic(), 0.0)
-            if not select.select([self.socket], [], [], wait_s)[0]:
+            self.reads_after_due += wait_s == 0.0
+            is_flood = self.reads_after_due > 64  # what waits is read, but the next period must begin
+            if is_flood or not select.select([self.socket], [], [], wait_s)[0]:
                 return None
             try:
                 data, peer = self.socket.recvfrom(2048)
@@ -363,7 +367,7 @@ class Server:
             self.send(client, GOODBYE, kind, 0, reason.encode()[:63])
 
     def send_sensors(self, sensors, time_s, answered):
-        self.sequence += 1
+        self.sequence, self.reads_after_due = self.sequence + 1, 0
         n_m, s = self.options.joints, sensors
         self.frame = (
             self.sequence, time_s, answered, int(s.dead_man), int(s.emergency_stop), int(s.operator_enable),
@@ -383,7 +387,7 @@ class Server:
     def serve(self, robot):
         """One session after the other."""
         while True:
-            self.client, self.sequence = None, 0
+            self.client, self.sequence, self.reads_after_due = None, 0, 0
             while self.client is None:
                 self.receive(time.monotonic() + 1.0)
             self.ignored.clear()
@@ -448,6 +452,16 @@ class Server:
         return None
 
 
+STOPS = signal.SIGINT, signal.SIGTERM
+
+
+def stop(*_):
+    """Ctrl-C; a second one must not interrupt that the drives are switched off."""
+    for number in STOPS:
+        signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
 def take_priority():
     """Before everything else on this computer; it sleeps between two periods."""
     try:
@@ -456,7 +470,7 @@ def take_priority():
         say(f"note: no real-time priority ({error}): other programs may make the robot stop (fault 103)")
 
 
-def main():
+def read_options(arguments):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--name", default=NAME, help="as in the device file")
     parser.add_argument("--joints", type=int, default=6, choices=(6, 7))
@@ -470,12 +484,18 @@ def main():
     parser.add_argument("--timeout-s", type=float, default=COMMAND_TIMEOUT_S,
                         help="time without a command after which the drives go off (not with --fast)")
     parser.add_argument("--key-file", help="the secret that clients must have, too")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     if not options.simulated and not 0.0 < options.timeout_s <= COMMAND_TIMEOUT_S:
         parser.error(f"--timeout-s: a machine is switched off within {COMMAND_TIMEOUT_S} s")
     if options.fast and not options.simulated:
         parser.error("--fast: a machine keeps its own time; for a stand-in give --simulated, too")
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends like Ctrl-C
+    return options
+
+
+def main():
+    options = read_options(sys.argv[1:])
+    for number in STOPS:
+        signal.signal(number, stop)
     server = Server(options, None if options.key_file is None else read_key(options.key_file))
     robot = Robot(options.joints, options.axes, options.rate_hz, server.has_torques)
     try:
