@@ -7,6 +7,7 @@ that do what none should.
 import math
 import os
 import pathlib
+import re
 import signal
 import socket
 import struct
@@ -388,6 +389,40 @@ driver.Robot = Bad
             self.assertIn("drives off\n", said)
             self.assertIn("read() gives 5 values of q_m, expected 6", said)
             self.assertNotEqual(served.process.returncode, 0)
+
+    def test_the_example_of_the_page_leads_an_arm(self):
+        page = (ROOT / "docs" / "start" / "own_driver.md").read_text()
+        example, = re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+        robot = f"""
+import types
+class Arm:  # counts in degrees
+    angles, is_on = [30.0] * 6, False
+    def newest_state(self):
+        return types.SimpleNamespace(angles=self.angles, speeds=[0.0] * 6, force=[0.0] * 3,
+            torque=[0.0] * 3, button=self.is_on, is_stopped=False, has_error=False)
+    def on(self): self.is_on = True
+    def off(self): self.is_on = False
+    def follow(self, angles): self.angles = angles
+driver.maker_arm = types.SimpleNamespace(connect=lambda address: Arm())
+exec({example!r}, driver.__dict__)
+"""
+        with Driver("--fast", code=robot) as served:
+            client = served.client()
+            sensors = client.sensors()
+            self.assertAlmostEqual(sensors["q_m"][5], math.radians(30.0))
+            near = [q + 0.04 for q in sensors["q_m"]]
+            sensors = answer(client, sensors, 0, near)
+            self.assertAlmostEqual(sensors["q_m"][5], math.radians(30.0))
+            sensors = answer(client, sensors, 1, near)
+            self.assertAlmostEqual(sensors["q_m"][5], near[5])
+            self.assertEqual((sensors["dead_man"], sensors["driver_fault"]), (1, 0))
+            far = [*near[:5], near[5] + 0.06]
+            for enable, q_m, is_on, fault in ((1, far, 0, 113), (1, near, 0, 113), (0, near, 0, 0),
+                                              (1, near, 1, 0)):
+                sensors = answer(client, sensors, enable, q_m)
+                self.assertAlmostEqual(sensors["q_m"][5], near[5])
+                self.assertEqual((sensors["dead_man"], sensors["driver_fault"]), (is_on, fault))
+            goodbye(client)
 
     def test_a_machine_has_neither_lock_step_nor_a_long_time_out(self):
         for arguments, reason in ((("--fast",), "a machine keeps its own time"),

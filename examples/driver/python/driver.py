@@ -314,7 +314,8 @@ class Server:
         elif self.client is not None and not is_client:
             refusal, reason = BUSY, f"{self.client.name} has the device"
         else:
-            names = "device", "gantry axes", "joints", "rate in Hz", "interface (1 position, 2 torque)", "lock-step"
+            names = ("device", "gantry axes", "joints", "rate in Hz", "interface (1 position, 2 torque)",
+                     "lock-step")
             expected = text(fields[1]).encode(), *fields[2:7]
             for name, mine, theirs in zip(names, self.device, expected):
                 if mine != theirs:
@@ -382,7 +383,8 @@ class Server:
 
     def off(self):
         zeros = [0.0] * self.options.joints
-        return Command(False, zeros, zeros, zeros, zeros if self.has_torques else [], [0.0] * self.options.axes)
+        tau_m = zeros if self.has_torques else []
+        return Command(False, zeros, zeros, zeros, tau_m, [0.0] * self.options.axes)
 
     def serve(self, robot):
         """One session after the other."""
