@@ -344,11 +344,20 @@ class RealTime(unittest.TestCase):
                 return b"", ("127.0.0.1", 1)
 
         server = driver.Server(driver.read_options(["--listen", "127.0.0.1:0", "--simulated"]), None)
-        with server.socket, unittest.mock.patch("driver.select.select", lambda *_: ([1], [], [])):
+        with server.socket:
             flood, due_s = Flood(), time.monotonic()
-            with unittest.mock.patch.object(server, "socket", flood):
+            with unittest.mock.patch.object(server, "socket", flood), \
+                    unittest.mock.patch("driver.select.select", lambda *_: ([1], [], [])):
                 self.assertIsNone(server.receive(due_s))
             self.assertGreater(flood.reads, 0)
+            with unittest.mock.patch("driver.select.select", lambda *_: ([], [], [])):
+                for _ in range(100):  # nor does a long wait make it deaf
+                    self.assertIsNone(server.receive(due_s))
+            with Raw(server.socket.getsockname()[1]) as raw:
+                raw.send(dc.HELLO, 7, *ARM[:5], 0, b"raw")
+                server.receive(time.monotonic() + 0.5)
+                raw.socket.settimeout(0.0)
+                self.assertEqual(raw.receive(dc.WELCOME)[1], 0)
 
     def test_ctrl_c_is_a_goodbye(self):
         with Driver(*PATIENT) as served:
@@ -424,8 +433,9 @@ exec({example!r}, driver.__dict__)
                 self.assertEqual((sensors["dead_man"], sensors["driver_fault"]), (is_on, fault))
             goodbye(client)
 
-    def test_a_machine_has_neither_lock_step_nor_a_long_time_out(self):
+    def test_options_that_cannot_be_are_refused(self):
         for arguments, reason in ((("--fast",), "a machine keeps its own time"),
+                                  (("--rate-hz", "0"), "100..20000"),
                                   (PATIENT, "a machine is switched off within 0.05 s"),
                                   (("--listen", "nowhere"), "expected HOST:PORT")):
             result = subprocess.run([sys.executable, DRIVER, *arguments], text=True, capture_output=True,

@@ -265,7 +265,8 @@ class Server:
         while True:
             wait_s = max(until_s - time.monotonic(), 0.0)
             self.reads_after_due += wait_s == 0.0
-            is_flood = self.reads_after_due > 64  # what waits is read, but the next period must begin
+            # what waits is read, but the next period must begin
+            is_flood = wait_s == 0.0 and self.reads_after_due > 64
             if is_flood or not select.select([self.socket], [], [], wait_s)[0]:
                 return None
             try:
@@ -398,8 +399,10 @@ class Server:
             kind, reason = DONE, "the server was stopped"
             try:
                 end = (self.lock_step if self.options.fast else self.real_time)(robot)
-                kind, reason = (SILENCE, "no command came in time: drives off, brakes closed") if end is None \
-                    else (None, f"the client left: {text(end[2])}")
+                if end is None:
+                    kind, reason = SILENCE, "no command came in time: drives off, brakes closed"
+                else:
+                    kind, reason = None, f"the client left: {text(end[2])}"
             except Exception as error:
                 reason = f"the driver has failed: {error!r}"
                 raise
@@ -487,6 +490,8 @@ def read_options(arguments):
                         help="time without a command after which the drives go off (not with --fast)")
     parser.add_argument("--key-file", help="the secret that clients must have, too")
     options = parser.parse_args(arguments)
+    if not 100.0 <= options.rate_hz <= 20000.0:
+        parser.error("--rate-hz: expected 100..20000")
     if not options.simulated and not 0.0 < options.timeout_s <= COMMAND_TIMEOUT_S:
         parser.error(f"--timeout-s: a machine is switched off within {COMMAND_TIMEOUT_S} s")
     if options.fast and not options.simulated:
