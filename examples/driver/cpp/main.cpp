@@ -26,12 +26,11 @@ int main(int count, char** arguments) try {
   }
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop = true; });
   const hg::config::DeviceConfig device = hg::config::load_device(arguments[1]);
-  const hg::udp::Description description = {
-      .device = device.name,
-      .n_p = static_cast<std::uint32_t>(device.model.n_p),
-      .n_m = static_cast<std::uint32_t>(device.model.n_m),
-      .rate_Hz = device.model.rate_Hz,
-      .interface = kInterface};
+  const hg::udp::Description description = {.device = device.name,
+                                            .n_p = static_cast<std::uint32_t>(device.model.n_p),
+                                            .n_m = static_cast<std::uint32_t>(device.model.n_m),
+                                            .rate_Hz = device.model.rate_Hz,
+                                            .interface = kInterface};
   hg::udp::DeviceServer server(
       hg::udp::parse_address("HOST:PORT", arguments[2]),
       {.actual = description, .server = "my_driver", .is_simulated = kIsSimulated});
