@@ -10,6 +10,8 @@
 #include <memory>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
@@ -113,6 +115,18 @@ int new_twin(const NewArguments& arguments) {
   return 0;
 }
 
+namespace {
+
+std::string replaced(std::string text, std::string_view from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+}  // namespace
+
 int new_driver(const NewDriverArguments& arguments) {
   const std::string& name = arguments.name;
   const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0 || c == '_'; };
@@ -129,24 +143,22 @@ int new_driver(const NewDriverArguments& arguments) {
   }
   const fs::path folder = name;
   if (fs::exists(folder, error)) throw SetupError(name + ": exists already");
-  std::string device = "DEVICE.yaml", options = "--name NAME --joints 6 --rate-hz 250";
+  std::string device = "DEVICE.yaml", options = "--joints 6 --rate-hz 250";
+  std::vector<std::pair<std::string_view, std::string>> names = {{"my_driver", name}};
   if (!arguments.device.empty()) {
     const config::DeviceConfig config =
         config::load_device(config::find_device(arguments.device, {}));
+    const bool has_torques = config.control.method != tracking::Method::kDrives;
     device = arguments.device;
-    options = fmt::format(
-        "--name {} --joints {} --axes {} --rate-hz {:g}{}", generator::quoted(config.name),
-        config.model.n_m, config.model.n_p, config.model.rate_Hz,
-        config.control.method == tracking::Method::kDrives ? "" : " --interface torque");
+    options =
+        fmt::format("--joints {} --axes {} --rate-hz {:g}{}", config.model.n_m, config.model.n_p,
+                    config.model.rate_Hz, has_torques ? " --interface torque" : "");
+    names.emplace_back("example arm", config.name);
   }
   fs::create_directory(folder);
   for (const fs::directory_entry& entry : fs::directory_iterator(templates)) {
     std::string text = read_file(entry.path());
-    constexpr std::string_view kName = "my_driver";
-    for (std::size_t at = text.find(kName); at != std::string::npos; at = text.find(kName, at)) {
-      text.replace(at, kName.size(), name);
-      at += name.size();
-    }
+    for (const auto& [from, to] : names) text = replaced(text, from, to);
     write_output((folder / entry.path().filename()).string(), text);
   }
   const std::string start =

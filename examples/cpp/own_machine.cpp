@@ -4,7 +4,7 @@
 #include "hg/config/control_cycle.h"
 #include "hg/core/error.h"
 #include "hg/runtime/runtime.h"
-#include "my_robot.h"
+#include "robot.h"
 
 int main(int count, char** arguments) try {
   if (count != 3) return 2;

@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 EXAMPLES = pathlib.Path("examples/cpp").resolve()
+DRIVER = pathlib.Path("examples/driver/cpp").resolve()
 MOVED = re.compile(r"the joints have moved by up to 1\.[4-6][0-9] rad in 2[0-9]{3} cycles")
 DOOR_OPEN = re.compile(r"hinge at 1\.[0-9]+ rad after 10\.6 s")
 
@@ -44,9 +45,9 @@ def run(*command, fails=False):
     return result.stdout
 
 
-def configure(build, *options, **keywords):
+def configure(build, *options, source=EXAMPLES, **keywords):
     shutil.rmtree(build, ignore_errors=True)
-    return run("cmake", "-S", EXAMPLES, "-B", build, "-G", "Ninja", "-Wno-dev", *options, **keywords)
+    return run("cmake", "-S", source, "-B", build, "-G", "Ninja", "-Wno-dev", *options, **keywords)
 
 
 def check(holds, what):
@@ -56,7 +57,7 @@ def check(holds, what):
 
 def main():
     text = pathlib.Path("docs/start/packages.md").read_text()
-    for example in [*EXAMPLES.glob("*.cpp"), *EXAMPLES.glob("*.h")]:
+    for example in [*EXAMPLES.glob("*.cpp"), *DRIVER.glob("*.cpp"), *DRIVER.glob("*.h")]:
         check(example.read_text() in text, f"docs/start/packages.md shows another {example.name}")
 
     tree = pathlib.Path(sys.argv[1]).resolve()
@@ -116,9 +117,12 @@ def main():
     found += re.findall(r"\bhg::config::load_(?:simul|scen|script)[a-z_]*", symbols)
     check(not found, f"own_machine has {found[:3]}")
 
-    # the same machine behind a server, and our program as its controller
+    # the same machine behind a server of its own project, and our program as its controller
+    driver = work / "driver"
+    configure(driver, path, source=DRIVER)
+    run("cmake", "--build", driver)
     arm = models / "examples" / "arm.yaml"
-    server = subprocess.Popen([both / "serve_machine", arm, "127.0.0.1:0"], text=True,
+    server = subprocess.Popen([driver / "my_driver", arm, "127.0.0.1:0"], text=True,
                               stdout=subprocess.PIPE)
     try:
         address = server.stdout.readline().strip()
@@ -128,10 +132,10 @@ def main():
         server.terminate()
     served = server.communicate()[0]
     check(re.search(r"^[0-9]+ periods for hapticgiant", served, re.MULTILINE), f"served: {served}")
-    check(server.returncode == 0, f"serve_machine ended with {server.returncode}")
-    check("limits       all held" in summary, f"run on serve_machine: {summary}")
-    refused = run(both / "serve_machine", arm, "nowhere", fails=True)
-    check("HOST:PORT" in refused, f"serve_machine: {refused}")
+    check(server.returncode == 0, f"my_driver ended with {server.returncode}")
+    check("limits       all held" in summary, f"run on my_driver: {summary}")
+    refused = run(driver / "my_driver", arm, "nowhere", fails=True)
+    check("HOST:PORT" in refused, f"my_driver: {refused}")
 
     # a program for a machine behind a network finds all that it links
     remote = work / "remote"

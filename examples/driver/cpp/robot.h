@@ -1,3 +1,5 @@
+// FILL IN: a machine of one's own. read() and then write() are called once per period. Neither may
+// wait, throw or allocate.
 #pragma once
 
 #include "hg/device/device.h"
@@ -9,16 +11,19 @@ class MyRobot final : public hg::device::Device {
   MyRobot(const hg::VectorM& q, double period_s)
       : q_(q), dq_(hg::VectorM::Zero(q.size())), period_s_(period_s) {}
 
+  // Units: rad (m), rad/s (m/s), N, Nm; signs and zero positions of the joints as in the URDF.
   void read(hg::SensorFrame& sensors) noexcept override {
     sensors.sequence = ++samples_;
     sensors.answered_sequence = answered_;
     sensors.time_s = period_s_ * static_cast<double>(samples_);
-    sensors.q_m = q_;
+    sensors.q_m = q_;  // joints without limits: in [-pi, pi)
     sensors.dq_m = dq_;
     sensors.dead_man = true;  // the hand holds the handle
+    // what the hand does to the handle, at the sensor and in its axes: force, then torque
     sensors.w_S[0] = sensors.time_s > 1.0 && sensors.time_s <= 2.0 ? 10.0 : 0.0;
   }
 
+  // The reference is for the next sample. The last call of a session has `enable` false.
   void write(const hg::CommandFrame& command) noexcept override {
     answered_ = command.sequence;
     hg::VectorM ddq = -1.0 / period_s_ * dq_;  // drives off: the brakes hold
