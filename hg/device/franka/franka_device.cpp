@@ -425,6 +425,7 @@ void FrankaDevice::finish_motion() noexcept {
   } else if (id - phase_since_ == kEndPatience) {
     session_.send(Command::kStopMove, {});
   }
+  if (command_.message_id == id) return;  // a second answer would come too late for its cycle
   if (!has_braked()) return send_speeds(VectorM(VectorM::Zero(kJoints)));
   command_.message_id = id;
   command_.dq_c = {};

@@ -336,6 +336,19 @@ TEST(FrankaDevice, ALateAnswerIsNotSent) {
   EXPECT_EQ(bench.device->counts().sent, sent);
 }
 
+TEST(FrankaDevice, AnswersEachStateOnce) {
+  Bench bench;
+  ASSERT_TRUE(bench.start());
+  std::uint64_t sent = bench.device->counts().sent;
+  const auto has_answered = [&] { return bench.device->counts().sent > sent; };
+  ASSERT_TRUE(bench.cycle_until(has_answered));
+  sent = bench.device->counts().sent;
+  bench.command.enable = false;
+  bench.device->write(bench.command);  // the state has its answer: the end waits for the next one
+  EXPECT_EQ(bench.device->counts().sent, sent);
+  EXPECT_TRUE(bench.cycle_until([&] { return !bench.robot.is_moving(); }));
+}
+
 TEST(FrankaDevice, EndsItsMotionWhenItGoesAndConnectsAgain) {
   Bench bench;
   ASSERT_TRUE(bench.start());
