@@ -7,7 +7,7 @@
 Runs in the environment that franka_test.py makes. The model is made from the numbers of our URDF,
 without meshes; a tool of 0.35 kg is part of it. Its joints start --away from where the drawer is
 held. Without time limits a busy computer does not make it stop for late commands. The hand pulls
-along x of the base for two seconds, pushes back for two, 1.5 s after a motion by torques has begun.
+along x of the base for two seconds, pushes back for two, 1.5 s after a motion has begun.
 With --in-reflex it stands in an old reflex when a client comes. The file of --counts says after a
 motion how many cycles it had and how many were not answered in time.
 """
@@ -93,7 +93,7 @@ def make_simulation(options):
         noise = np.random.default_rng(1)
 
         def pull(self):
-            if self.control_mode != ControlMode.TORQUE:
+            if self.control_mode not in (ControlMode.TORQUE, ControlMode.VELOCITY):
                 self.began = None
                 return np.zeros(3)
             if self.began is None:

@@ -54,6 +54,21 @@ class Franka(unittest.TestCase):
             self.assertEqual(code, 0, said)
 
     @patiently
+    def test_speeds_lead_it_as_well(self):
+        with server("--away", "0.05", TOLERANT) as address:
+            code, said, _ = run(address + "/speeds", 0.5, "--move-to-start")
+            self.assertEqual(code, 0, said)
+        with server("--pull", "12", TOLERANT) as address:
+            code, said, summary = run(address + "/speeds", 6.5)
+            self.assertEqual(code, 0, said)
+            self.assertNotIn("robot in mode", said)  # no reflex, not at its end either
+            happened = [(event["name"], event["what"]) for event in summary["events"]]
+            self.assertEqual(happened, [("slide", "upper limit reached"),
+                                        ("slide", "lower limit reached")], said)
+            self.assertEqual(summary["allocations_in_loop"], 0)
+            self.assertTrue(summary["limits_held"], said)
+
+    @patiently
     def test_it_moves_to_the_start_when_it_is_asked_to(self):
         with server("--away", "0.1", TOLERANT) as address:
             _, said, summary = run(address, 0.5)

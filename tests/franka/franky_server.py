@@ -21,6 +21,9 @@ MASS = float(TOOL["mass"])  # kg
 CENTRE = 0.08  # m behind the flange
 FINGERS, FINGERS_AT = 0.03, 0.0584  # kg, m: of the gripper
 NO_MASS = 1e-3  # kg, franky-sim divides by it
+# of its own joint control; with its own values the last joint shakes by 0.08 rad/s
+STIFFNESS = (*mujoco_simulator.MUJOCO_DEFAULT_KP[:6], 500.0)  # Nm/rad
+DAMPING = (*mujoco_simulator.MUJOCO_DEFAULT_KV[:6], 50.0)  # Nms/rad
 FRAME_TURNED = (0.5, -0.4, 2.5)  # rad, roll, pitch and yaw in the flange
 
 
@@ -94,7 +97,7 @@ def main():
     mujoco_simulator.FrankaMujocoRobot = HeldRobot
     with mujoco_simulator.MujocoSimulator() as sim:
         sim.add_robot(initial_q=options.posture, robot_parameters=RobotParameters(
-            ee_mass=NO_MASS, ee_tcp_rpy=FRAME_TURNED))
+            ee_mass=NO_MASS, ee_tcp_rpy=FRAME_TURNED), kp=STIFFNESS, kv=DAMPING)
         make_tool(sim)
         with SimulationServer(sim, hostname_candidates=["127.0.0.1"]) as server:
             server.run_forever()

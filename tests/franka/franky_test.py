@@ -35,9 +35,16 @@ class Franky(unittest.TestCase):
 
     @patiently
     def test_a_hand_opens_the_door_and_shuts_it(self):
+        self.open_the_door("")
+
+    @patiently
+    def test_and_by_speeds(self):
+        self.open_the_door("/speeds")
+
+    def open_the_door(self, by):
         with franky_sim(FOLDER / "franky_server.py", "--pull", "9", "-9", "--posture",
                         *AT_THE_DOOR) as address:
-            code, said, summary = run(address, 6.5, scenario="open_cupboard")
+            code, said, summary = run(address + by, 6.5, scenario="open_cupboard")
             self.assertEqual(code, 0, said)
             self.assertNotIn("push lightly first", said)  # the weight of the tool was seen
             happened = [(event["name"], event["what"]) for event in summary["events"]]
@@ -50,5 +57,5 @@ class Franky(unittest.TestCase):
             self.assertGreater(link["received"] + link["held"], 6500)  # every cycle is accounted for
             self.assertLessEqual(link["held"], link["lost"])
             self.assertEqual(link["malformed"] + link["foreign"], 0)
-            code, said, _ = run(address, 0.5, scenario="open_cupboard")
+            code, said, _ = run(address + by, 0.5, scenario="open_cupboard")
             self.assertEqual(code, 0, said)

@@ -19,6 +19,8 @@ MOVE, STOP_MOVE, COLLISION, LOAD, RECOVERY = 1, 2, 3, 9, 10
 STARTED, PREEMPTED, REFLEX_ABORTED = 1, 2, 8  # answers to Move
 TORQUES = struct.Struct("<7d")
 TORQUES_AT = FINISHED - TORQUES.size
+SPEEDS = struct.Struct("<7d")
+SPEEDS_AT = 64  # behind number and positions
 STATE_NUMBER = 8  # bytes, the first
 
 
@@ -32,13 +34,18 @@ def libfranka(host, what, **settings):
     return json.loads(done.stdout)
 
 
-def drive(recorder, duration_s):
-    return run(f"franka://{recorder.host}:{PORT}", duration_s)
+def drive(recorder, duration_s, *, by=""):
+    return run(f"franka://{recorder.host}:{PORT}{by}", duration_s)
 
 
 def without_choices(command):
     """A command of a motion without the number of its state and without its torques."""
     return command[STATE_NUMBER:TORQUES_AT] + command[FINISHED:]
+
+
+def without_speeds(command):
+    """A command of a motion without the number of its state and without its speeds."""
+    return command[STATE_NUMBER:SPEEDS_AT] + command[SPEEDS_AT + SPEEDS.size:]
 
 
 def names(errors):
@@ -84,6 +91,22 @@ class Reference(unittest.TestCase):
                          (0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07))
         moved = TORQUES.unpack_from(ours.commands[-1], TORQUES_AT)
         self.assertTrue(any(moved) and max(map(abs, moved)) < 87, moved)
+
+    @patiently
+    def test_sends_the_same_bytes_for_speeds(self):
+        with robot(TOLERANT) as port:
+            with Recorder(port) as ours:
+                code, said, _ = drive(ours, 1, by="/speeds")
+                self.assertEqual(code, 0, said)
+            with Recorder(port) as theirs:
+                self.assertEqual(libfranka(theirs.host, "speeds")["error"], "")
+        self.same(ours, theirs, MOVE)
+        self.assertEqual(self.answers(ours, MOVE), self.answers(theirs, MOVE))
+        forms = {without_speeds(command) for command in ours.commands}
+        self.assertEqual(len(forms), 2)  # on its way, and its end
+        self.assertEqual(forms, {without_speeds(command) for command in theirs.commands})
+        self.assertEqual(SPEEDS.unpack_from(theirs.commands[0], SPEEDS_AT),
+                         (0.001, -0.001, 0.002, -0.002, 0.003, -0.003, 0.001))
 
     @patiently
     def test_a_step_of_torque_ends_in_the_same_error(self):

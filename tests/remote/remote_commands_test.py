@@ -104,6 +104,7 @@ class Commands(unittest.TestCase):
                 (("door", *late, "--device-address", nobody), "7 joints and no gantry"),
                 ((*fci, nobody), "127.0.0.1:1: the robot refuses the connection: activate FCI"),
                 ((*fci, "franka://"), "expected franka://HOST or franka://HOST:PORT"),
+                ((*fci, "franka://host/speed"), "with /speeds, got 'franka://host/speed'"),
                 ((*fci, "franka://host:port"), "--device-address: expected HOST:PORT"),
                 ((*fci, nobody, "--fast"), "a Franka keeps its own time"),
                 ((*fci, nobody, "--seed", "2"), "--seed"),

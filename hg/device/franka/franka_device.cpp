@@ -6,17 +6,20 @@
 #include <cmath>
 
 #include "hg/core/error.h"
+#include "hg/device/franka/velocity.h"
 
 namespace hg::franka {
 namespace {
 
 constexpr std::uint64_t kStartPatience = 1000;  // states until a motion has begun
-constexpr std::uint64_t kEndPatience = 200;     // states until a motion has ended, then StopMove
+constexpr std::uint64_t kEndPatience = 300;     // states until a motion has ended, then StopMove
 constexpr std::uint64_t kOvertaken = 100;       // states that may be older than an answer
 constexpr std::uint64_t kCyclesOfRate = 100;    // over which the robot takes its success rate
 constexpr std::int64_t kLook = 5'000'000;       // ns between looks at the stream
 constexpr double kCloseTime = 0.5;              // s
 constexpr double kLoadTime = 3.0;               // s until enough states show the load
+constexpr double kNoSpeed = 1e-4;               // rad/s
+constexpr double kLittleAcceleration = 3.0;     // rad/s^2, may vanish in one period
 constexpr double kSameMass = 1e-3;              // kg
 constexpr double kGravity = 9.81;               // m/s^2
 
@@ -46,11 +49,6 @@ CollisionRequest request_of(const CollisionThresholds& thresholds) {
           .upper_force_accelerating = thresholds.force,
           .lower_force = thresholds.force,
           .upper_force = thresholds.force};
-}
-
-bool is_driven_by_torques(const RobotState& state) noexcept {
-  return state.controller_mode == kExternalController &&
-         state.motion_generator_mode == kStateWithoutGenerator;
 }
 
 bool is_finite(const CommandFrame& command) noexcept {
@@ -277,7 +275,7 @@ void FrankaDevice::take_answers() noexcept {
 // The phase of the motion by what the robot says of itself.
 void FrankaDevice::follow(const RobotState& state) noexcept {
   const std::uint64_t id = state.message_id;
-  const bool has_motion = is_driven_by_torques(state);
+  const bool has_motion = is_driven(state);
   if (state.robot_mode == RobotMode::kUserStopped) {
     phase_ = Phase::kIdle;
     return;
@@ -353,13 +351,27 @@ void FrankaDevice::write(const CommandFrame& command) noexcept {
     ++own_.late;  // an answer to an older state does not count for the robot
     return;
   }
-  send_torques(command);
+  config_.interface == Interface::kTorques ? send_torques(command) : send_speeds(command);
+}
+
+bool FrankaDevice::is_driven(const RobotState& state) const noexcept {
+  if (config_.interface == Interface::kTorques) {
+    return state.controller_mode == kExternalController &&
+           state.motion_generator_mode == kStateWithoutGenerator;
+  }
+  return state.controller_mode == kJointImpedance &&
+         state.motion_generator_mode == kStateByJointVelocity;
 }
 
 void FrankaDevice::start_motion() noexcept {
   move_status_ = MoveStatus::kSuccess;
   errors_.reset();
-  move_id_ = session_.send(Command::kMove, MoveRequest{});
+  MoveRequest request;
+  if (config_.interface == Interface::kSpeeds) {
+    request.controller_mode = kJointImpedance;
+    request.motion_generator_mode = kMoveByJointVelocity;
+  }
+  move_id_ = session_.send(Command::kMove, request);
   phase_ = Phase::kStarting;
   phase_since_ = state_.message_id;
 }
@@ -368,16 +380,41 @@ void FrankaDevice::send_torques(const CommandFrame& command) noexcept {
   const VectorM wanted = impedance_.torques(command, joints_of(state_.q), joints_of(state_.dq));
   const VectorM tau = rate_limited(wanted, joints_of(state_.tau_J_d));
   if (!tau.allFinite()) return;  // the state was not finite
-  torques_.message_id = state_.message_id;
+  command_.message_id = state_.message_id;
   std::array<double, kJoints> values;
   Eigen::Map<Eigen::Matrix<double, kJoints, 1>>(values.data()) = tau;
-  torques_.tau_J_d = values;
-  torques_.torque_command_finished = 0;
-  session_.send(torques_);
+  command_.tau_J_d = values;
+  command_.torque_command_finished = 0;
+  session_.send(command_);
   ++own_.sent;
 }
 
-// Says that the torques are over until the robot has ended the motion; the robot then holds itself.
+void FrankaDevice::send_speeds(const CommandFrame& command) noexcept {
+  send_speeds(led_speeds(command, joints_of(state_.q)));
+}
+
+void FrankaDevice::send_speeds(const VectorM& wanted) noexcept {
+  const VectorM speeds = limited_speeds(wanted, joints_of(state_.q_d), joints_of(state_.dq_d),
+                                        joints_of(state_.ddq_d));
+  if (!speeds.allFinite()) return;  // the state was not finite
+  command_.message_id = state_.message_id;
+  std::array<double, kJoints> values;
+  Eigen::Map<Eigen::Matrix<double, kJoints, 1>>(values.data()) = speeds;
+  command_.dq_c = values;
+  command_.motion_generation_finished = 0;
+  session_.send(command_);
+  ++own_.sent;
+}
+
+// Whether the joints have come to rest, so that the motion may end.
+bool FrankaDevice::has_braked() const noexcept {
+  return config_.interface == Interface::kTorques ||
+         (joints_of(state_.dq_d).cwiseAbs().maxCoeff() < kNoSpeed &&
+          joints_of(state_.ddq_d).cwiseAbs().maxCoeff() < kLittleAcceleration);
+}
+
+// Brakes, then says that the motion is over until the robot has ended the motion; the robot then
+// holds itself.
 void FrankaDevice::finish_motion() noexcept {
   if (phase_ == Phase::kIdle) return;
   const std::uint64_t id = state_.message_id;
@@ -388,9 +425,13 @@ void FrankaDevice::finish_motion() noexcept {
   } else if (id - phase_since_ == kEndPatience) {
     session_.send(Command::kStopMove, {});
   }
-  torques_.message_id = id;
-  torques_.torque_command_finished = 1;
-  session_.send(torques_);
+  if (command_.message_id == id) return;  // a second answer would come too late for its cycle
+  if (!has_braked()) return send_speeds(VectorM(VectorM::Zero(kJoints)));
+  command_.message_id = id;
+  command_.dq_c = {};
+  const bool has_torques = config_.interface == Interface::kTorques;
+  (has_torques ? command_.torque_command_finished : command_.motion_generation_finished) = 1;
+  session_.send(command_);
   ++own_.sent;
 }
 

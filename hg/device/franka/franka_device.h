@@ -1,4 +1,5 @@
-/// A Franka FR3 as a device: torques through its research interface, the robot is the clock.
+/// A Franka FR3 as a device: torques or speeds through its research interface, the robot is the
+/// clock.
 ///
 /// Set-up (constructor, close()) may block for a bounded time and throw; read() and write() follow
 /// the contract of Device, but read() waits for the next state. The robot moves while commands have
@@ -30,9 +31,16 @@ struct CollisionThresholds {
 inline constexpr CollisionThresholds kLightTouch = {.torque = {20, 20, 18, 18, 16, 14, 12},
                                                     .force = {20, 20, 20, 25, 25, 25}};
 
+/// What leads the joints along the reference of the law.
+enum class Interface {
+  kTorques,  ///< torques of a joint impedance of our own, impedance.h
+  kSpeeds,   ///< speeds for the robot's own joint control, velocity.h
+};
+
 /// Set-up data of a Franka.
 struct FrankaConfig {
   udp::Address address;
+  Interface interface = Interface::kTorques;
   LoadRequest load;    ///< what is screwed onto the flange, the robot subtracts its weight
   std::string flange;  ///< frame F of the chain
   Pose T_F_S;          ///< where the wrench is wanted: S in the flange F
@@ -97,7 +105,11 @@ class FrankaDevice final : public device::ConnectedDevice {
   void finish_motion() noexcept;
   void recover() noexcept;
   void forget_faults() noexcept;
+  bool is_driven(const RobotState& state) const noexcept;
   void send_torques(const CommandFrame& command) noexcept;
+  void send_speeds(const VectorM& wanted) noexcept;
+  void send_speeds(const CommandFrame& command) noexcept;
+  bool has_braked() const noexcept;
 
   FrankaConfig config_;
   Session session_;
@@ -106,7 +118,7 @@ class FrankaDevice final : public device::ConnectedDevice {
   RobotState state_;                   ///< newest state
   Vector6 resting_ = Vector6::Zero();  ///< user's wrench that the robot estimated at rest
   SensorFrame arrived_;                ///< frame that is being filled
-  RobotCommand torques_;
+  RobotCommand command_;
   bool is_started_ = false;     ///< the first frame of the run was read
   std::uint64_t first_id_ = 0;  ///< message_id of the first state of the run
   Phase phase_ = Phase::kIdle;

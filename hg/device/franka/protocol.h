@@ -64,6 +64,10 @@ enum class MoveStatus : std::uint8_t {
 inline constexpr std::uint32_t kExternalController = 2;
 inline constexpr std::uint32_t kMoveWithoutGenerator = 4;
 inline constexpr std::uint8_t kStateWithoutGenerator = 5;
+// and of one that is driven by speeds of the joints, which the robot's own control follows
+inline constexpr std::uint32_t kJointImpedance = 0;
+inline constexpr std::uint32_t kMoveByJointVelocity = 1;
+inline constexpr std::uint8_t kStateByJointVelocity = 2;
 
 /// Index of an error bit that has a fault of its own here.
 inline constexpr int kCommunicationError = 25;

@@ -11,14 +11,22 @@ namespace hg::scenario {
 namespace {
 
 constexpr std::string_view kScheme = "franka://";
+constexpr std::string_view kSpeeds = "/speeds";
 constexpr const char* kShipped = "models/arms/fr3/fci.yaml is such a device: --device fr3/fci";
+
+franka::Interface interface_of(const std::string& text) {
+  return text.ends_with(kSpeeds) ? franka::Interface::kSpeeds : franka::Interface::kTorques;
+}
 
 udp::Address address_of(const std::string& text) {
   std::string host = text.substr(kScheme.size());
+  if (host.ends_with(kSpeeds)) host.resize(host.size() - kSpeeds.size());
   while (host.ends_with('/')) host.pop_back();
-  if (host.empty()) {
-    throw SetupError("--device-address: expected franka://HOST or franka://HOST:PORT, got '" +
-                     text + "'");
+  if (host.empty() || host.find('/') != std::string::npos) {
+    throw SetupError(
+        "--device-address: expected franka://HOST or franka://HOST:PORT, or one of them with "
+        "/speeds, got '" +
+        text + "'");
   }
   if (host.find(':') == std::string::npos) host += std::string(":") + franka::kCommandPort;
   return udp::parse_address("--device-address", host);
@@ -69,6 +77,7 @@ franka::FrankaConfig franka_config(const std::string& address, const config::Sce
   const config::DeviceConfig& device = scenario.device;
   franka::FrankaConfig result;
   result.address = address_of(address);
+  result.interface = interface_of(address);
   check_device(device);
   if (!scenario.faults.empty()) {
     throw SetupError("faults: the device at " + address +

@@ -9,7 +9,8 @@
 
 namespace hg::scenario {
 
-/// Whether an address of --device-address names a Franka: franka://HOST or franka://HOST:PORT.
+/// Whether an address of --device-address names a Franka: franka://HOST or franka://HOST:PORT, with
+/// /speeds behind it where the robot is led by speeds instead of torques.
 bool is_franka(const std::string& address);
 
 /// Set-up data of the Franka of a scenario. Throws SetupError where the scenario's device is none:

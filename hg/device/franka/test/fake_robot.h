@@ -120,6 +120,19 @@ class FakeRobot {
     const std::lock_guard lock(mutex_);
     return largest_step_;
   }
+  /// Largest acceleration and jerk of speeds, rad/s^2 and rad/s^3.
+  double largest_acceleration() {
+    const std::lock_guard lock(mutex_);
+    return largest_acceleration_;
+  }
+  double largest_jerk() {
+    const std::lock_guard lock(mutex_);
+    return largest_jerk_;
+  }
+  double speed(int joint) {
+    const std::lock_guard lock(mutex_);
+    return state_.dq_d[joint];
+  }
   bool is_moving() {
     const std::lock_guard lock(mutex_);
     return state_.robot_mode == RobotMode::kMove;
@@ -165,7 +178,7 @@ class FakeRobot {
     state_.controller_mode = 3;
     const std::array<float, 16> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     state_.T_F_ee = state_.T_ee_K = identity;
-    state_.q = kPosture;
+    state_.q = state_.q_d = kPosture;
     is_connected_ = is_leaving_ = false;
     id_ = 1;
   }
@@ -190,6 +203,7 @@ class FakeRobot {
         return connect(header, body);
       case Command::kMove:
         status = behaviour_.accepts_moves ? 1 : 5;
+        std::memcpy(&move_, body.data(), sizeof move_);
         if (behaviour_.accepts_moves) begin_motion(header.id);
         break;
       case Command::kStopMove:
@@ -241,8 +255,9 @@ class FakeRobot {
   void begin_motion(std::uint32_t id) {
     move_id_ = id;
     state_.robot_mode = RobotMode::kMove;
-    state_.controller_mode = kExternalController;
-    state_.motion_generator_mode = kStateWithoutGenerator;
+    state_.controller_mode = static_cast<std::uint8_t>(move_.controller_mode);
+    // a state counts generators from 1
+    state_.motion_generator_mode = static_cast<std::uint8_t>(move_.motion_generator_mode + 1);
     state_.reflex_reason = {};
     ++motions;
   }
@@ -252,7 +267,7 @@ class FakeRobot {
     state_.robot_mode = mode;
     state_.controller_mode = 3;
     state_.motion_generator_mode = 0;
-    state_.tau_J_d = {};
+    state_.tau_J_d = state_.dq_d = state_.ddq_d = {};
     const auto byte = static_cast<std::uint8_t>(status);
     if (was_moving) answer(Command::kMove, move_id_, std::as_bytes(std::span(&byte, 1)));
   }
@@ -265,6 +280,10 @@ class FakeRobot {
       std::memcpy(&last_, datagram.bytes.data(), sizeof last_);
       ++commands;
       if (state_.robot_mode != RobotMode::kMove) continue;
+      if (move_.controller_mode == kJointImpedance) {
+        follow_speeds();
+        continue;
+      }
       // members of a packed message are not aligned: copied as a whole
       const std::array<double, kJoints> commanded = last_.tau_J_d;
       std::array<float, kJoints> tau_d = state_.tau_J_d;
@@ -276,6 +295,24 @@ class FakeRobot {
       if (behaviour_.yields && last_.torque_command_finished == 0) yield();
       if (last_.torque_command_finished != 0) end_motion(MoveStatus::kSuccess, RobotMode::kIdle);
     }
+  }
+
+  // integrates speeds, and keeps the largest changes from one command to the next
+  void follow_speeds() {
+    const std::array<double, kJoints> speeds = last_.dq_c;
+    std::array<float, kJoints> q = state_.q, speed = state_.dq_d, acceleration = state_.ddq_d;
+    for (int i = 0; i < kJoints; ++i) {
+      const double next = (speeds[i] - speed[i]) / kPeriod_s;
+      largest_acceleration_ = std::max(largest_acceleration_, std::abs(next));
+      largest_jerk_ = std::max(largest_jerk_, std::abs(next - acceleration[i]) / kPeriod_s);
+      speed[i] = static_cast<float>(speeds[i]);
+      acceleration[i] = static_cast<float>(next);
+      q[i] += static_cast<float>(kPeriod_s * speeds[i]);
+    }
+    state_.q = state_.q_d = q;
+    state_.dq = state_.dq_d = speed;
+    state_.ddq_d = acceleration;
+    if (last_.motion_generation_finished != 0) end_motion(MoveStatus::kSuccess, RobotMode::kIdle);
   }
 
   // moves as one that yields to torques as honey does
@@ -310,7 +347,8 @@ class FakeRobot {
   RobotCommand last_;
   LoadRequest load_;
   CollisionRequest collision_;
-  double largest_step_ = 0.0;
+  MoveRequest move_;
+  double largest_step_ = 0.0, largest_acceleration_ = 0.0, largest_jerk_ = 0.0;
   std::uint64_t id_ = 1;
   std::uint32_t move_id_ = 0;
   udp::Peer client_;

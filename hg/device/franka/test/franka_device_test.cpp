@@ -54,10 +54,12 @@ void expect_says(const std::string& text, const std::string& part) {
 
 // A robot, its device, and a controller that holds the posture.
 struct Bench {
-  explicit Bench(const Behaviour& behaviour = {}, double state_timeout_s = kLong)
+  explicit Bench(const Behaviour& behaviour = {}, double state_timeout_s = kLong,
+                 Interface interface = Interface::kTorques)
       : robot(behaviour) {
     FrankaConfig config = config_for(robot);
     config.state_timeout_s = state_timeout_s;
+    config.interface = interface;
     device = std::make_unique<FrankaDevice>(config, arm());
     command.q_m = VectorM::Zero(kJoints);
     command.dq_m = command.ddq_m = command.q_m;
@@ -143,6 +145,37 @@ TEST(FrankaDevice, LimitsTheRateOfTorques) {
   EXPECT_GT(bench.robot.largest_step(), 0.9);
   for (int i = 0; i < 20; ++i) bench.cycle();
   EXPECT_LE(bench.robot.last_torques()[0], 87.0);
+}
+
+TEST(FrankaDevice, LeadsBySpeedsWithinWhatTheRobotAllows) {
+  Bench bench({}, kLong, Interface::kSpeeds);
+  bench.is_led = true;
+  const double goal = 0.1;  // rad, far away for one period
+  bench.command.q_m = VectorM{{goal, 0.028, 0, -2.091, 0, 2.119, 0}};
+  ASSERT_TRUE(bench.start());
+  const AllocationCounter counter;
+  ASSERT_TRUE(bench.cycle_until([&] { return bench.robot.speed(0) > 0.5; }));
+  ASSERT_TRUE(bench.cycle_until([&] { return std::abs(bench.sensors.q_m[0] - goal) < 1e-3; }));
+  EXPECT_EQ(counter.count(), 0U);
+  EXPECT_GT(bench.robot.largest_acceleration(), 5.0);
+  EXPECT_LE(bench.robot.largest_acceleration(), 10.0);
+  EXPECT_LE(bench.robot.largest_jerk(), 5000.0);
+  EXPECT_TRUE(bench.has(FaultCode::kNone));
+}
+
+TEST(FrankaDevice, BrakesBeforeItEndsAMotionBySpeeds) {
+  Bench bench({}, kLong, Interface::kSpeeds);
+  bench.is_led = true;
+  bench.command.q_m = VectorM{{0.5, 0.028, 0, -2.091, 0, 2.119, 0}};
+  ASSERT_TRUE(bench.start());
+  ASSERT_TRUE(bench.cycle_until([&] { return bench.robot.speed(0) > 0.5; }));
+  bench.command.enable = false;
+  ASSERT_TRUE(bench.cycle_until([&] { return !bench.robot.is_moving(); }));
+  EXPECT_LE(bench.robot.largest_acceleration(), 10.0);
+  EXPECT_LE(bench.robot.largest_jerk(), 5000.0);
+  bench.command.enable = true;
+  EXPECT_TRUE(bench.cycle_until([&] { return bench.robot.is_moving(); }));
+  EXPECT_TRUE(bench.has(FaultCode::kNone));
 }
 
 TEST(FrankaDevice, AllocatesNothingInTheLoop) {
@@ -301,6 +334,19 @@ TEST(FrankaDevice, ALateAnswerIsNotSent) {
   bench.device->write(bench.command);
   EXPECT_EQ(bench.device->counts().late, late + 1);
   EXPECT_EQ(bench.device->counts().sent, sent);
+}
+
+TEST(FrankaDevice, AnswersEachStateOnce) {
+  Bench bench;
+  ASSERT_TRUE(bench.start());
+  std::uint64_t sent = bench.device->counts().sent;
+  const auto has_answered = [&] { return bench.device->counts().sent > sent; };
+  ASSERT_TRUE(bench.cycle_until(has_answered));
+  sent = bench.device->counts().sent;
+  bench.command.enable = false;
+  bench.device->write(bench.command);  // the state has its answer: the end waits for the next one
+  EXPECT_EQ(bench.device->counts().sent, sent);
+  EXPECT_TRUE(bench.cycle_until([&] { return !bench.robot.is_moving(); }));
 }
 
 TEST(FrankaDevice, EndsItsMotionWhenItGoesAndConnectsAgain) {
