@@ -101,6 +101,7 @@ int new_twin(const NewArguments& arguments) {
   const generator::TwinDraft draft = generator::draft_twin(arguments.part, output.parent_path(),
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
+  if (!draft.note.empty()) print_out("note        {}\n", draft.note);
   if (!draft.trouble.empty()) {
     print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), draft.trouble,
                 checks::kCuresOfWay);

@@ -41,12 +41,13 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
 struct TwinDraft {
   std::string yaml;
   std::string trouble;
+  std::string note;  ///< What differs from the mechanism of the URDF; empty: nothing
 };
 
 /// A twin.yaml that will stand in `folder`: placed upright where `device` can lead a hand through
-/// most of what the twin's joints can do, if possible with no limit of the device in the way. Takes
-/// seconds; `progress`, if given, is called after each trial with the number of trials and the
-/// most.
+/// most of what the twin's joints can do, if possible with no limit of the device in the way;
+/// heavier than in its URDF where that alone keeps hand and device from shaking. Takes seconds;
+/// `progress`, if given, is called after each trial with the number of trials and the most.
 TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
                      const config::SimulatedDeviceConfig& device,
                      const std::function<void(std::size_t, std::size_t)>& progress = {});

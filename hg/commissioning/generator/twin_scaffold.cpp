@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -38,6 +39,8 @@ struct Mechanism {
   Eigen::VectorXd start;
   Eigen::VectorXd lever;  ///< how far a joint moves the tip at most: m/rad, or 1
 };
+
+constexpr std::array kMassScales = {1.5, 2.0, 3.0, 5.0};  // tried against shaking
 
 struct Placement {
   Pose T_B_root;
@@ -250,7 +253,7 @@ TipRatings tip_ratings(const config::DeviceConfig& device) {
   return ratings;
 }
 
-std::string joint_lines(Mechanism& d, const TipRatings& ratings) {
+std::string joint_lines(Mechanism& d, const TipRatings& ratings, double mass_scale) {
   const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(d.chain.model().nv());
   d.chain.update(d.start, at_rest);
   const Eigen::MatrixXd M = d.chain.M();
@@ -280,14 +283,15 @@ std::string joint_lines(Mechanism& d, const TipRatings& ratings) {
       continue;
     }
     text += fmt::format("    damping_{}: {}  # [A] let go it coasts for about {} s\n",
-                        turns ? "Nms_per_rad" : "Ns_per_m", rounded(M(i, i) / kCoasting),
-                        rounded(kCoasting));
+                        turns ? "Nms_per_rad" : "Ns_per_m",
+                        rounded(mass_scale * M(i, i) / kCoasting), rounded(kCoasting));
   }
   return text;
 }
 
-std::string yaml_of(Mechanism& d, const Placement& placement, const ChainPart& part,
-                    const std::filesystem::path& folder, const config::DeviceConfig& device) {
+std::string yaml_of(Mechanism& d, const Placement& placement, double mass_scale,
+                    const ChainPart& part, const std::filesystem::path& folder,
+                    const config::DeviceConfig& device) {
   return fmt::format(
              "# {} as a twin, from {}, placed for the device {}.\n"
              "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
@@ -299,7 +303,11 @@ std::string yaml_of(Mechanism& d, const Placement& placement, const ChainPart& p
              quoted(d.chain.model().frame_names()[d.end_effector])) +
          placement_line(placement) +
          "gravity: false  # true: the hand carries the weight of the twin\n" +
-         joint_lines(d, tip_ratings(device));
+         (mass_scale == 1.0
+              ? ""
+              : fmt::format("mass_scale: {:g}  # [V] lighter it shakes in a hand on this device\n",
+                            mass_scale)) +
+         joint_lines(d, tip_ratings(device), mass_scale);
 }
 
 // A trial of a draft. The worst is one that cannot begin.
@@ -330,6 +338,13 @@ bool is_better(const checks::Way& a, const checks::Way& b) {
          std::tuple(!b.fault.empty(), b.excess, b.at_limit_s, b.rushed_s);
 }
 
+// Whether nothing but an oscillation of hand and device was in the way.
+bool is_only_shaken(const Trial& trial) {
+  checks::Way calm = trial.way;
+  calm.shaken_s = 0.0;
+  return trial.refusal.empty() && trial.way.shaken_s > 0.0 && checks::trouble_of(calm).empty();
+}
+
 }  // namespace
 
 TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
@@ -346,15 +361,30 @@ TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
   std::size_t trials = 0;
   for (const Placement& placement : placements | std::views::take(most)) {
     const Trial trial =
-        try_out(yaml_of(d, placement, part, beside, device), urdf, urdf_name, device);
+        try_out(yaml_of(d, placement, 1.0, part, beside, device), urdf, urdf_name, device);
     if (progress) progress(++trials, most);
     if (chosen != nullptr && !is_better(trial.way, best.way)) continue;
     chosen = &placement;
     best = trial;
     if (best.trouble().empty()) break;
   }
+  double mass_scale = 1.0;
+  for (const double scale : kMassScales) {
+    if (!is_only_shaken(best)) break;
+    const Trial trial =
+        try_out(yaml_of(d, *chosen, scale, part, beside, device), urdf, urdf_name, device);
+    if (!trial.trouble().empty()) continue;
+    best = trial;
+    mass_scale = scale;
+  }
   if (progress) progress(most, most);
-  return {.yaml = yaml_of(d, *chosen, part, folder, device), .trouble = best.trouble()};
+  return {.yaml = yaml_of(d, *chosen, mass_scale, part, folder, device),
+          .trouble = best.trouble(),
+          .note = mass_scale == 1.0
+                      ? ""
+                      : fmt::format("{:g} times as heavy as in its URDF (mass_scale): lighter it "
+                                    "shakes in a hand on this device",
+                                    mass_scale)};
 }
 
 }  // namespace hg::generator

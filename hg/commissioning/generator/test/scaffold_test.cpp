@@ -131,6 +131,25 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
   }
 }
 
+// A handle at the end of a light bar shakes in a hand on this arm, whose sensor and drives are
+// late.
+TEST(Scaffold, AMechanismThatShakesIsMadeHeavier) {
+  const TemporaryFolder folder;
+  const auto urdf = folder.write("lever.urdf", R"(<robot name="lever"><link name="frame"/>
+    <link name="bar"><inertial><origin xyz="0 0 0.2"/><mass value="1.5"/>
+      <inertia ixx="0.03" iyy="0.03" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="pivot" type="revolute"><parent link="frame"/><child link="bar"/>
+      <axis xyz="1 0 0"/><limit lower="-0.5" upper="0.5" velocity="2" effort="100"/></joint>
+    <link name="handle"/><joint name="grip" type="fixed"><parent link="bar"/><child link="handle"/>
+      <origin xyz="0 0 0.35" rpy="1.5708 0 1.5708"/></joint></robot>)");
+  const auto device = config::load_simulated_device("models/arms/fr3/device.yaml");
+  const TwinDraft draft = draft_twin({urdf, "", ""}, folder.path(), device);
+  EXPECT_EQ(draft.trouble, "");
+  EXPECT_NE(draft.note.find("times as heavy as in its URDF"), std::string::npos) << draft.note;
+  const config::Twin twin = config::load_twin(folder.write("lever.yaml", draft.yaml));
+  EXPECT_GT(twin.model.mass_scale, 1.0);
+}
+
 TEST(Scaffold, AJointWithDynamicsKeepsThem) {
   const TemporaryFolder folder;
   std::string urdf = read_file("models/examples/gate.urdf", 1'000'000);
