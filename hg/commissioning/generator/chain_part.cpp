@@ -42,7 +42,7 @@ std::vector<int> moved_frames(const model::ChainModel& chain, int degrees) {
                          VectorA::Zero(chain.nv()));
   std::vector<int> frames;
   for (std::size_t i = 0; i < chain.frame_names().size(); ++i) {
-    const model::Jacobian J = data.jacobian(static_cast<int>(i));
+    const model::Jacobian& J = data.jacobian(static_cast<int>(i));
     if ((J.colwise().norm().array() > kMoved).count() >= degrees) {
       frames.push_back(static_cast<int>(i));
     }

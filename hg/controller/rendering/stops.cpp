@@ -46,11 +46,10 @@ VectorA row_of(const model::ChainData& chain, const Point& point, const Vector3d
 double rating_along(const TwinNow& twin, const VectorA& row, double rating) noexcept {
   constexpr double kFixed = 1e-12;  // 1/kg
   const auto factor = twin.L.triangularView<Eigen::Lower>();
-  VectorA ddq = row;
-  factor.solveInPlace(ddq);
+  VectorA ddq = factor.solve(row);
   const double mobility = ddq.squaredNorm();
   if (mobility < kFixed) return rating;
-  factor.transpose().solveInPlace(ddq);
+  ddq = factor.transpose().solve(ddq);
   const Vector3d of_E = twin.chain.jacobian(twin.model.end_effector).topRows<3>() * ddq;
   double of_joints = 0.0;
   for (int i = 0; i < row.size(); ++i) {
