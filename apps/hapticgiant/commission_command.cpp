@@ -32,48 +32,57 @@ void print_step(double time_s, const std::string& words) {
 
 }  // namespace
 
-int commission(const MachineOptions& options) {
-  if (scenario::is_franka(options.device_address)) {
+int commission(const CommissionArguments& options) {
+  if (scenario::is_franka(options.machine.device_address)) {
     throw SetupError("commission: a Franka is commissioned by its maker, see Desk");
   }
-  const config::Scenario scenario = make_machine_scenario(options);
+  const config::Scenario scenario = make_machine_scenario(options.machine);
   const std::atomic<bool>& interrupted = watch_interruption();
-  Machine machine = connect_machine(options, scenario, "commission");
-  const std::string file = start_test::commission_file(
-      options.recordings, scenario.device, machine.is_simulated ? "" : options.device_address);
+  Machine machine = connect_machine(options.machine, scenario, "commission");
+  const std::string file =
+      start_test::commission_file(options.machine.recordings, scenario.device,
+                                  machine.is_simulated ? "" : options.machine.device_address);
   check_writable(file);
+  const auto keep = [&](const std::vector<bring_up::Item>& items) {
+    write_output(file, start_test::to_json({.device = scenario.device.name,
+                                            .address = options.machine.device_address,
+                                            .version = kVersion,
+                                            .files_sha256 = start_test::sha256_of(scenario.device),
+                                            .ended = std::time(nullptr),
+                                            .is_simulated = machine.is_simulated,
+                                            .has_passed = start_test::has_passed(items),
+                                            .items = items}));
+  };
+  keep({});  // whatever ends this program: an older result counts no more
 
+  // what a device says of itself is not enough to move it without a person
+  const bool is_alone =
+      machine.remote == nullptr ||
+      (machine.is_simulated && (options.machine.is_fast || options.has_simulated_person));
   std::unique_ptr<bring_up::Crew> crew;
-  if (machine.is_simulated) {
+  if (is_alone) {
     crew = std::make_unique<bring_up::SimulatedCrew>(interrupted, print_step);
   } else {
     crew = std::make_unique<TerminalCrew>(interrupted, print_step);
   }
   const BackgroundOutput output(interrupted);
   print_out(fmt::format("HapticGiant {}  first motions of {}{}\n", kVersion, scenario.device.name,
-                        machine.is_simulated ? ", simulated, with a simulated person" : ""));
-  if (!machine.is_simulated) {
+                        is_alone ? ", simulated, with a simulated person" : ""));
+  if (!is_alone) {
     print_out(
         "keys        space bar, held: the machine may move; y, n: answers; Ctrl-C: drives off\n");
   }
   bring_up::Rig rig(scenario.device, *machine.device, *crew);
-  if (machine.remote != nullptr && !options.is_fast) {
-    runtime::become_real_time({.priority = options.priority});
+  if (machine.remote != nullptr && !options.machine.is_fast) {
+    runtime::become_real_time({.priority = options.machine.priority});
   }
   const std::vector<bring_up::Item> items =
-      bring_up::run(rig, {.falls_silent = machine.remote != nullptr && !options.is_fast &&
-                                          !scenario::is_ethercat(options.device_address)});
+      bring_up::run(rig, {.falls_silent = machine.remote != nullptr && !options.machine.is_fast &&
+                                          !scenario::is_ethercat(options.machine.device_address)});
   if (machine.remote != nullptr) machine.remote->close(FaultCode::kNone);
 
   const bool has_passed = start_test::has_passed(items);
-  write_output(file, start_test::to_json({.device = scenario.device.name,
-                                          .address = options.device_address,
-                                          .version = kVersion,
-                                          .files_sha256 = start_test::sha256_of(scenario.device),
-                                          .ended = std::time(nullptr),
-                                          .is_simulated = machine.is_simulated,
-                                          .has_passed = has_passed,
-                                          .items = items}));
+  keep(items);
   const auto count = [&](Outcome outcome) {
     return std::ranges::count(items, outcome, &bring_up::Item::outcome);
   };
@@ -85,7 +94,7 @@ int commission(const MachineOptions& options) {
 }
 
 void add_commission(CLI::App& app, int& exit_code) {
-  const auto options = std::make_shared<MachineOptions>();
+  const auto options = std::make_shared<CommissionArguments>();
   CLI::App* command =
       app.add_subcommand("commission",
                          "First motions of a new machine: is it connected as its file says? "
@@ -93,8 +102,14 @@ void add_commission(CLI::App& app, int& exit_code) {
   command->footer(
       "Examples:\n"
       "  hapticgiant commission                   the simulated device, with a simulated person\n"
+      "  hapticgiant commission ur5e/open_drawer  the same of another arm: a scenario where it "
+      "stands\n"
       "  hapticgiant commission --device my_arm_device.yaml --device-address 192.168.1.20:4810");
-  add_machine_options(*command, *options);
+  add_machine_options(*command, options->machine);
+  command
+      ->add_flag("--simulated-person", options->has_simulated_person,
+                 "of a remote device that is simulated: no key is held, and nobody is asked")
+      ->needs("--device-address");
   command->callback([options, &exit_code] { exit_code = commission(*options); });
 }
 

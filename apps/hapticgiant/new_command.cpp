@@ -166,7 +166,7 @@ int new_driver(const NewDriverArguments& arguments) {
       arguments.language == "cpp"
           ? fmt::format(
                 "cmake -S {0} -B {0}/build -DCMAKE_PREFIX_PATH=PREFIX && cmake --build "
-                "{0}/build\n  {0}/build/{0} {1} 127.0.0.1:4810",
+                "{0}/build\n  {0}/build/{0} {1} 127.0.0.1:4810 --simulated",
                 name, device)
           : fmt::format("python3 {}/driver.py --simulated {}", name, options);
   print_out(

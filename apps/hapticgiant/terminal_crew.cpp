@@ -11,8 +11,8 @@
 namespace hg::apps {
 namespace {
 
-// A key that is held comes again, first after half a second on most machines.
-constexpr std::int64_t kHeld_ns = 700'000'000;
+// A key that is held comes again: first after half a second on most machines, then quickly.
+constexpr std::int64_t kFirst_ns = 700'000'000, kAgain_ns = 250'000'000;
 
 std::int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -29,6 +29,9 @@ TerminalCrew::TerminalCrew(const std::atomic<bool>& interrupted, Print print)
   }
   termios single = before_;
   single.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  // neither Ctrl-S nor Ctrl-Z may hold up a program whose drives are on
+  single.c_iflag &= ~static_cast<tcflag_t>(IXON);
+  single.c_cc[VSUSP] = _POSIX_VDISABLE;
   tcsetattr(STDIN_FILENO, TCSANOW, &single);
   reader_ = std::thread([this] { read_keys(); });
 }
@@ -41,12 +44,17 @@ TerminalCrew::~TerminalCrew() {
 
 void TerminalCrew::read_keys() {
   constexpr int kLook_ms = 50;
+  std::int64_t last_ns = 0;  // of the space bar
   while (!is_over_) {
     pollfd input = {.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
     if (poll(&input, 1, kLook_ms) <= 0) continue;
     char key = 0;
     if (read(STDIN_FILENO, &key, 1) != 1) return;  // closed: no key is held any more
-    if (key == ' ') held_until_ns_ = now_ns() + kHeld_ns;
+    if (key == ' ') {
+      const std::int64_t now = now_ns();
+      held_until_ns_ = now + (now - last_ns < kAgain_ns ? kAgain_ns : kFirst_ns);
+      last_ns = now;
+    }
     if (key == 'y' || key == 'n') answer_ = key;
   }
 }

@@ -279,10 +279,10 @@ TEST_F(MachineTest, ASimulationIsCommissionedHereAndBehindAWire) {
   const config::Scenario scenario = scenario::load(arguments_.world);
   Machine machine(scenario, true);
   for (const std::string& address : {std::string(), machine.address()}) {
-    apps::MachineOptions options;
-    options.device_address = address;
-    options.is_fast = true;
-    options.recordings = folder_.string();
+    apps::CommissionArguments options;
+    options.machine.device_address = address;
+    options.machine.is_fast = true;
+    options.machine.recordings = folder_.string();
     EXPECT_EQ(apps::commission(options), 0);
     EXPECT_TRUE(std::filesystem::remove(folder_ / "commission_HapticGiant_simulated.json"));
   }
@@ -292,10 +292,10 @@ TEST_F(MachineTest, ASimulationIsCommissionedHereAndBehindAWire) {
 TEST_F(MachineTest, AMachineIsCommissionedOnlyAtATerminal) {
   const config::Scenario scenario = scenario::load(arguments_.world);
   Machine machine(scenario);
-  apps::MachineOptions options;
-  options.device_address = machine.address();
-  options.is_fast = true;
-  options.recordings = folder_.string();
+  apps::CommissionArguments options;
+  options.machine.device_address = machine.address();
+  options.machine.is_fast = true;
+  options.machine.recordings = folder_.string();
   const int terminal = dup(STDIN_FILENO), none = open("/dev/null", O_RDONLY | O_CLOEXEC);
   dup2(none, STDIN_FILENO);
   expect_part(message_of([&] { apps::commission(options); }),

@@ -14,10 +14,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kGravity = 9.81;                     // m/s^2
-constexpr double kGravityRange = 0.5;                 // m/s^2, of the accelerometer at rest
-constexpr double kGravityAngle = 0.052;               // rad: 3 degrees
-constexpr double kWay = 0.08, kSlideWay = 0.02;       // rad, m: one stroke
+constexpr double kGravity = 9.81;                            // m/s^2
+constexpr double kGravityRange = 0.5;                        // m/s^2, of the accelerometer at rest
+constexpr double kGravityAngle = 0.052;                      // rad: 3 degrees
+constexpr double kWay = 0.08, kSlideWay = 0.02;              // rad, m: one stroke
+constexpr double kLeastWay = 0.018, kLeastSlideWay = 0.004;  // shorter ones show nothing
+constexpr double kPeak = 1.875;        // of a minimum-jerk motion, times its mean speed
+constexpr double kSpeedShare = 0.5;    // of the largest speed of a joint
+constexpr double kMarginShare = 0.25;  // of a stroke, kept from the end of a range
+constexpr double kAboveFloor = 0.02;   // m, of the handle
+constexpr double kTouch = 1e-3;        // m, closer than this counts
 constexpr double kStill = 0.002, kSlideStill = 5e-4;  // rad, m: at rest
 constexpr double kApart = 0.05;                       // rad between motor and link encoder at rest
 constexpr double kCounts = 3.0;        // Nm of weight from which a torque sensor is looked at
@@ -39,7 +45,11 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
 class Steps {
  public:
   Steps(Rig& rig, const Options& options)
-      : rig_(rig), options_(options), model_(rig.config().model), chain_(model_.chain) {}
+      : rig_(rig),
+        options_(options),
+        model_(rig.config().model),
+        chain_(model_.chain),
+        shapes_(rig.config().collision.shapes, rig.config().collision.pairs.watched) {}
 
   std::vector<Item> run() {
     step("samples", [&] { return samples(); });
@@ -57,7 +67,7 @@ class Steps {
     step("drives again", [&] { return drives_again(); });
     if (options_.falls_silent) step("silence", [&] { return silence(); });
     step("not seen", [&] { return not_seen(); });
-    if (rig_.is_on() && why_ended_.empty()) rig_.power_off();
+    switch_off();
     return std::move(items_);
   }
 
@@ -77,24 +87,33 @@ class Steps {
         item.outcome = trouble.empty() ? Outcome::kPassed : Outcome::kFailed;
         item.found = trouble.empty() ? found_ : trouble;
       } catch (const Ended& end) {
-        why_ended_ = end.why;
         item.outcome = Outcome::kFailed;
         item.found = end.why;
       }
       is_failed_ = item.outcome == Outcome::kFailed;
-      if (is_failed_ && rig_.is_on() && why_ended_.empty()) rig_.power_off();
+      if (is_failed_) switch_off();
+      if (is_left_out_) item.outcome = Outcome::kUntested;
+      is_left_out_ = false;
       say(fmt::format("{:18} {}{}", name, is_failed_ ? "FAILED: " : "", item.found));
     }
     items_.push_back(std::move(item));
   }
 
-  void place_chain() {
-    const VectorPM q = rig_.positions();
-    chain_.update(q, Eigen::VectorXd::Zero(q.size()));
+  // The rig has switched them off itself where it ends.
+  void switch_off() {
+    try {
+      if (rig_.is_on()) rig_.power_off();
+    } catch (const Ended&) {
+      return;
+    }
   }
 
+  void place(const VectorPM& q) { chain_.update(q, Eigen::VectorXd::Zero(q.size())); }
+  void place_chain() { place(rig_.positions()); }
+
   std::string samples() {
-    constexpr double kSlow = 0.02;  // of the period
+    constexpr double kSlow = 0.02;     // of the period
+    constexpr double kMissing = 0.01;  // of the samples
     std::uint64_t first = 0, last = 0, missing = 0, errors = 0;
     double begin = 0.0, end = 0.0;
     rig_.rest(2.0, [&](const SensorFrame& sensors, const RobotState&) {
@@ -111,6 +130,9 @@ class Steps {
     const double period = (end - begin) / static_cast<double>(last - first);
     found_ = fmt::format("one every {:.3f} ms, {} missing, {} bus errors", 1e3 * period, missing,
                          errors);
+    if (static_cast<double>(missing + errors) > kMissing * static_cast<double>(last - first)) {
+      return found_ + ": cable, network or bus, or a computer that is too busy";
+    }
     if (std::abs(period / rig_.dt() - 1.0) < kSlow) return "";
     return fmt::format("one every {:.3f} ms by the device's clock, expected {:.3f} (rate_Hz)",
                        1e3 * period, 1e3 * rig_.dt());
@@ -135,7 +157,7 @@ class Steps {
     for (int i = 0; i < model_.n_m; ++i) {
       const std::string& name = model_.manipulator_joint(i);
       if (std::abs(speed[i]) > 10.0 * kStill) {
-        return fmt::format("{} stands, and its speed says {:.3f} rad/s", name, speed[i]);
+        return fmt::format("{} stands, and its speed says {:.3f} per second", name, speed[i]);
       }
       const RobotState& robot = rig_.robot();
       if (robot.theta_m.size() <= i) continue;
@@ -166,7 +188,7 @@ class Steps {
             (swapped.empty() ? ", or it is swapped with " : " or ") + model_.manipulator_joint(k);
       }
       return fmt::format(
-          "{} is at {:.3f} rad, outside of its range {:.3f} .. {:.3f}: its zero "
+          "{} is at {:.3f}, outside of its range {:.3f} .. {:.3f}: its zero "
           "position or sign{}; or it stands there",
           model_.manipulator_joint(i), q[i], model_.joint_limits[i].q_min,
           model_.joint_limits[i].q_max, swapped);
@@ -226,8 +248,21 @@ class Steps {
   }
 
   std::string drives() {
-    say("-> keep clear, hand at the emergency stop; HOLD THE KEY: the drives come on and hold");
-    wait_for([&] { return rig_.crew().holds_key(); }, "nobody held the key");
+    say("-> keep clear, hand at the emergency stop; hold the enabling switch, if there is one, and "
+        "HOLD THE KEY: the drives come on and hold");
+    if (std::string trouble = switch_on(); !trouble.empty()) return trouble;
+    return "";
+  }
+
+  // Waits for key and enabling switch; leaves how far joints moved in found_.
+  std::string switch_on() {
+    wait_for(
+        [&] {
+          const SafetyInputs& safety = rig_.sensors().safety;
+          return rig_.crew().holds_key() && safety.operator_enable && !safety.emergency_stop;
+        },
+        rig_.sensors().safety.operator_enable ? "nobody held the key"
+                                              : "nobody held the enabling switch");
     VectorPM moved;
     if (!rig_.power_on(moved)) return trouble_of_hold(moved, model_);
     found_ = fmt::format("on, all joints hold, moved by {:.1f} mrad or mm at most",
@@ -235,35 +270,74 @@ class Steps {
     return "";
   }
 
-  // The way of a stroke: towards the middle of the range, and away from what is close.
+  // The way of a stroke: the longest of some that keep to the ranges, the speed of the joint, the
+  // Cartesian limits, the floor and what is close, first towards the middle; 0: none does.
   double way_of(int joint) {
-    const double length = is_slide(joint) ? kSlideWay : kWay;
     const VectorPM q = rig_.positions();
     Interval range;
+    double length = is_slide(joint) ? kSlideWay : kWay;
     if (joint < model_.n_p) {
       range = model_.gantry_range[joint];
     } else {
       const limits::JointLimits& limits = model_.joint_limits[joint - model_.n_p];
       range = {limits.q_min, limits.q_max};
+      length = std::min(length, kSpeedShare * limits.dq_max * Rig::kDuration / kPeak);
     }
-    const double up = range.ub - q[joint], down = q[joint] - range.lb;
-    double way = up >= down ? length : -length;
-    const collision::CollisionConfig& collision = rig_.config().collision;
-    const collision::Nearest shapes(collision.shapes, collision.pairs.watched);
-    const auto room = [&](double d) {
+    const double margin = kMarginShare * length;
+    const double towards = range.ub - q[joint] >= q[joint] - range.lb ? 1.0 : -1.0;
+    for (const double share : {1.0, 0.5, 0.25}) {
+      for (const double side : {towards, -towards}) {
+        const double way = side * share * length;
+        const double end = q[joint] + way + side * margin;
+        if (end >= range.lb && end <= range.ub && is_free(q, joint, way)) return way;
+      }
+    }
+    return 0.0;
+  }
+
+  // Whether a way comes no closer to anything than it may, or than where it begins.
+  bool is_free(const VectorPM& q, int joint, double way) {
+    constexpr double kSteps = 4.0;
+    place(q);
+    const double from = shapes_.distance(chain_), z_from = chain_.pose(model_.handle).p.z();
+    const std::vector<double> beyond_from = beyond_limits();
+    const double allowed = std::min(from, rig_.config().collision.safe_distance);
+    for (double step = 1.0; step <= kSteps; ++step) {
       VectorPM there = q;
-      there[joint] += d;
-      chain_.update_kinematics(there, Eigen::VectorXd::Zero(there.size()));
-      return shapes.distance(chain_);
-    };
-    if (room(way) < room(0.0) && room(-way) > room(way) && std::min(up, down) > 2.0 * length) {
-      way = -way;
+      there[joint] += way * step / kSteps;
+      place(there);
+      if (shapes_.distance(chain_) < allowed - kTouch) return false;
+      const double z = chain_.pose(model_.handle).p.z();
+      if (z < std::min(z_from, rig_.config().floor_z + kAboveFloor)) return false;
+      const std::vector<double> beyond = beyond_limits();
+      for (std::size_t i = 0; i < beyond.size(); ++i) {
+        if (beyond[i] > std::max(0.0, beyond_from[i]) + kTouch) return false;
+      }
     }
-    return way;
+    return true;
+  }
+
+  // How far each frame with Cartesian limits is beyond them, m; negative inside.
+  std::vector<double> beyond_limits() const {
+    std::vector<double> beyond;
+    for (const CartesianLimit& limit : model_.cartesian_limits) {
+      const Vector3d& p = chain_.pose(limit.frame).p;
+      for (int axis = 0; axis < 3; ++axis) {
+        beyond.push_back(
+            std::max(limit.axes[axis].q_min - p[axis], p[axis] - limit.axes[axis].q_max));
+      }
+    }
+    return beyond;
   }
 
   std::string stroke(int joint) {
     const double way = way_of(joint);
+    if (std::abs(way) < (is_slide(joint) ? kLeastSlideWay : kLeastWay)) {
+      is_left_out_ = true;
+      found_ =
+          "not led: no way is free of its range, the Cartesian limits, the floor or other parts";
+      return "";
+    }
     place_chain();
     const model::ChainData before = chain_;
     const Vector6 J = before.jacobian(model_.handle).col(joint);
@@ -283,6 +357,7 @@ class Steps {
             name_of(model_, joint));
       }
     }
+    say("-> and back; hold the key");
     const Stroke back = rig_.lead(joint, -way);
     place_chain();
     if (std::string trouble = trouble_of(back, model_, chain_); !trouble.empty()) return trouble;
@@ -327,21 +402,20 @@ class Steps {
   }
 
   std::string drives_again() {
-    wait_for([&] { return rig_.crew().holds_key(); }, "nobody held the key");
-    VectorPM moved;
-    if (!rig_.power_on(moved)) return trouble_of_hold(moved, model_);
-    found_ = "on again after they were off";
+    say("-> the drives come on again; HOLD THE KEY");
+    if (std::string trouble = switch_on(); !trouble.empty()) return trouble;
     if (!options_.falls_silent) rig_.power_off();
     return "";
   }
 
   std::string silence() {
-    constexpr double kLongest = 1.0;  // s
+    constexpr double kLongest = 0.2;  // s
+    say("-> keep clear: no command is sent for 0.2 s, and the driver has to switch the drives off");
     const FaultCode fault = rig_.fall_silent(kLongest);
     if (fault == FaultCode::kNone) {
       return fmt::format(
-          "without any command for {:.0f} s it still sends samples: its driver must "
-          "switch the drives off and say so",
+          "without any command for {:.1f} s it still sends samples, or a joint left its place: its "
+          "driver must switch the drives off and say so",
           kLongest);
     }
     if (fault == FaultCode::kDeviceSilent) {
@@ -457,11 +531,12 @@ class Steps {
   Options options_;
   const DeviceModel& model_;
   model::ChainData chain_;
+  collision::Nearest shapes_;
   std::vector<Item> items_;
-  std::string found_, why_ended_;
+  std::string found_;
   AtRest at_rest_;
   Vector6 without_hand_ = Vector6::Zero();
-  bool is_failed_ = false;
+  bool is_failed_ = false, is_left_out_ = false;
 };
 
 }  // namespace

@@ -8,16 +8,15 @@
 namespace hg::bring_up {
 namespace {
 
-constexpr double kHold = 1.0;          // s for which the drives hold before anything is led
-constexpr double kSettle = 0.3;        // s after a stroke
-constexpr double kFade = 0.15;         // s in which a stroke stops when the key is let go of
-constexpr double kPatience = 20.0;     // s without a key until the drives go off
-constexpr double kAstray = 0.03;       // rad, largest distance of a led joint from its reference
-constexpr double kSlideAstray = 0.01;  // m
-constexpr double kStray = 0.015;       // rad, largest motion of any other joint
-constexpr double kSlideStray = 0.004;  // m
-constexpr double kMiddle = 0.15;       // share of a stroke around its middle, where it is fast
-constexpr double kBias = 0.3;          // s in which the gyroscope is read at rest
+constexpr double kHold = 1.0;              // s for which the drives hold before anything is led
+constexpr double kSettle = 0.3;            // s after a stroke
+constexpr double kFade = 0.15;             // s in which a stroke stops when the key is let go of
+constexpr double kPatience = 20.0;         // s without a key until the drives go off
+constexpr double kAstray = 0.015;          // rad, largest distance of a joint from its reference
+constexpr double kSlideAstray = 0.004;     // m
+constexpr std::uint64_t kMostMissing = 4;  // samples in a row, with drives on
+constexpr double kMiddle = 0.15;           // share of a stroke around its middle, where it is fast
+constexpr double kBias = 0.3;              // s in which the gyroscope is read at rest
 
 // Minimum-jerk motion from 0 to 1 at the share t of its duration; derivatives by t.
 struct Ramp {
@@ -64,6 +63,10 @@ void Rig::exchange(bool is_on) {
     end(std::string(to_string(fault.code)));
   }
   if (crew_.wants_to_end()) end("interrupted");
+  if (is_on && sensors_.sequence > last_sequence_ + kMostMissing) {
+    end(fmt::format("{} samples in a row are missing", sensors_.sequence - last_sequence_ - 1));
+  }
+  last_sequence_ = sensors_.sequence;
   const SafetyInputs& safety = sensors_.safety;
   if (is_on && (safety.emergency_stop || !safety.operator_enable || safety.has_disagreement)) {
     end(safety.emergency_stop     ? "the emergency stop was pressed"
@@ -72,6 +75,10 @@ void Rig::exchange(bool is_on) {
   }
   robot_ = estimation_.step(sensors_, dq_p_, next_.ddq_m, estimation_state_);
   control_.listen(sensors_, was_on_, control_state_);
+  if (is_on && was_on_) {
+    const Fault late = control_.check_latency(sensors_, control_state_);
+    if (late.code != FaultCode::kNone) end(std::string(to_string(late.code)));
+  }
   command_.sequence = sensors_.sequence;
   const VectorM q_before = command_.q_m, tau_before = command_.tau_m;
   command_.enable = is_on;
@@ -110,20 +117,26 @@ void Rig::rest(double duration_s, const Look& look) {
   }
 }
 
-// Whether a joint other than `joint` has left its place, or that one its reference.
-bool Rig::is_astray(const VectorPM& from, int joint) const {
-  const DeviceModel& model = config_.model;
-  const VectorPM reference = stacked(q_p_reference_, now_.q_m);
-  const VectorPM q = positions();
-  for (int i = 0; i < q.size(); ++i) {
-    const bool is_slide = model.chain.joints()[i].is_slide();
-    if (i == joint) {
-      if (std::abs(q[i] - reference[i]) > (is_slide ? kSlideAstray : kAstray)) return true;
-    } else if (std::abs(q[i] - from[i]) > (is_slide ? kSlideStray : kStray)) {
-      return true;
-    }
+// First joint that has left its reference, `joint` before all others; -1: none.
+int Rig::astray(int joint) const {
+  const VectorPM away = (positions() - reference()).cwiseAbs();
+  const auto is_away = [&](int i) {
+    return away[i] > (config_.model.chain.joints()[i].is_slide() ? kSlideAstray : kAstray);
+  };
+  if (joint >= 0 && is_away(joint)) return joint;
+  for (int i = 0; i < away.size(); ++i) {
+    if (is_away(i)) return i;
   }
-  return false;
+  return -1;
+}
+
+// A period with drives on. They go off where nobody has held the key for long.
+void Rig::exchange_on() {
+  exchange(true);
+  without_key_s_ = crew_.holds_key() ? 0.0 : without_key_s_ + dt();
+  if (without_key_s_ <= kPatience) return;
+  power_off();
+  throw Ended{"the key was let go of"};
 }
 
 bool Rig::power_on(VectorPM& moved) {
@@ -140,11 +153,16 @@ bool Rig::power_on(VectorPM& moved) {
   }
   exchange(false);
   const VectorPM from = positions();
+  without_key_s_ = 0.0;
   const auto periods = static_cast<int>(std::lround(kHold / dt()));
   for (int k = 0; k < periods; ++k) {
-    exchange(true);
+    exchange_on();
     moved = positions() - from;
-    if (!is_astray(from, -1)) continue;
+    if (!crew_.holds_key()) {
+      power_off();
+      throw Ended{"the key was let go of while the drives came on"};
+    }
+    if (astray(-1) < 0) continue;
     power_off();
     return false;
   }
@@ -159,16 +177,29 @@ void Rig::power_off() {
 void Rig::hold(double duration_s) {
   dq_p_.setZero();
   const auto periods = static_cast<int>(std::lround(duration_s / dt()));
-  for (int k = 0; k < periods; ++k) exchange(true);
+  for (int k = 0; k < periods; ++k) {
+    exchange_on();
+    const int joint = astray(-1);
+    if (joint < 0) continue;
+    power_off();
+    throw Ended{name_of(config_.model, joint) + " left its place while all joints were held"};
+  }
 }
 
 FaultCode Rig::fall_silent(double duration_s) {
   const auto periods = static_cast<int>(std::lround(duration_s / dt()));
   for (int k = 0; k < periods; ++k) {
     machine_.read(sensors_);
-    if (sensors_.driver_fault == FaultCode::kNone) continue;
-    was_on_ = false;
-    return sensors_.driver_fault;
+    if (sensors_.driver_fault != FaultCode::kNone) {
+      was_on_ = false;
+      return sensors_.driver_fault;
+    }
+    robot_ = estimation_.step(sensors_, dq_p_, next_.ddq_m, estimation_state_);
+    const SafetyInputs& safety = sensors_.safety;
+    if (astray(-1) >= 0 || crew_.wants_to_end() || safety.emergency_stop ||
+        !safety.operator_enable) {
+      break;
+    }
   }
   command_.sequence = sensors_.sequence;
   disable(command_);
@@ -178,30 +209,25 @@ FaultCode Rig::fall_silent(double duration_s) {
 }
 
 Stroke Rig::lead(int joint, double way) {
-  const DeviceModel& model = config_.model;
-  const int n_p = model.n_p;
+  const int n_p = config_.model.n_p;
   const ReferenceState start = next_;
-  Stroke stroke = {.joint = joint, .by_speed = VectorM::Zero(model.n_m)};
+  Stroke stroke = {.joint = joint, .by_speed = VectorM::Zero(config_.model.n_m)};
   stroke.has_gyroscope = required_.has_imu;
-  Eigen::Vector3d bias = Eigen::Vector3d::Zero();
+  // what gyroscope and speeds read at rest
+  Eigen::Vector3d turn_bias = Eigen::Vector3d::Zero();
+  VectorM speed_bias = VectorM::Zero(config_.model.n_m);
   const auto still = static_cast<int>(std::lround(kBias / dt()));
   for (int k = 0; k < still; ++k) {
-    exchange(true);
-    bias += sensors_.omega_S / still;
+    hold(dt());
+    turn_bias += sensors_.omega_S / still;
+    speed_bias += sensors_.dq_m / still;
   }
   const VectorPM from = positions();
   const VectorM motors_from = robot_.theta_m;
-  double t = 0.0, pace = 0.0, without_key = 0.0, lag = 0.0, torque = 0.0;
+  double t = 0.0, pace = 0.0, lag = 0.0, torque = 0.0;
   int in_the_middle = 0;
-  const double settled = kDuration + kSettle;
-  while (t < settled) {
-    const bool is_held = crew_.holds_key();
-    pace = std::clamp(pace + (is_held ? dt() : -dt()) / kFade, 0.0, 1.0);
-    without_key = is_held ? 0.0 : without_key + dt();
-    if (without_key > kPatience) {
-      power_off();
-      throw Ended{"the key was let go of"};
-    }
+  while (t < kDuration + kSettle) {
+    pace = std::clamp(pace + (crew_.holds_key() ? dt() : -dt()) / kFade, 0.0, 1.0);
     const Ramp at = ramp(std::min(t / kDuration, 1.0));
     const double scale = pace / kDuration;
     t += pace * dt();
@@ -217,22 +243,23 @@ Stroke Rig::lead(int joint, double way) {
       next_.dq_m[i] = way * then.velocity * scale;
       next_.ddq_m[i] = way * then.acceleration * scale * scale;
     }
-    exchange(true);
+    exchange_on();
     stroke.way = way * at.position;
     stroke.moved = positions() - from;
     if (robot_.theta_m.size() > 0) stroke.motors = robot_.theta_m - motors_from;
-    stroke.by_speed += dt() * sensors_.dq_m;
-    stroke.turned += dt() * (sensors_.omega_S - bias);
-    lag += dt() * (stroke.way - stroke.moved[joint]);
+    if (pace > 0.0) {
+      stroke.by_speed += dt() * (sensors_.dq_m - speed_bias);
+      stroke.turned += dt() * (sensors_.omega_S - turn_bias);
+      lag += dt() * (stroke.way - stroke.moved[joint]);
+    }
     if (joint >= n_p && command_.tau_m.size() > 0 && std::abs(t / kDuration - 0.5) < kMiddle) {
       torque += command_.tau_m[joint - n_p];
       ++in_the_middle;
     }
-    if (is_astray(from, joint)) {
-      power_off();
-      stroke.is_cut = true;
-      return stroke;
-    }
+    if (astray(joint) < 0) continue;
+    power_off();
+    stroke.is_cut = true;
+    return stroke;
   }
   if (in_the_middle > 0) stroke.torque = torque / in_the_middle;
   stroke.late = lag / way;

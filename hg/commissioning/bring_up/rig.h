@@ -58,20 +58,22 @@ class Rig {
   /// Waits with the drives off. Throws Ended, as all that follow.
   void rest(double duration_s, const Look& look = {});
 
-  /// Switches the drives on, which hold all joints and axes for a second. False: one of them left
-  /// its place, the drives are off, and `moved` says by how much.
+  /// Switches the drives on while the key is held; they hold all joints and axes for a second.
+  /// False: one of them left its place, the drives are off, and `moved` says by how much.
   bool power_on(VectorPM& moved);
   void power_off();
-  /// Holds all joints for a while, with the drives on.
+  /// Holds all joints for a while, with the drives on. Throws Ended, with the drives off, where one
+  /// leaves its place.
   void hold(double duration_s);
   bool is_on() const { return was_on_; }
 
   /// Leads a joint by `way` (rad or m) while the drives are on and the key is held. A key that is
-  /// let go of stops the motion, which goes on with the key.
+  /// let go of stops the motion, which goes on with the key; after 20 s the drives go off.
   Stroke lead(int joint, double way);
 
   /// Sends nothing while the drives hold, as a controller that has died. Fault that then came from
-  /// the machine; kNone: it still sent samples after `duration_s`, and got a last command.
+  /// the machine; kNone: it still sent samples after `duration_s`, or a joint left its place or
+  /// somebody wanted the end before, and it got a last command.
   FaultCode fall_silent(double duration_s);
 
   const SensorFrame& sensors() const { return sensors_; }
@@ -86,8 +88,10 @@ class Rig {
 
  private:
   void exchange(bool is_on);
+  void exchange_on();
   Pose handle();
-  bool is_astray(const VectorPM& from, int joint) const;
+  int astray(int joint) const;
+  VectorPM reference() const { return stacked(q_p_reference_, now_.q_m); }
 
   const config::DeviceConfig& config_;
   device::Device& machine_;
@@ -105,7 +109,9 @@ class Rig {
   ReferenceState now_, next_;  ///< references of this sample and of the next one
   VectorP dq_p_;               ///< gantry command
   VectorP q_p_reference_;
-  bool was_on_ = false, has_read_ = false;
+  bool was_on_ = false;
+  std::uint64_t last_sequence_ = 0;  ///< 0: nothing was read yet
+  double without_key_s_ = 0.0;       ///< with drives on
 };
 
 }  // namespace hg::bring_up

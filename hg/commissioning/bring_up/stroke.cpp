@@ -166,7 +166,8 @@ std::string trouble_of(const Stroke& stroke, const DeviceModel& device,
     const std::string turn = trouble_of_turn(stroke, device, chain);
     if (!turn.empty()) return turn;
   }
-  if (stroke.is_cut) return fmt::format("{} does not follow its command", name);
+  if (stroke.is_cut)
+    return fmt::format("{} does not follow its command, or its drive is not on yet", name);
   return "";
 }
 
