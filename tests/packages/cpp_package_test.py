@@ -122,7 +122,7 @@ def main():
     configure(driver, path, source=DRIVER)
     run("cmake", "--build", driver)
     arm = models / "examples" / "arm.yaml"
-    server = subprocess.Popen([driver / "my_driver", arm, "127.0.0.1:0"], text=True,
+    server = subprocess.Popen([driver / "my_driver", arm, "127.0.0.1:0", "--simulated"], text=True,
                               stdout=subprocess.PIPE)
     try:
         address = server.stdout.readline().strip()

@@ -1,7 +1,9 @@
-// A machine of one's own for controllers elsewhere. Arguments: its device.yaml, and HOST:PORT.
+// A machine of one's own for controllers elsewhere. Arguments: its device.yaml, HOST:PORT, and
+// --simulated where no machine moves: then no start test is asked for.
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 
 #include "hg/config/device.h"
 #include "hg/core/error.h"
@@ -10,18 +12,17 @@
 
 namespace {
 
-// FILL IN. kTorque: the drives take torques. Simulated: no machine moves, so no start test is asked
-// for. Say false for a machine, whose brakes and stop inputs have to be tried before a run.
+// FILL IN. kTorque: the drives take torques.
 constexpr hg::udp::Interface kInterface = hg::udp::Interface::kPosition;
-constexpr bool kIsSimulated = true;
 
 std::atomic<bool> stop{false};
 
 }  // namespace
 
 int main(int count, char** arguments) try {
-  if (count != 3) {
-    std::fprintf(stderr, "usage: %s DEVICE.yaml HOST:PORT\n", arguments[0]);
+  const bool is_simulated = count == 4 && std::strcmp(arguments[3], "--simulated") == 0;
+  if (count != 3 && !is_simulated) {
+    std::fprintf(stderr, "usage: %s DEVICE.yaml HOST:PORT [--simulated]\n", arguments[0]);
     return 2;
   }
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop = true; });
@@ -33,7 +34,7 @@ int main(int count, char** arguments) try {
                                             .interface = kInterface};
   hg::udp::DeviceServer server(
       hg::udp::parse_address("HOST:PORT", arguments[2]),
-      {.actual = description, .server = "my_driver", .is_simulated = kIsSimulated});
+      {.actual = description, .server = "my_driver", .is_simulated = is_simulated});
   std::printf("%s\n", server.address().c_str());
   std::fflush(stdout);
   // FILL IN: the constructor of yours. The stand-in of six joints begins at these positions, rad.

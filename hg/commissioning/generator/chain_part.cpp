@@ -53,11 +53,14 @@ std::vector<int> moved_frames(const model::ChainModel& chain, int degrees) {
 }  // namespace
 
 int held_frame(const model::ChainModel& chain, int degrees) {
-  constexpr std::array<const char*, 6> kHints = {"handle", "tcp", "tool", "ee", "grip", "hand"};
+  constexpr std::array kHints = {"handle", "tcp",  "tool", "end_effector", "endeffector",
+                                 "ee",     "grip", "hand", "flange"};
   const std::vector<int> frames = moved_frames(chain, degrees);
   for (const char* hint : kHints) {
     for (const int frame : std::views::reverse(frames)) {
-      if (is_named(chain.frame_names()[frame], hint)) return frame;
+      std::string name = chain.frame_names()[frame];
+      std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+      if (is_named(name, hint)) return frame;
     }
   }
   return frames.empty() ? -1 : frames.back();

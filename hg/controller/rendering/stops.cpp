@@ -40,21 +40,45 @@ VectorA row_of(const model::ChainData& chain, const Point& point, const Vector3d
   return J.topRows<3>().transpose() * n + J.bottomRows<3>().transpose() * point.lever.cross(n);
 }
 
-// The acceleration along `row` with which a point brakes when a force pushes it, so that the end
-// effector keeps to `rating`, and with which all joints together can. A joint at its limit leaves
-// the rest to the others.
-double rating_along(const TwinNow& twin, const VectorA& row, double rating) noexcept {
+// The acceleration along `row` with which all joints together brake a point that approaches with
+// `speed`. A joint without ends can do all that it can; another one takes away its own part of the
+// speed, since it may stand at its end before the point stands.
+double rating_of_joints(const TwinNow& twin, const VectorA& row, double speed) noexcept {
+  constexpr int kRounds = 4;  // the time to the stop and the help depend on each other
+  double rating = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    const double time = round > 0 && speed > 0.0 ? speed / rating : 0.0;
+    rating = 0.0;
+    for (int i = 0; i < row.size(); ++i) {
+      if (row[i] == 0.0) continue;
+      double help = twin.ddq_max[i];
+      const bool has_ends = twin.model.dofs[i].limits.q_min > -kInfinity ||
+                            twin.model.dofs[i].limits.q_max < kInfinity;
+      if (has_ends && speed > 0.0) {
+        const double own = row[i] > 0.0 ? -twin.dq[i] : twin.dq[i];  // towards the surface
+        if (own <= 0.0) continue;
+        if (time > 0.0) help = std::min(help, own / time);
+      }
+      rating += std::abs(row[i]) * help;
+    }
+    if (!(rating > 0.0 && rating < kInfinity)) break;
+  }
+  return rating;
+}
+
+// The acceleration along `row` with which a point that approaches with `speed` brakes when a force
+// pushes it, so that the end effector keeps to `rating`, and with which all joints together can. A
+// joint at its limit leaves the rest to the others.
+double rating_along(const TwinNow& twin, const VectorA& row, double speed, double rating) noexcept {
   constexpr double kFixed = 1e-12;  // 1/kg
+  constexpr double kLeast = 1e-3;   // m/s^2, where no joint can help
   const auto factor = twin.L.triangularView<Eigen::Lower>();
   VectorA ddq = factor.solve(row);
   const double mobility = ddq.squaredNorm();
   if (mobility < kFixed) return rating;
   ddq = factor.transpose().solve(ddq);
   const Vector3d of_E = twin.chain.jacobian(twin.model.end_effector).topRows<3>() * ddq;
-  double of_joints = 0.0;
-  for (int i = 0; i < row.size(); ++i) {
-    if (row[i] != 0.0) of_joints += std::abs(row[i]) * twin.ddq_max[i];
-  }
+  const double of_joints = std::max(kLeast, rating_of_joints(twin, row, speed));
   return std::min(rating * mobility / std::max(mobility, of_E.cwiseAbs().maxCoeff()), of_joints);
 }
 
@@ -68,7 +92,8 @@ double rating_of(const TwinNow& twin, const Point& point, double rating) noexcep
     const Vector3d along = J.col(i).head<3>() + Vector3d(J.col(i).tail<3>()).cross(point.lever);
     way += along.norm() * twin.dq[i] * twin.dq[i] / (2.0 * twin.ddq_max[i]);
   }
-  const double of_E = rating_along(twin, row_of(twin.chain, point, point.v / speed), rating);
+  const double of_E =
+      rating_along(twin, row_of(twin.chain, point, -point.v / speed), speed, rating);
   return 1.0 / std::max(1.0 / of_E, 2.0 * way / (speed * speed));
 }
 
@@ -82,7 +107,7 @@ Stop stop_of(const TwinNow& twin, const Point& point, const surfaces::Facing& fa
           .speed = n.dot(point.v),
           .row = row,
           .bias = n.dot(point.bias),
-          .rating = rating_along(twin, row, rating)};
+          .rating = rating_along(twin, row, -n.dot(point.v), rating)};
 }
 
 }  // namespace

@@ -241,33 +241,58 @@ constexpr const char* kTwoSlides = R"(<robot name="slides"><link name="base"/>
   <joint name="to_y" type="prismatic"><parent link="x"/><child link="y"/>
     <axis xyz="0 1 0"/><limit lower="-9" upper="9" effort="0" velocity="9"/></joint></robot>)";
 
-// Two slides that brake with 0.1 and 10 m/s^2, moving along the second at 1 m/s, before a wall at
-// 45 degrees: the second one can brake in time alone.
-TEST(StopSurface, AJointThatBrakesHardHelpsOneThatHardlyBrakes) {
-  constexpr double kAhead = 0.3;  // along the wall's normal, m
-  TwinModel twin = unlimited_twin(
-      model::ChainModel::from_urdf_text(kTwoSlides, "slides.urdf", {.gravity = false}), "y");
-  twin.dofs[0].limits.ddq_max = 0.1;
-  twin.dofs[1].limits.ddq_max = 10.0;
-  const Vector3d normal = Vector3d(-1.0, -1.0, 0.0).normalized();
-  Surface wall = stop(surfaces::Plane{}, -kAhead * normal);
+// The end effector of two slides, pushed along the second one with `push` (N) up to 1.5 m/s, before
+// a wall whose normal has this angle to x (rad), `ahead` of it: how far it comes in, m.
+double depth_of_slides(const TwinModel& twin, double angle, double ahead, double dq, double push) {
+  const Vector3d normal(std::cos(angle), std::sin(angle), 0.0);
+  const Vector3d at(twin.q_start[0], twin.q_start[1], 0.0);
+  Surface wall = stop(surfaces::Plane{}, at - ahead * normal);
   wall.pose.R = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal).matrix();
   Rendering rendering(device_with(10.0), twin, without_synchronisation(),
                       surfaces::Environment({wall}, kDt, {kMass, kMass}));
   RenderingState state = rendering.start(kPosture);
-  state.twin.dq_a[1] = 1.0;
+  state.twin.dq_a[1] = dq;
   LawResult result;
   double deepest = -kInfinity;
   for (int k = 0; k < 3000; ++k) {
     state.reference = {kPosture, VectorM::Zero(6), VectorM::Zero(6)};
-    const RobotState robot = robot_with(kGantryAtHome, kPosture, 10.0 * Vector6::Unit(1));
-    ASSERT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    const double left = state.twin.dq_a[1] < 1.5 ? push : 0.0;
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, left * Vector6::Unit(1));
+    EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
     rendering.integrate(state);
-    const Vector3d p = {state.twin.q_a[0], state.twin.q_a[1], 0.0};
-    deepest = std::max(deepest, -normal.dot(p) - kAhead);
+    const Vector3d p(state.twin.q_a[0], state.twin.q_a[1], 0.0);
+    deepest = std::max(deepest, -normal.dot(p - at) - ahead);
   }
-  EXPECT_LT(deepest, 1e-4);
-  EXPECT_GT(deepest, -1e-3);
+  return deepest;
+}
+
+TwinModel two_slides(double x_brakes, double y_brakes) {
+  TwinModel twin = unlimited_twin(
+      model::ChainModel::from_urdf_text(kTwoSlides, "slides.urdf", {.gravity = false}), "y");
+  twin.dofs[0].limits.ddq_max = x_brakes;
+  twin.dofs[1].limits.ddq_max = y_brakes;
+  return twin;
+}
+
+// Slides that brake with 0.1 and 10 m/s^2, moving along the second at 1 m/s: it can brake in time
+// alone.
+TEST(StopSurface, AJointThatBrakesHardHelpsOneThatHardlyBrakes) {
+  const double depth = depth_of_slides(two_slides(0.1, 10.0), -0.75 * M_PI, 0.3, 1.0, 10.0);
+  EXPECT_LT(depth, 1e-4);
+  EXPECT_GT(depth, -1e-3);
+}
+
+// The first slide would have to move beyond its end to help.
+TEST(StopSurface, AJointAtItsEndDoesNotHelp) {
+  for (const double y_brakes : {3.0, 2.0, 1.0}) {
+    TwinModel twin = two_slides(3.0, y_brakes);
+    twin.dofs[0].limits.q_min = 0.0;
+    twin.dofs[0].limits.q_max = 5.0;
+    for (const double degrees : {-112.0, -135.0, -157.0}) {
+      EXPECT_LT(depth_of_slides(twin, degrees / 180.0 * M_PI, 0.9, 0.0, 20.0), 1e-3)
+          << y_brakes << " " << degrees;
+    }
+  }
 }
 
 // A free body that carries a sphere beside its end effector, above a floor that is a stop.
