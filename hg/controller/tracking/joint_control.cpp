@@ -112,7 +112,8 @@ void JointControl::restart(ControlState& state) const noexcept {
 void JointControl::listen(const SensorFrame& sensors, bool on, ControlState& state) const noexcept {
   const double age = age_of(sensors);
   if (on) {
-    if (state.answers == 0) return;  // drives that follow positions need not answer
+    // drives that follow positions need not answer, and may be on before their latency is known
+    if (state.answers < kAnswersNeeded) return;
     const bool is_late = age < 0.0 || age > state.latency + kLatencyMargin;
     state.late = std::max(0, state.late + (is_late ? 1 : -1));
     return;

@@ -456,6 +456,20 @@ TEST(Latency, WithoutAnAnswerItIsWhatTheConfigurationExpects) {
   EXPECT_DOUBLE_EQ(state.poles.w0, poles_for({}, 2.5e-3).w0);
 }
 
+// Drives that follow positions may be on after a few samples: the mean still is what was expected.
+TEST(Latency, IsNotJudgedBeforeItIsKnown) {
+  JointControl control = control_of(reference_config());
+  ControlState state = control.start();
+  std::uint64_t k = 10;
+  for (; k < 20; ++k) control.listen(answered(k, 3), false, state);
+  for (; k < 120; ++k) control.listen(answered(k, 3), true, state);
+  EXPECT_EQ(control.link_disturbance(answered(k, 3), state).code, FaultCode::kNone);
+  // known, it is: answers that come later than it are
+  for (; k < 1120; ++k) control.listen(answered(k, 3), false, state);
+  for (; k < 1220; ++k) control.listen(answered(k, 6), true, state);
+  EXPECT_EQ(control.link_disturbance(answered(k, 6), state).code, FaultCode::kLatencyGrew);
+}
+
 TEST(Latency, ChangesNothingWhileTheDrivesAreOn) {
   JointControl control = control_of(reference_config());
   ControlState state = control.start();
