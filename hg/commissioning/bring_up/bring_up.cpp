@@ -37,10 +37,6 @@ constexpr double kWait = 60.0;                 // s for a person
 constexpr double kSees = 0.004;                // m that a person sees
 constexpr double kLooks = 0.2;                 // s between two looks at a person's answer
 
-double angle_between(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 // Runs one step after the other and keeps their outcomes.
 class Steps {
  public:
@@ -250,8 +246,7 @@ class Steps {
   std::string drives() {
     say("-> keep clear, hand at the emergency stop; hold the enabling switch, if there is one, and "
         "HOLD THE KEY: the drives come on and hold");
-    if (std::string trouble = switch_on(); !trouble.empty()) return trouble;
-    return "";
+    return switch_on();
   }
 
   // Waits for key and enabling switch; leaves how far joints moved in found_.

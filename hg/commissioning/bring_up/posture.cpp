@@ -17,10 +17,6 @@ constexpr double kTorqueRatio = 0.25;  // of the weight by which it may be wrong
 constexpr double kStep = 0.01;         // rad, of the search for a joint's true position
 constexpr double kParallel = 0.17;     // rad between axes that count as parallel
 
-double angle_between(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 double misfit_at(const AtRest& measured, const VectorPM& q, const DeviceModel& device,
                  model::ChainData& chain) {
   chain.update_poses(q);

@@ -18,10 +18,6 @@ constexpr double kAxisAngle = 0.087;  // rad, largest deviation of an axis: 5 de
 constexpr double kZeroStep = 0.01;    // rad, step of the search for a zero position
 constexpr double kZeroFits = 0.035;   // rad, below which a zero position explains an axis
 
-double angle_between(const Vector3d& a, const Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 std::string unit_of(const DeviceModel& device, int joint) {
   return device.chain.joints()[joint].is_slide() ? "mm" : "mrad";
 }
@@ -95,6 +91,10 @@ std::string trouble_of_turn(const Stroke& stroke, const DeviceModel& device,
 
 const std::string& name_of(const DeviceModel& device, int joint) {
   return device.chain.joints()[joint].name;
+}
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 double friction_of(const Stroke& there, const Stroke& back) {

@@ -47,6 +47,9 @@ std::string trouble_of_hold(const VectorPM& moved, const DeviceModel& device);
 /// with the motion, weight and springs do not.
 double friction_of(const Stroke& there, const Stroke& back);
 
+/// Angle between two directions, 0..pi, rad.
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
+
 /// Name of a joint or axis of the gantry.
 const std::string& name_of(const DeviceModel& device, int joint);
 
