@@ -25,14 +25,17 @@
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
 #   make franka  runs the driver of the Franka against franka-sim, an independent server, and compares
 #                it with pylibfranka, the maker's client, in an environment of their own (180 MB).
-#                FRANKY=1: against franky-sim, too (660 MB); MINUTES=10 measures its loop for so long
-#                instead
+#                FRANKY=1: against franky-sim, too (660 MB)
 #   make foxglove  opens the live interface of a run in the last open Foxglove Studio, in a headless
 #                browser, and uses it (36 MB, once)
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
 #                memory, faults and limits; a restarted soak continues where it was (tools/soak.py)
+#   make soak-machines
+#                drives each simulated machine in real time for MINUTES=60, all at once: over UDP, over
+#                EtherCAT, a Franka; MACHINES="udp ethercat" for some of them. BUSY=1: what is late is
+#                counted and ends no run
 #
 # JOBS=2: compilers or tests at a time; default: the number of processors.
 
@@ -52,6 +55,8 @@ RTSAN_TESTS := $(addsuffix _test, controller runtime)
 FUZZ_SECONDS ?= 600
 FUZZ_TARGETS ?= hqp_reader hqp_solver config urdf protocol commands live recording
 SOAK_HOURS ?= 30
+MINUTES ?= 60
+MACHINES ?= udp ethercat franka
 first_of = $(firstword $(foreach name,$(1),$(shell command -v $(name))) $(firstword $(1)))
 SANITIZER_CXX ?= $(call first_of,clang++-22 clang++-21 clang++-20)
 with_sanitizers = CC=$(subst clang++,clang,$(SANITIZER_CXX)) CXX=$(SANITIZER_CXX)
@@ -65,7 +70,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo franka foxglove arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
+.PHONY: demo franka foxglove arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak soak-machines format check headers lint clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -101,8 +106,7 @@ arms: build
 	@.venv/bin/python tools/compare_arms.py $(BUILD)/hapticgiant docs/reports/arms.md
 
 franka: build
-	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(FRANKY),--franky) \
-	  $(if $(MINUTES),--minutes $(MINUTES))
+	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(FRANKY),--franky)
 
 foxglove: build
 	@node viewer/test/foxglove/run.mjs $(BUILD)/hapticgiant build/foxglove $(PICTURE)
@@ -146,6 +150,13 @@ fuzz:
 
 soak: build
 	@.venv/bin/python tools/soak.py $(BUILD)/hapticgiant --hours $(SOAK_HOURS)
+
+soak-machines:
+	@tools/setup.sh test
+	@tools/configure.sh $(PRESET) test
+	@cmake --build $(BUILD) --target hapticgiant segment
+	@.venv/bin/python tools/soak_machines.py $(BUILD)/hapticgiant --minutes $(MINUTES) --machines $(MACHINES) \
+	  $(if $(BUSY),--busy)
 
 DOCS_VENV := build/docs_venv
 $(DOCS_VENV)/bin/mkdocs: tools/requirements-docs.txt

@@ -36,7 +36,7 @@ int commission(const CommissionArguments& options) {
   if (scenario::is_franka(options.machine.device_address)) {
     throw SetupError("commission: a Franka is commissioned by its maker, see Desk");
   }
-  const config::Scenario scenario = make_machine_scenario(options.machine);
+  config::Scenario scenario = make_machine_scenario(options.machine);
   const std::atomic<bool>& interrupted = watch_interruption();
   Machine machine = connect_machine(options.machine, scenario, "commission");
   const std::string file =
@@ -49,6 +49,7 @@ int commission(const CommissionArguments& options) {
                                             .version = kVersion,
                                             .files_sha256 = start_test::sha256_of(scenario.device),
                                             .ended = std::time(nullptr),
+                                            .computer = machine.computer,
                                             .is_simulated = machine.is_simulated,
                                             .has_passed = start_test::has_passed(items),
                                             .items = items}));
@@ -76,9 +77,10 @@ int commission(const CommissionArguments& options) {
   if (machine.remote != nullptr && !options.machine.is_fast) {
     runtime::become_real_time({.priority = options.machine.priority});
   }
-  const std::vector<bring_up::Item> items =
-      bring_up::run(rig, {.falls_silent = machine.remote != nullptr && !options.machine.is_fast &&
-                                          !scenario::is_ethercat(options.machine.device_address)});
+  bring_up::Options how = {.falls_silent = machine.remote != nullptr && !options.machine.is_fast &&
+                                           !scenario::is_ethercat(options.machine.device_address)};
+  if (machine.remote != nullptr) how.filled_in = [&] { return machine.remote->counts().held; };
+  const std::vector<bring_up::Item> items = bring_up::run(rig, how);
   if (machine.remote != nullptr) machine.remote->close(FaultCode::kNone);
 
   const bool has_passed = start_test::has_passed(items);

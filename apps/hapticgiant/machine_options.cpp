@@ -59,6 +59,7 @@ config::Scenario make_machine_scenario(const MachineOptions& options) {
   run.device_address = options.device_address;
   run.recordings = options.recordings;
   config::Scenario scenario = make_scenario(run);
+  doctor::check_items(options.despite);
   runtime::check_thread_options({.priority = options.priority});
   make_folder(options.recordings);
   return scenario;
@@ -66,17 +67,18 @@ config::Scenario make_machine_scenario(const MachineOptions& options) {
 
 namespace {
 
-// In lock-step a late computer does no harm.
-void check_computer(const MachineOptions& options, const config::Scenario& scenario) {
-  if (options.is_fast) return;
+// What was let pass, in words. In lock-step a late computer does no harm.
+std::string check_computer(const MachineOptions& options, const config::Scenario& scenario) {
+  if (options.is_fast) return {};
   const std::string passed = doctor::check_ready(scenario.device.model.rate_Hz,
                                                  {.priority = options.priority}, options.despite);
   if (!passed.empty()) print_out(fmt::format("computer    {}\n", passed));
+  return passed;
 }
 
 }  // namespace
 
-Machine connect_machine(const MachineOptions& options, const config::Scenario& scenario,
+Machine connect_machine(const MachineOptions& options, config::Scenario& scenario,
                         const std::string& command) {
   if (options.device_address.empty()) return {.device = scenario::make_simulated_device(scenario)};
   if (scenario::is_ethercat(options.device_address)) {
@@ -87,10 +89,13 @@ Machine connect_machine(const MachineOptions& options, const config::Scenario& s
                        ": the segment is a simulation, whose stop button the bus does not reach; "
                        "leave --device-address out");
     }
-    check_computer(options, scenario);
+    const std::string computer = check_computer(options, scenario);
     auto connected = std::make_unique<ethercat::EthercatDevice>(config);
     device::ConnectedDevice* const remote = connected.get();
-    return {.device = std::move(connected), .remote = remote, .is_simulated = false};
+    return {.device = std::move(connected),
+            .remote = remote,
+            .is_simulated = false,
+            .computer = computer};
   }
   const auto connect = [&](double busy_patience_s) {
     return scenario::connect_device(
@@ -99,14 +104,18 @@ Machine connect_machine(const MachineOptions& options, const config::Scenario& s
   };
   auto connected = connect(0.0);
   const bool is_simulated = connected->welcome().is_simulated;
+  std::string computer;
   if (!is_simulated && !options.is_fast) {
     connected->close(FaultCode::kNone);
-    check_computer(options, scenario);
+    computer = check_computer(options, scenario);
     constexpr double kFarewell = 0.5;  // s, until the server knows that the session is over
     connected = connect(kFarewell);
   }
   device::ConnectedDevice* const remote = connected.get();
-  return {.device = std::move(connected), .remote = remote, .is_simulated = is_simulated};
+  return {.device = std::move(connected),
+          .remote = remote,
+          .is_simulated = is_simulated,
+          .computer = computer};
 }
 
 }  // namespace hg::apps

@@ -38,10 +38,12 @@ struct Machine {
   std::unique_ptr<device::Device> device;
   device::ConnectedDevice* remote = nullptr;  ///< The same; null: simulated here
   bool is_simulated = true;
+  std::string computer;  ///< What is bad about this computer and was let pass; empty: nothing
 };
 
-/// Connects to the machine for `command` ("start-test"). Throws SetupError.
-Machine connect_machine(const MachineOptions& options, const config::Scenario& scenario,
+/// Connects to the machine for `command` ("start-test"); its machine.yaml becomes a source of
+/// `scenario`. Throws SetupError.
+Machine connect_machine(const MachineOptions& options, config::Scenario& scenario,
                         const std::string& command);
 
 }  // namespace hg::apps

@@ -26,6 +26,7 @@ start_test::MachineMemory machine_memory(const RunArguments& arguments) {
 
 PreparedRun::PreparedRun(const RunArguments& a)
     : arguments(a), scenario(make_scenario(a)), cycle(scenario::make_cycle(scenario)) {
+  doctor::check_items(arguments.despite);
   if (arguments.device_address.empty()) {
     device = scenario::make_simulated_device(scenario);
   } else if (scenario::is_franka(arguments.device_address)) {

@@ -26,7 +26,7 @@ int start_test(const MachineOptions& arguments) {
   if (scenario::is_franka(arguments.device_address)) {
     throw SetupError("start-test: a Franka tests its brakes and stop inputs itself, see Desk");
   }
-  const config::Scenario scenario = make_machine_scenario(arguments);
+  config::Scenario scenario = make_machine_scenario(arguments);
   Machine machine = connect_machine(arguments, scenario, "start-test");
   device::ConnectedDevice* const remote = machine.remote;
   const bool is_simulated = machine.is_simulated;
@@ -41,6 +41,7 @@ int start_test(const MachineOptions& arguments) {
         .version = kVersion,
         .files_sha256 = start_test::sha256_of(scenario.device),
         .ended = std::time(nullptr),
+        .computer = machine.computer,
         .is_simulated = is_simulated,
         .has_passed = start_test::has_passed(items),
         .items = items};

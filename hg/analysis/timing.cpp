@@ -45,7 +45,7 @@ std::string late_text(const Timing& timing) {
     why = timing.priority == 0 ? "; counted only: the thread is not real time"
                                : "; counted only: the device waits for its controller";
   }
-  return fmt::format("{} cycles, at most {} in a row{}", timing.overruns,
+  return fmt::format("{} cycles of this computer, at most {} in a row{}", timing.overruns,
                      timing.most_overruns_in_a_row, why);
 }
 

@@ -1,6 +1,7 @@
 /// A device at the other end of a connection, which is the clock of a run.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "hg/device/device.h"
@@ -16,6 +17,10 @@ class ConnectedDevice : public Device {
   /// What the device said when it ended or refused to move, printable; empty: nothing.
   virtual std::string farewell() const = 0;
   virtual LinkCounts counts() const noexcept = 0;
+  /// How late this computer was in the last read(), ns: from when its sample could have been read,
+  /// because it had arrived or its period was due, to its return. A sample that comes late from the
+  /// device adds nothing.
+  virtual std::int64_t late_ns() const noexcept = 0;
 };
 
 }  // namespace hg::device

@@ -60,6 +60,7 @@ Runtime::Runtime(const RuntimeOptions& options, controller::Cycle& cycle, device
     : options_((check_runtime_options(options), options)),
       cycle_(cycle),
       device_(device),
+      connection_(dynamic_cast<const device::ConnectedDevice*>(&device)),
       session_(cycle, device, {.changes = options.changes, .load = options.load}),
       samples_(options.ring),
       hand_targets_(256),
@@ -150,10 +151,17 @@ void Runtime::wait_for_turn(Schedule& schedule) noexcept {
   schedule = new_schedule();
 }
 
-// Cycles missed by a device that is the clock, because this cycle took too long.
-std::uint32_t Runtime::late_for_device() const noexcept {
-  const double periods = 1e-9 * static_cast<double>(now_ns() - read_ns_) * cycle_.device().rate_Hz;
-  return periods > 1.0 ? static_cast<std::uint32_t>(std::min(periods, 1e9)) : 0;
+// Cycles missed by a device that is the clock, because this one began too late or took too long.
+std::uint32_t Runtime::late_for_device() noexcept {
+  const auto periods = [&](std::int64_t time_ns) {
+    const double count = 1e-9 * static_cast<double>(time_ns) * cycle_.device().rate_Hz;
+    return static_cast<std::uint32_t>(std::min(count, 1e6));
+  };
+  const std::uint32_t late = periods(now_ns() - read_ns_);
+  if (connection_ == nullptr) return late;
+  const std::int64_t woken_late_ns = connection_->late_ns();
+  report_.wake_up_us.add(1e-3 * static_cast<double>(woken_late_ns));
+  return late + periods(woken_late_ns);
 }
 
 void Runtime::count_late(std::uint32_t cycles) noexcept {

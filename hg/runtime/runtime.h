@@ -18,7 +18,7 @@
 #include "hg/core/schedule.h"
 #include "hg/core/spsc_ring.h"
 #include "hg/core/stage_probe.h"
-#include "hg/device/device.h"
+#include "hg/device/connected_device.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/runtime/pace.h"
 #include "hg/runtime/session.h"
@@ -137,7 +137,7 @@ class Runtime {
   void prepare_thread() noexcept;
   Schedule new_schedule() const noexcept;
   void wait_for_turn(Schedule& schedule) noexcept;
-  std::uint32_t late_for_device() const noexcept;
+  std::uint32_t late_for_device() noexcept;
   void count_late(std::uint32_t cycles) noexcept;
   static void stage_ended(void* runtime, Stage stage) noexcept;
   void count_stages() noexcept;
@@ -145,6 +145,7 @@ class Runtime {
   RuntimeOptions options_;
   controller::Cycle& cycle_;
   device::Device& device_;
+  const device::ConnectedDevice* connection_;  ///< the same; null: it is none
   Session session_;
   SpscRing<Sample> samples_;
   SpscRing<HandTarget> hand_targets_;

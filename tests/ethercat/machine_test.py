@@ -56,15 +56,24 @@ def plant(scenario="door", *arguments):
 
 
 @contextlib.contextmanager
-def haptic_giant():
-    """The same for the door. Its commands are valid at once: the bus is the latency."""
+def haptic_giant(scenario="door"):
+    """The same for the HapticGiant. Its commands are valid at once: the bus is the latency."""
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder, "simulation.yaml")
         text, count = re.subn(r"\n  latency: 1 .*", "\n  latency: 0.001", SIMULATION.read_text())
         assert count == 1
         file.write_text(text)
-        with plant("door", "--simulation", file) as address:
+        with plant(scenario, "--simulation", file) as address:
             yield address
+
+
+def that_keeps_time():
+    """The shipped machine as one that is no simulation: with times of its own."""
+    text = FILE.read_text()
+    for key, value in (("moves_with_frames", "false"), ("watchdog_s", "0.05"),
+                       ("answer_s", "0.0005")):
+        text = re.sub(f"\n{key}: .*", f"\n{key}: {value}", text)
+    return text
 
 
 class Run:
@@ -118,6 +127,22 @@ class Door(unittest.TestCase):
         self.assertEqual([slave["status"] for slave in states], [2] * 11)
         self.assertTrue(all(slave["brake_is_closed"] for slave in states[:8]))
         self.assertEqual(states[10]["outputs"], 0)
+
+
+class Recording(unittest.TestCase):
+    def test_has_the_file_of_the_machine_and_is_replayed(self):
+        with haptic_giant() as address, segment(plant=address), \
+                tempfile.TemporaryDirectory() as folder:
+            ran = subprocess.run(
+                [PROGRAM, "run", "door", "--fast", "--duration", "0.5", "--recordings", folder,
+                 "--device-address", f"ethercat://{bus.MASTER_END}"], cwd=ROOT,
+                capture_output=True, text=True, timeout=PATIENCE)
+            file = pathlib.Path(folder, "latest.mcap")
+            self.assertTrue(file.exists(), ran.stdout + ran.stderr)
+            self.assertIn(b"models/haptic_giant/machine.yaml", file.read_bytes())
+            replayed = subprocess.run([PROGRAM, "replay", file], cwd=ROOT, capture_output=True,
+                                      text=True, timeout=PATIENCE)
+            self.assertEqual(replayed.returncode, 0, replayed.stdout + replayed.stderr)
 
 
 class Positions(unittest.TestCase):
@@ -386,10 +411,7 @@ class Start(unittest.TestCase):
 
     def test_of_a_machine_keeps_time_and_needs_a_start_test(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
-            text = FILE.read_text()
-            for key, value in (("moves_with_frames", "false"), ("watchdog_s", "0.05"),
-                               ("answer_s", "0.0005")):
-                text = re.sub(f"\n{key}: .*", f"\n{key}: {value}", text)
+            text = that_keeps_time()
             file.write(text)
             file.flush()
             self.refused("--fast: HapticGiant keeps its own time",

@@ -7,7 +7,8 @@
 Runs in the environment that franka_test.py makes. The model is made from the numbers of our URDF,
 without meshes; a tool of 0.35 kg is part of it. Its joints start --away from where the drawer is
 held. Without time limits a busy computer does not make it stop for late commands. The hand pulls
-along x of the base for two seconds, pushes back for two, 1.5 s after a motion has begun.
+along x of the base for two seconds and pushes back for two, 1.5 s after a motion has begun and every
+8 s from then on.
 With --in-reflex it stands in an old reflex when a client comes. The file of --counts says after a
 motion how many cycles it had and how many were not answered in time.
 """
@@ -67,8 +68,9 @@ def mjcf_of(urdf):
 
 
 def pull_after(since, force):
-    """What a hand does, N, `since` s after a motion has begun: with `force` to and fro."""
-    since -= 1.5
+    """What a hand does, N, `since` s after a motion has begun: with `force` to and fro, again and
+    again."""
+    since = -1.0 if since < 1.5 else (since - 1.5) % 8.0
     sign = 1.0 if 0.0 <= since < 2.0 else -1.0 if 2.0 <= since < 4.0 else 0.0
     return sign * force
 

@@ -1,15 +1,14 @@
 """`hapticgiant run --device-address franka://...` against independent servers and clients.
 
-    franka_test.py PROGRAM [--franky] [--minutes N]
+    franka_test.py PROGRAM [--franky]
 
 Real time: for a computer that is left alone (`make franka`), none of `make test`. The server
 franka-sim and the reference client pylibfranka are installed into an environment of their own,
 build/franka_venv (180 MB); where that fails it is skipped (exit code 77). With --franky the server
-franky-sim, too (build/franky_venv, 660 MB). With --minutes only the loop is measured, for N minutes.
+franky-sim, too (build/franky_venv, 660 MB).
 """
 
 import argparse
-import json
 import pathlib
 import sys
 import tempfile
@@ -18,11 +17,10 @@ import unittest
 
 import harness
 from franky_test import Franky
-from harness import FRANKA_SIM, FRANKY_SIM, TOLERANT, Run, patiently, robot, run, server
+from harness import FRANKA_SIM, FRANKY_SIM, TOLERANT, Run, patiently, run, server
 from reference_test import Reference  # noqa: F401  found by unittest
 
 SKIPPED = 77
-LAST_WINDOW = 100  # cycles, of which the robot has told nothing yet at the end of a motion
 
 
 class Franka(unittest.TestCase):
@@ -113,54 +111,16 @@ class Franka(unittest.TestCase):
                 self.assertIn(reason, said)
 
 
-def minutes(count):
-    """Cycles, gaps, allocations and memory of a long run, and what the robot says about it."""
-    held = {}  # MB, by seconds since the beginning
-    with tempfile.TemporaryDirectory() as folder:
-        counts = pathlib.Path(folder, "robot.json")
-        with robot("--pull", "3", "--counts", str(counts)) as port:
-            long = Run(f"franka://127.0.0.1:{port}", 60 * count, folder)
-            begin = time.monotonic()
-            while long.process.poll() is None:
-                held[time.monotonic() - begin] = long.memory_MB()
-                time.sleep(1)
-            code, said, summary = long.wait()
-        of_robot = json.loads(counts.read_text())
-    print(said)
-    link, cycle = summary["link"], summary["cycle_time_us"]
-    settled = [MB for at, MB in held.items() if at > 10 and MB > 0]
-    print(f"{summary['cycles']} cycles in {summary['wall_time_s']:.1f} s, exit code {code}")
-    print(f"cycle {cycle['median']:.0f} us (median), {cycle['p99_9']:.0f} us (99.9 %), "
-          f"{cycle['max']:.0f} us (most)")
-    print(f"{summary['allocations_in_loop']} allocations in the loop, memory "
-          f"{settled[0]:.2f} MB after 10 s, {settled[-1]:.2f} MB at the end, "
-          f"{max(settled):.2f} MB at most")
-    print(f"states: {link['received']} received, {link['lost']} lost, {link['held']} filled in; "
-          f"answers: {link['sent']} sent, {link['late']} late")
-    print(f"robot: {of_robot['cycles']} cycles in motion, {of_robot['unanswered']} without an answer "
-          f"in time, at most {of_robot['in_a_row']} in a row")
-    # each period has a frame, each cycle of the motion an answer, or it is counted
-    uncounted = {
-        "periods": summary["cycles"] - link["received"] - link["held"],
-        "cycles of the motion": of_robot["cycles"] - link["sent"] - link["lost"] - link["late"],
-        "unanswered": of_robot["unanswered"] - link["late"] - LAST_WINDOW}
-    print("not counted: " + ", ".join(f"{max(0, n)} {name}" for name, n in uncounted.items()))
-    return code or any(n > 0 for n in uncounted.values())
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("--franky", action="store_true")
-    parser.add_argument("--minutes", type=float)
     options, others = parser.parse_known_args()
     harness.PROGRAM = options.program.resolve()
     wanted = [FRANKA_SIM] + [FRANKY_SIM] * options.franky
     if why := "; ".join(filter(None, (environment.make() for environment in wanted))):
         print(f"franka: skipped, {why}")
         return SKIPPED
-    if options.minutes:
-        return minutes(options.minutes)
     Franky.is_wanted = options.franky
     return not unittest.main(argv=sys.argv[:1] + others, exit=False).result.wasSuccessful()
 

@@ -118,14 +118,6 @@ class Run:
         time.sleep(seconds)
         self.process.send_signal(signal.SIGCONT)
 
-    def memory_MB(self):
-        """What it holds in memory now; 0 where it has ended."""
-        try:
-            pages = pathlib.Path(f"/proc/{self.process.pid}/statm").read_text().split()[1]
-        except (OSError, IndexError):
-            return 0.0
-        return int(pages) * 4096 / 1e6
-
 
 def run(address, duration_s, *arguments, scenario="open_drawer"):
     with tempfile.TemporaryDirectory() as folder:

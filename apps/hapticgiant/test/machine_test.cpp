@@ -27,6 +27,7 @@
 #include "hg/device/udp/device_server.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/options.h"
+#include "hg/scenario/remote/ethercat_setup.h"
 #include "hg/scenario/remote/remote_setup.h"
 #include "hg/simulator/simulated_device.h"
 
@@ -309,10 +310,36 @@ TEST_F(MachineTest, AComputerThatIsNotReadyIsOverruledByNameOnly) {
   const config::Scenario scenario = scenario::load(arguments_.world);
   const Machine machine(scenario, false, false);
   arguments_.device_address = machine.address();
-  arguments_.is_fast = false;
   arguments_.despite = {"latenes"};
-  keep_result(scenario.device);
-  expect_part(refusal(), "no item of the doctor is 'latenes', did you mean 'lateness'?");
+  const std::string words = "no item of the doctor is 'latenes', did you mean 'lateness'?";
+  for (const bool is_fast : {false, true}) {  // in lock-step nothing else is asked of the computer
+    arguments_.is_fast = is_fast;
+    expect_part(refusal(), words);
+  }
+  apps::MachineOptions options;
+  options.world = arguments_.world;
+  options.recordings = folder_.string();
+  options.despite = arguments_.despite;
+  expect_part(message_of([&] { apps::start_test(options); }), words);
+  expect_part(message_of([&] { apps::commission({.machine = options}); }), words);
+}
+
+TEST_F(MachineTest, AnotherFileOfTheBusIsAnotherMachine) {
+  const auto hash_with = [&](const std::filesystem::path& file) {
+    config::Scenario scenario = scenario::load(arguments_.world);
+    scenario::ethercat_config("ethercat://nowhere", file, scenario, true);
+    return start_test::sha256_of(scenario.device);
+  };
+  const std::filesystem::path shipped = "models/haptic_giant/machine.yaml";
+  const std::string before = hash_with({});
+  EXPECT_EQ(hash_with(shipped), before);
+  EXPECT_NE(start_test::sha256_of(scenario::load(arguments_.world).device), before);
+  const std::filesystem::path changed = folder_ / "machine.yaml";
+  std::string text = read_file(shipped);
+  const std::string scale = "scale: 0.09";
+  ASSERT_NE(text.find(scale), std::string::npos);
+  write_whole_file(changed, text.replace(text.find(scale), scale.size(), "scale: 0.08"));
+  EXPECT_NE(hash_with(changed), before);
 }
 
 TEST_F(MachineTest, AServerBusyWithTheSessionBeforeIsTriedAgain) {

@@ -24,7 +24,8 @@ TEST(Timing, ReportsThePriorityAndWhyThereIsNone) {
 TEST(Timing, ReportsWhyLateCyclesWereOnlyCounted) {
   EXPECT_EQ(timing_lines({}), "");
   Timing timing = {.overruns = 7, .most_overruns_in_a_row = 4};
-  EXPECT_TRUE(has(timing_lines(timing), "7 cycles, at most 4 in a row; counted only: the thread"));
+  EXPECT_TRUE(has(timing_lines(timing),
+                  "7 cycles of this computer, at most 4 in a row; counted only: the thread"));
   timing.priority = 80;
   EXPECT_TRUE(has(timing_lines(timing), "counted only: the device waits"));
   timing.overruns_stop = true;

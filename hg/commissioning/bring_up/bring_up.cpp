@@ -112,6 +112,8 @@ class Steps {
     constexpr double kMissing = 0.01;  // of the samples
     std::uint64_t first = 0, last = 0, missing = 0, errors = 0;
     double begin = 0.0, end = 0.0;
+    const auto filled_in = [&] { return options_.filled_in ? options_.filled_in() : 0; };
+    const std::uint64_t before = filled_in();
     rig_.rest(2.0, [&](const SensorFrame& sensors, const RobotState&) {
       if (first == 0) {
         first = sensors.sequence;
@@ -124,9 +126,11 @@ class Steps {
       errors += sensors.bus_errors;
     });
     const double period = (end - begin) / static_cast<double>(last - first);
-    found_ = fmt::format("one every {:.3f} ms, {} missing, {} bus errors", 1e3 * period, missing,
-                         errors);
-    if (static_cast<double>(missing + errors) > kMissing * static_cast<double>(last - first)) {
+    const std::uint64_t held = filled_in() - before;
+    found_ = fmt::format("one every {:.3f} ms, {} missing, {} filled in, {} bus errors",
+                         1e3 * period, missing, held, errors);
+    if (static_cast<double>(missing + held + errors) >
+        kMissing * static_cast<double>(last - first)) {
       return found_ + ": cable, network or bus, or a computer that is too busy";
     }
     if (std::abs(period / rig_.dt() - 1.0) < kSlow) return "";

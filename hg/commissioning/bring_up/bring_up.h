@@ -4,6 +4,8 @@
 /// Sequential code that advances through a Rig. Independent of real time.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +23,8 @@ struct Options {
   /// The last step sends nothing while the drives hold: the machine must switch them off itself.
   /// Only for a device at the other end of a connection, which it ends.
   bool falls_silent = false;
+  /// How many samples the connection has filled in so far, for lack of better ones; empty: none
+  std::function<std::uint64_t()> filled_in;
 };
 
 /// Goes through all steps. What follows a step that has failed is untested. An Ended of the rig

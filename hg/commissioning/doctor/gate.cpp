@@ -10,9 +10,15 @@
 
 namespace hg::doctor {
 
-std::string decide(const std::vector<Assessment>& lines, const std::vector<std::string>& despite) {
-  std::vector<std::string> items;
-  for (const Assessment& line : lines) items.push_back(line.item);
+namespace {
+
+constexpr const char* kLateness = "lateness";
+
+}  // namespace
+
+void check_items(const std::vector<std::string>& despite) {
+  std::vector<std::string> items = {kLateness};
+  for (const Assessment& line : assess_computer()) items.push_back(line.item);
   for (const std::string& name : despite) {
     if (std::ranges::find(items, name) != items.end()) continue;
     throw SetupError(
@@ -20,6 +26,9 @@ std::string decide(const std::vector<Assessment>& lines, const std::vector<std::
                     "There are {}",
                     name, nearest_name(name, items), fmt::join(items, ", ")));
   }
+}
+
+std::string decide(const std::vector<Assessment>& lines, const std::vector<std::string>& despite) {
   std::string passed, refused;
   std::vector<std::string> names;
   for (const Assessment& line : lines) {
@@ -45,7 +54,7 @@ std::string check_ready(double rate_Hz, const runtime::ThreadOptions& thread,
   std::vector<Assessment> lines = assess_computer();
   const Jitter ordinary = measure_jitter(rate_Hz, kOrdinary, {.priority = 0, .cpu = thread.cpu});
   lines.push_back(assess(ordinary, measure_jitter(rate_Hz, kRealTime, thread), true));
-  lines.back().item = "lateness";
+  lines.back().item = kLateness;
   return decide(lines, despite);
 }
 

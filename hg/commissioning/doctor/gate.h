@@ -9,9 +9,12 @@
 
 namespace hg::doctor {
 
+/// Throws SetupError for a name in `despite` that is no item of the doctor, with the nearest one.
+void check_items(const std::vector<std::string>& despite);
+
 /// Decides by lines of an assessment. Items named in `despite` are let pass, also where they are
 /// fine. Returns what was let pass, in words; empty: nothing. Throws SetupError with every other
-/// bad line, or for a name that is no item.
+/// bad line.
 std::string decide(const std::vector<Assessment>& lines, const std::vector<std::string>& despite);
 
 /// Assesses this computer, and for a second and a half how late a thread with these options wakes

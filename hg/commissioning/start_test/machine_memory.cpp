@@ -17,6 +17,7 @@
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/whole_file.h"
+#include "hg/signals/off_command.h"
 
 namespace hg::start_test {
 namespace {
@@ -49,21 +50,13 @@ std::vector<Position> posture_of(const config::DeviceConfig& device, const Senso
   return posture;
 }
 
-// A command with drives off, in the sizes of the device.
-CommandFrame off_command(const config::DeviceConfig& device) {
-  CommandFrame command;
-  command.q_m = command.dq_m = command.ddq_m = VectorM::Zero(device.model.n_m);
-  if (device.control.method != tracking::Method::kDrives) command.tau_m = command.q_m;
-  command.dq_p = VectorP::Zero(device.model.n_p);
-  return command;
-}
-
 // Posture with drives off and brakes closed; empty if the connection to the device is lost.
 std::optional<std::vector<Position>> braked_posture(const config::DeviceConfig& device,
                                                     device::ConnectedDevice& machine,
                                                     double duration_s = kBraked) {
   SensorFrame sensors;
-  CommandFrame off = off_command(device);
+  CommandFrame off = off_command(device.model.n_p, device.model.n_m,
+                                 device.control.method != tracking::Method::kDrives);
   for (double time_s = 0.0; time_s < duration_s; time_s += 1.0 / device.model.rate_Hz) {
     machine.read(sensors);
     if (sensors.driver_fault != FaultCode::kNone) return std::nullopt;

@@ -70,6 +70,7 @@ std::string to_json(const StartTestResult& result) {
   json["ended"] = date_of(result.ended);
   json["ended_unix_s"] = static_cast<std::int64_t>(result.ended);
   json["version"] = result.version;
+  if (!result.computer.empty()) json["computer"] = result.computer;
   json["files_sha256"] = result.files_sha256;
   json["items"] = Json::array();
   for (const Item& item : result.items) {

@@ -14,11 +14,13 @@ namespace hg::start_test {
 
 /// Result of a start test.
 struct StartTestResult {
-  std::string device;         ///< name in device.yaml
-  std::string address;        ///< address of a remote device
-  std::string version;        ///< version of the program
-  std::string files_sha256;   ///< hash of the files that describe the device
-  std::time_t ended = 0;      ///< s since 1970
+  std::string device;        ///< name in device.yaml
+  std::string address;       ///< address of a remote device
+  std::string version;       ///< version of the program
+  std::string files_sha256;  ///< hash of the files that describe the device
+  std::time_t ended = 0;     ///< s since 1970
+  /// What was bad about the computer and let pass, in words; empty: nothing
+  std::string computer = {};
   bool is_simulated = false;  ///< simulated: no evidence about a machine
   bool has_passed = false;
   std::vector<Item> items;

@@ -196,10 +196,14 @@ void EthercatDevice::wait_for_turn() noexcept {
 
 // Waits for the next period, and exchanges process data once.
 int EthercatDevice::exchange() noexcept {
+  const std::int64_t turn_ns = std::max(now_ns(), pace_.due_ns());
   wait_for_turn();
   put_out();
+  const std::int64_t begin_ns = now_ns();
   const int counter = bus_->exchange(patience_us_);
   exchanged_ns_ = now_ns();
+  late_ns_ =
+      begin_ns - turn_ns + std::max<std::int64_t>(0, exchanged_ns_ - begin_ns - patience_ns());
   lost_in_a_row_ = counter < 0 ? lost_in_a_row_ + 1 : 0;
   if (counter >= 0 && bus_->time_ns() != 0) pace_.follow(bus_->time_ns());
   return counter;

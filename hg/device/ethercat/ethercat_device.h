@@ -52,6 +52,7 @@ class EthercatDevice final : public device::ConnectedDevice {
   void close(FaultCode reason) noexcept override;
   std::string farewell() const override;
   LinkCounts counts() const noexcept override { return counts_; }
+  std::int64_t late_ns() const noexcept override { return late_ns_; }
 
  private:
   /// Why the machine has stopped.
@@ -91,6 +92,7 @@ class EthercatDevice final : public device::ConnectedDevice {
   void wake() noexcept;
   void call_to_op() noexcept;
   void wait_for_turn() noexcept;
+  std::int64_t patience_ns() const noexcept { return std::int64_t{1000} * patience_us_; }
   int exchange() noexcept;
   void take_in() noexcept;
   void take_lost() noexcept;
@@ -140,6 +142,7 @@ class EthercatDevice final : public device::ConnectedDevice {
   std::uint32_t lost_in_a_row_ = 0, incomplete_in_a_row_ = 0;
   bool is_in_use_ = false;         ///< the first read() has come: drives are switched on
   std::int64_t exchanged_ns_ = 0;  ///< time of the last exchange
+  std::int64_t late_ns_ = 0;       ///< of this computer in that exchange
   bool was_reset_ = false;         ///< reset button in the last command
   int recovery_ = 0;               ///< exchanges that are left to recover; 0: does not recover
   bool is_stopping_ = false;       ///< drives are told to stop, whatever they do

@@ -197,14 +197,17 @@ std::string FrankaDevice::stop_words(const SensorFrame& sensors) const {
 }
 
 void FrankaDevice::read(SensorFrame& sensors) noexcept {
+  arrived_ns_ = late_ns_ = 0;
   if (fault_ != FaultCode::kNone) return stop(fault_, sensors);
   if (!is_started_) skip_old_states();
-  const std::int64_t deadline = now_ns() + ns(config_.state_timeout_s);
+  const std::int64_t begin = now_ns();
+  const std::int64_t deadline = begin + ns(config_.state_timeout_s);
   while (true) {
     take_in();
     if (session_.is_closed()) return stop(FaultCode::kDeviceGone, sensors);
     if (queue_.pop(sensors)) {
       sensors.driver_fault = driver_fault();
+      late_ns_ = now_ns() - std::max(begin, arrived_ns_);
       return;
     }
     const std::int64_t now = now_ns();
@@ -243,7 +246,11 @@ void FrankaDevice::take(const RobotState& state) noexcept {
   arrived_.w_S = user_wrench(state, config_.T_F_S) - resting_;
   arrived_.dead_man = true;  // the arm has none
   arrived_.safety.emergency_stop = state.robot_mode == RobotMode::kUserStopped;
-  if (!queue_.push(arrived_)) ++own_.late;
+  if (!queue_.push(arrived_)) {
+    ++own_.late;
+  } else if (arrived_ns_ == 0) {
+    arrived_ns_ = session_.arrived_ns();
+  }
   if (id <= before) return;
   state_ = state;
   follow(state);

@@ -80,6 +80,7 @@ class FrankaDevice final : public device::ConnectedDevice {
   /// `late` are the cycles of a motion that the robot got no answer for in time, by its own count
   /// up to its last full 100 cycles, or at least those that the driver itself knows of.
   LinkCounts counts() const noexcept override;
+  std::int64_t late_ns() const noexcept override { return late_ns_; }
 
  private:
   enum class Phase { kIdle, kStarting, kMoving, kFinishing };
@@ -137,6 +138,8 @@ class FrankaDevice final : public device::ConnectedDevice {
   std::uint8_t recovery_status_ = 0;    ///< answer to the last recovery, 0 = it worked
   FaultCode fault_ = FaultCode::kNone;  ///< of the connection, final
   LinkCounts own_;
+  std::int64_t arrived_ns_ = 0;   ///< of the first state that this read() has received; 0: none
+  std::int64_t late_ns_ = 0;      ///< of this computer in this read()
   std::uint64_t unanswered_ = 0;  ///< cycles without an answer in time, as the robot counts them
   std::uint64_t counted_to_ = 0;  ///< message_id up to which they are counted
 };

@@ -65,6 +65,8 @@ class Session {
 
   /// The oldest state that has not been read; false: none.
   bool receive(RobotState& state) noexcept;
+  /// When that state has come to this computer, ns of now_ns().
+  std::int64_t arrived_ns() const noexcept { return socket_.arrived_ns(); }
   /// Waits until a datagram arrives, or until the given time of the monotonic clock.
   void wait(std::int64_t until_ns) noexcept { socket_.wait(until_ns); }
   void send(const RobotCommand& command) noexcept;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "hg/signals/off_command.h"
 #include "hg/signals/sensor_check.h"
 
 namespace hg::udp {
@@ -63,12 +64,8 @@ bool fits(const Description& agreed, const CommandFrame& command) noexcept {
 }
 
 CommandFrame off_command(const Description& agreed) {
-  const auto n_m = static_cast<Eigen::Index>(agreed.n_m);
-  CommandFrame command;
-  command.q_m = command.dq_m = command.ddq_m = VectorM::Zero(n_m);
-  if (agreed.interface == Interface::kTorque) command.tau_m = VectorM::Zero(n_m);
-  command.dq_p = VectorP::Zero(agreed.n_p);
-  return command;
+  return hg::off_command(static_cast<int>(agreed.n_p), static_cast<int>(agreed.n_m),
+                         agreed.interface == Interface::kTorque);
 }
 
 }  // namespace hg::udp

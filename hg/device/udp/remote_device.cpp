@@ -32,7 +32,10 @@ FaultCode reason_of(const Goodbye& goodbye) noexcept {
 }  // namespace
 
 RemoteDevice::RemoteDevice(const Address& address, const ClientConfig& config)
-    : config_(config), socket_(UdpSocket::talking_to(address)), outbox_(0, config.key) {
+    : config_(config),
+      socket_(UdpSocket::talking_to(address)),
+      outbox_(0, config.key),
+      arrivals_(config.expected.rate_Hz) {
   connect(address.host + ":" + address.port);
 }
 
@@ -93,6 +96,7 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_p
 }
 
 void RemoteDevice::read(SensorFrame& sensors) noexcept {
+  arrived_ns_ = late_ns_ = 0;
   if (fault_ != FaultCode::kNone) return stop(fault_, sensors);
   const bool is_lock_step = config_.expected.is_lock_step;
   const double timeout_s = !is_started_   ? config_.first_timeout_s
@@ -106,6 +110,7 @@ void RemoteDevice::read(SensorFrame& sensors) noexcept {
     if (queue_.pop(sensors)) {
       is_started_ = true;
       newest_ = sensors.sequence;
+      late_ns_ = now_ns() - std::max(begin, arrived_ns_);
       return;
     }
     if (has_left_) return stop(reason_of(goodbye_), sensors);
@@ -137,6 +142,10 @@ void RemoteDevice::take(const Header& header) noexcept {
         ++own_.malformed;
       } else if (!queue_.push(arrived_)) {
         ++own_.late;
+      } else {
+        if (arrived_ns_ == 0) arrived_ns_ = socket_.arrived_ns();
+        const bool is_late = arrivals_.is_late(arrived_.sequence, socket_.arrived_ns());
+        if (is_late && !config_.expected.is_lock_step) ++own_.late;
       }
       return;
     case MessageType::kGoodbye:

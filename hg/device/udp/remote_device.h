@@ -8,6 +8,7 @@
 #include <string>
 
 #include "hg/device/connected_device.h"
+#include "hg/device/udp/arrivals.h"
 #include "hg/device/udp/frame_queue.h"
 #include "hg/device/udp/inbox.h"
 #include "hg/device/udp/outbox.h"
@@ -48,6 +49,7 @@ class RemoteDevice final : public device::ConnectedDevice {
   /// Reason why the server ended the session, printable; empty: it did not.
   std::string farewell() const override { return goodbye_.reason.printable(); }
   LinkCounts counts() const noexcept override;
+  std::int64_t late_ns() const noexcept override { return late_ns_; }
 
  private:
   void connect(const std::string& at);
@@ -66,6 +68,7 @@ class RemoteDevice final : public device::ConnectedDevice {
   Outbox outbox_;
   Inbox inbox_{0};
   FrameQueue queue_;
+  Arrivals arrivals_;
   Welcome welcome_;
   Goodbye goodbye_;
   SensorFrame arrived_;
@@ -77,7 +80,9 @@ class RemoteDevice final : public device::ConnectedDevice {
   bool has_left_ = false;  ///< the server has left
   bool is_closed_ = false;
   FaultCode fault_ = FaultCode::kNone;
-  LinkCounts own_;  ///< counts beyond those of inbox and queue
+  LinkCounts own_;               ///< counts beyond those of inbox and queue
+  std::int64_t arrived_ns_ = 0;  ///< of the first frame that this read() has received; 0: none
+  std::int64_t late_ns_ = 0;     ///< of this computer in this read()
 };
 
 }  // namespace hg::udp

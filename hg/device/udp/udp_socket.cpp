@@ -47,6 +47,21 @@ int open_socket(const Address& address, int flags, const char* what, Attach atta
       fmt::format("{}: cannot {} there: {}", text_of(address), what, std::strerror(error)));
 }
 
+// When the datagram of this message has come, by a stamp of the system, whose clock may be set.
+std::int64_t arrival_of(msghdr& message) noexcept {
+  const std::int64_t now = now_ns();
+  const cmsghdr* one = CMSG_FIRSTHDR(&message);
+  if (one == nullptr || one->cmsg_level != SOL_SOCKET || one->cmsg_type != SCM_TIMESTAMPNS) {
+    return now;
+  }
+  timespec stamp{}, clock{};
+  std::memcpy(&stamp, CMSG_DATA(one), sizeof stamp);
+  clock_gettime(CLOCK_REALTIME, &clock);
+  const std::int64_t age =
+      (clock.tv_sec - stamp.tv_sec) * kNanoseconds + clock.tv_nsec - stamp.tv_nsec;
+  return age < 0 || age > kNanoseconds ? now : now - age;
+}
+
 }  // namespace
 
 Address parse_address(const std::string& option, const std::string& text) {
@@ -93,6 +108,11 @@ UdpSocket UdpSocket::talking_to(const Address& address) {
   return UdpSocket(open_socket(address, 0, "connect", connect));
 }
 
+UdpSocket::UdpSocket(int file) : file_(file) {
+  const int on = 1;
+  setsockopt(file, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+}
+
 UdpSocket::UdpSocket(UdpSocket&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
 
 UdpSocket::~UdpSocket() {
@@ -110,10 +130,21 @@ void UdpSocket::send(std::span<const std::byte> datagram, const Peer& to) noexce
 }
 
 bool UdpSocket::receive(Datagram& datagram, Peer& from) noexcept {
-  from.length = sizeof from.address;
-  const auto size = recvfrom(file_, datagram.bytes.data(), datagram.bytes.size(), MSG_DONTWAIT,
-                             reinterpret_cast<sockaddr*>(&from.address), &from.length);
+  iovec bytes{.iov_base = datagram.bytes.data(), .iov_len = datagram.bytes.size()};
+  alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(timespec))> control;
+  msghdr message{};
+  message.msg_name = &from.address;
+  message.msg_namelen = sizeof from.address;
+  message.msg_iov = &bytes;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  const auto size = recvmsg(file_, &message, MSG_DONTWAIT);
   was_refused_ = was_refused_ || (size < 0 && errno == ECONNREFUSED);
+  if (size >= 0) {
+    from.length = message.msg_namelen;
+    arrived_ns_ = arrival_of(message);
+  }
   datagram.size = size > 0 ? size : 0;
   return size >= 0;
 }

@@ -44,6 +44,9 @@ class UdpSocket {
   void send(std::span<const std::byte> datagram, const Peer& to) noexcept;
   /// Receives the oldest waiting datagram; false: none. Longer ones are cut at kLargestDatagram.
   bool receive(Datagram& datagram, Peer& from) noexcept;
+  /// When the datagram of the last receive() has come to this computer, by its system, ns of
+  /// now_ns().
+  std::int64_t arrived_ns() const noexcept { return arrived_ns_; }
   /// Waits until a datagram arrives, or until the given time.
   void wait(std::int64_t until_ns) noexcept;
 
@@ -52,9 +55,10 @@ class UdpSocket {
   Peer own_address() const;
 
  private:
-  explicit UdpSocket(int file) : file_(file) {}
+  explicit UdpSocket(int file);
 
   int file_;
+  std::int64_t arrived_ns_ = 0;
   bool was_refused_ = false;
 };
 

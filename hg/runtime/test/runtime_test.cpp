@@ -482,6 +482,42 @@ TEST(Runtime, ReportsMissedCyclesWhereTheThreadIsRealTime) {
   }
 }
 
+// A connection whose read() returns once later than its sample could have been read.
+class WokenLate final : public device::ConnectedDevice {
+ public:
+  static constexpr std::uint64_t kSample = 20;
+  static constexpr std::int64_t kLate = 24'000'000;  // ns
+
+  explicit WokenLate(device::Device& device) : device_(device) {}
+  void read(SensorFrame& sensors) noexcept override {
+    device_.read(sensors);
+    late_ns_ = sensors.sequence == kSample ? kLate : 0;
+  }
+  void write(const CommandFrame& command) noexcept override { device_.write(command); }
+  std::int64_t late_ns() const noexcept override { return late_ns_; }
+  void close(FaultCode) noexcept override {}
+  std::string farewell() const override { return ""; }
+  LinkCounts counts() const noexcept override { return {}; }
+
+ private:
+  device::Device& device_;
+  std::int64_t late_ns_ = 0;
+};
+
+TEST(Runtime, CountsCyclesThatWereMissedBeforeReadReturned) {
+  Parts parts(200.0);
+  WokenLate device(parts.device);
+  Runtime runtime({.duration_s = 0.2, .reports_late_cycles = true}, *parts.cycle, device);
+  runtime.start();
+  const RuntimeReport report = runtime.join();
+  EXPECT_GE(report.overruns, 4u);
+  EXPECT_EQ(report.wake_up_us.count() - report.wake_up_us.below(20e3), 1u);
+  auto sample = std::make_unique<Sample>();
+  for (std::uint64_t i = 0; i <= WokenLate::kSample + 1; ++i) ASSERT_TRUE(runtime.pop(*sample));
+  const std::uint32_t told = sample->operator_input.late_cycles;
+  EXPECT_EQ(told >= 4, report.thread.priority > 0) << told;
+}
+
 TEST(Runtime, DoesNotReportLateCyclesOfADeviceThatWaits) {
   RuntimeReport report;
   const auto late = late_cycles({.duration_s = 0.2}, false, report);

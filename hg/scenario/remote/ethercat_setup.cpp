@@ -115,8 +115,8 @@ bool is_ethercat(const std::string& address) { return address.starts_with(kSchem
 
 ethercat::EthercatConfig ethercat_config(const std::string& address,
                                          const std::filesystem::path& file,
-                                         const config::Scenario& scenario, bool is_fast) {
-  const config::DeviceConfig& device = scenario.device;
+                                         config::Scenario& scenario, bool is_fast) {
+  config::DeviceConfig& device = scenario.device;
   ethercat::EthercatConfig result{.interface_name = address.substr(kScheme.size()),
                                   .n_p = device.model.n_p,
                                   .n_m = device.model.n_m,
@@ -143,6 +143,10 @@ ethercat::EthercatConfig ethercat_config(const std::string& address,
   check_times(used, result.machine, result.rate_Hz);
   if (is_fast && !result.machine.moves_with_frames) {
     throw SetupError("--fast: " + result.machine.name + " keeps its own time, leave it out");
+  }
+  for (const config::SourceText& text : reader.texts()) {
+    device.sources.push_back(text);
+    scenario.sources.push_back(text);
   }
   return result;
 }

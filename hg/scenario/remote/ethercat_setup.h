@@ -13,9 +13,10 @@ namespace hg::scenario {
 bool is_ethercat(const std::string& address);
 
 /// Set-up data of the machine of a scenario. `file` is its machine.yaml; empty: the one beside the
-/// device file. Throws SetupError where machine and device do not fit.
+/// device file. From then on this file is one of those that describe the device (sources of device
+/// and scenario). Throws SetupError where machine and device do not fit.
 ethercat::EthercatConfig ethercat_config(const std::string& address,
                                          const std::filesystem::path& file,
-                                         const config::Scenario& scenario, bool is_fast);
+                                         config::Scenario& scenario, bool is_fast);
 
 }  // namespace hg::scenario

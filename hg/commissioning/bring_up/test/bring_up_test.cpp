@@ -17,7 +17,7 @@ struct Session {
   std::vector<Item> items;
   double astray = 0.0;  // largest true motion of a joint of the arm from where it stood, rad
 
-  Session(const config::Scenario& scenario, const Miswiring& mistake) {
+  Session(const config::Scenario& scenario, const Miswiring& mistake, const Options& options = {}) {
     const auto machine = scenario::make_simulated_device(scenario);
     MiswiredDevice device(*machine, mistake);
     struct Watching final : SimulatedCrew {
@@ -36,7 +36,7 @@ struct Session {
     const std::atomic<bool> interrupted{false};
     Watching crew(*machine, interrupted);
     Rig rig(scenario.device, device, crew);
-    items = run(rig);
+    items = run(rig, options);
     astray = crew.astray;
   }
 
@@ -141,6 +141,16 @@ TEST(BringUp, WrongZeroPositionsAreFoundOrSaidNotToBe) {
   for (int i = 3; i < 6; ++i) {
     SCOPED_TRACE(names[i]);
     expect_found(giant(), {.joint = i, .zero = 0.2}, {names[i]});
+  }
+}
+
+TEST(BringUp, SamplesThatTheConnectionFilledInAreMissing) {
+  for (const std::uint64_t count : {5U, 60U}) {  // of the 2000 of the first step
+    std::uint64_t calls = 0;
+    const Session session(giant(), {}, {.filled_in = [&] { return count * calls++; }});
+    EXPECT_EQ(session.has_passed(), count == 5) << session.failure();
+    EXPECT_NE(session.items[0].found.find(std::to_string(count) + " filled in"), std::string::npos)
+        << session.items[0].found;
   }
 }
 

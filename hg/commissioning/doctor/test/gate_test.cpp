@@ -25,9 +25,17 @@ TEST(Gate, IsOverruledByName) {
   EXPECT_EQ(decide(kLate, {"lateness", "kernel"}), "driven despite lateness, max 900 us");
   EXPECT_NE(message_of([] { decide(kLate, {"governor"}); }).find("--despite lateness"),
             std::string::npos);
-  EXPECT_EQ(message_of([] { decide(kLate, {"latenes"}); }),
-            "--despite: no item of the doctor is 'latenes', did you mean 'lateness'? There are "
-            "kernel, governor, lateness");
+}
+
+TEST(Gate, NamesTheNearestItem) {
+  EXPECT_EQ(
+      message_of([] {
+        check_items({"kernel", "latenes"});
+      }),
+      "--despite: no item of the doctor is 'latenes', did you mean 'lateness'? There are "
+      "lateness, kernel, priority, memory, swap, governor, idle, processors, interrupts, clock, "
+      "machine, throttling");
+  EXPECT_NO_THROW(check_items({"lateness", "throttling"}));
 }
 
 TEST(Gate, MeasuresTheLatenessOfThisComputer) {

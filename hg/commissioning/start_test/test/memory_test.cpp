@@ -55,6 +55,15 @@ TEST(StartTestResult, CountsForItsDeviceItsFilesAndADay) {
   EXPECT_EQ(objection(other), "failed: emergency stop");
 }
 
+TEST(StartTestResult, SaysWhatWasLetPassOfTheComputer) {
+  EXPECT_EQ(to_json(good()).find("computer"), std::string::npos);
+  StartTestResult result = good();
+  result.computer = "driven despite lateness, max 900 us";
+  EXPECT_NE(to_json(result).find("\"computer\": \"driven despite lateness, max 900 us\""),
+            std::string::npos);
+  EXPECT_EQ(objection(result), "");
+}
+
 TEST(StartTestResult, ThatIsDamagedDoesNotCount) {
   const std::string whole = to_json(good());
   for (std::size_t size = 0; size + 2 < whole.size(); ++size) {

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "hg/core/error.h"
@@ -76,6 +78,32 @@ class Bench {
 
 void expect_words(const std::string& text, const std::string& words) {
   EXPECT_NE(text.find(words), std::string::npos) << "'" << text << "' without '" << words << "'";
+}
+
+// ---- late: this computer, or the bus ----
+
+TEST(EthercatDevice, AnExchangeThatTookLongerThanItsPatienceIsLateHere) {
+  constexpr auto kPause = std::chrono::milliseconds(20);
+  Bench bench;
+  bench.connect_and_enable();
+  const LinkCounts before = bench.device().counts();
+  bench.segment.on_exchange = [&] { std::this_thread::sleep_for(kPause); };
+  bench.cycle(true);
+  EXPECT_GE(bench.device().late_ns(), 18'000'000);  // but for the millisecond of its patience
+  EXPECT_EQ(bench.device().counts().lost, before.lost);
+}
+
+TEST(EthercatDevice, AFrameThatDoesNotComeInTimeIsNotLateHere) {
+  constexpr auto kPause = std::chrono::milliseconds(500);
+  Bench bench;
+  bench.segment.machine.answer_s = 0.6;
+  bench.connect_and_enable();
+  const LinkCounts before = bench.device().counts();
+  bench.segment.on_exchange = [&] { std::this_thread::sleep_for(kPause); };
+  bench.segment.answers = false;
+  bench.cycle(true);
+  EXPECT_LT(bench.device().late_ns(), 400'000'000);
+  EXPECT_EQ(bench.device().counts().lost, before.lost + 1);
 }
 
 // ---- silence ----

@@ -15,10 +15,17 @@
 namespace hg::udp {
 namespace {
 
+// In real time, with periods so long that no busy computer is late.
+ClientConfig slow() {
+  ClientConfig config = client(false);
+  config.expected.rate_Hz = 2.0;
+  return config;
+}
+
 TEST(Session, InRealTimeLostFramesAreFilledInAndNumbersContinue) {
   Script server;
-  std::thread thread([&] { server.welcome(description(false)); });
-  RemoteDevice there(server.address(), client(false));
+  std::thread thread([&] { server.welcome(slow().expected); });
+  RemoteDevice there(server.address(), slow());
   thread.join();
   std::mt19937 random(1);
   SensorFrame frame = example_sensors(random, 5);
@@ -38,6 +45,81 @@ TEST(Session, InRealTimeLostFramesAreFilledInAndNumbersContinue) {
   }
   EXPECT_EQ(there.counts().held, 3U);
   EXPECT_EQ(there.counts().late, 1U);  // the second 12
+}
+
+// Frames at the times of a test.
+class SlowLink : public testing::Test {
+ protected:
+  static constexpr std::chrono::milliseconds kPeriod{500};
+
+  SlowLink() {
+    std::thread thread([&] { server_.welcome(config_.expected); });
+    there_ = std::make_unique<RemoteDevice>(server_.address(), config_);
+    thread.join();
+  }
+  void send(std::uint64_t sequence) {
+    frame_.sequence = sequence;
+    server_.send(frame_, {.session = 7, .number = sequence});
+  }
+  void read(std::uint64_t sequence) {
+    there_->read(sensors_);
+    ASSERT_EQ(sensors_.driver_fault, FaultCode::kNone);
+    ASSERT_EQ(sensors_.sequence, sequence);
+  }
+
+  std::unique_ptr<RemoteDevice> there_;
+
+ private:
+  static SensorFrame some_frame() {
+    std::mt19937 random(1);
+    SensorFrame frame = example_sensors(random, 5);
+    frame.driver_fault = FaultCode::kNone;
+    frame.q_p.conservativeResize(1);
+    return frame;
+  }
+
+  const ClientConfig config_ = slow();
+  Script server_;
+  SensorFrame frame_ = some_frame(), sensors_;
+};
+
+TEST_F(SlowLink, ADelayOfTheDeviceIsNoneOfThisComputer) {
+  send(2);
+  read(2);
+  std::this_thread::sleep_for(5 * kPeriod / 2);
+  send(3);
+  read(3);
+  EXPECT_EQ(there_->counts().late, 1U);
+  EXPECT_LT(there_->late_ns(), std::chrono::nanoseconds(kPeriod).count());
+}
+
+TEST_F(SlowLink, ADelayOfThisComputerIsNoneOfTheDevice) {
+  send(2);
+  read(2);
+  send(3);
+  send(4);
+  std::this_thread::sleep_for(5 * kPeriod / 2);  // a cycle that takes long
+  read(3);
+  read(4);
+  EXPECT_EQ(there_->counts().late, 0U);
+  EXPECT_LT(there_->late_ns(), std::chrono::nanoseconds(kPeriod).count());
+}
+
+// As a thread that is not woken up: the frame is there, and read() does not return.
+TEST_F(SlowLink, AReadThatReturnsLateIsLateHere) {
+  send(2);
+  read(2);
+  std::thread device([&] {
+    std::this_thread::sleep_for(kPeriod / 10);
+    send(3);
+  });
+  const std::int64_t begin = now_ns();
+  read(3);
+  device.join();
+  const std::int64_t most = now_ns() - begin - std::chrono::nanoseconds(kPeriod / 10).count();
+  EXPECT_GE(there_->late_ns(), 0);
+  EXPECT_LE(there_->late_ns(), most);  // not from the call of read()
+  EXPECT_EQ(there_->counts().late, 0U);
 }
 
 TEST(Session, InRealTimeTheDeviceKeepsTheLastCommandAndIgnoresOldOnes) {
