@@ -7,7 +7,7 @@ include(GNUInstallDirs)
 get_property(programs GLOBAL PROPERTY HG_PROGRAMS)
 # where the Debian package has its libraries, or the wheels beside ours theirs
 set_target_properties(${programs} PROPERTIES
-  INSTALL_RPATH "$ORIGIN/../lib/hapticgiant:$ORIGIN/../../cmeel.prefix/lib")
+  INSTALL_RPATH "$ORIGIN/../lib/hapticgiant/lib:$ORIGIN/../../cmeel.prefix/lib")
 install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET hg_libraries
   RUNTIME DESTINATION ${HG_PROGRAM_PREFIX}bin COMPONENT program)
 set(share ${HG_PROGRAM_PREFIX}share/hapticgiant)
@@ -27,7 +27,7 @@ endif()
 # What a wheel has from other wheels and from its Python package
 install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
   POST_INCLUDE_REGEXES "/cmeel[.]prefix/" POST_EXCLUDE_REGEXES "."
-  LIBRARY DESTINATION lib/hapticgiant COMPONENT debian)
+  LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/hapticgiant/report
   DESTINATION ${share}/python/hapticgiant COMPONENT debian PATTERN __pycache__ EXCLUDE)
 
@@ -39,6 +39,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/finish_package.cmake)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "The authors of HapticGiant <nobody@localhost>")

@@ -8,6 +8,7 @@ cd -P "$(dirname "$0")/.."
 folder=$PWD/${1:-build/deb}
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)  # the same commit gives the same bytes
 export SOURCE_DATE_EPOCH
+export PATH="$PWD/.venv/bin:$PATH"
 umask 022
 
 .venv/bin/python tools/third_party.py --texts build/release/copyright
