@@ -3,6 +3,13 @@
 #   make demo    sets up, builds, and runs the main job; ARGS="..." are handed on
 #   make test    sets up, builds and runs every test
 #   make build   sets up and builds the program: build/release/hapticgiant
+#   make wheel   packs what `make build` has made for pip, into build/wheel
+#   make deb     the same for apt, into build/deb
+#   make test-wheel
+#                builds the wheel twice, installs it into a fresh environment and uses it there
+#   make test-packages
+#                that, the same with the Debian package in a bare Debian (as root, with mmdebstrap), and
+#                pip install from a clean copy; minutes
 #   make bench   measures solver, cycle and laws beside the paper's solver into $(RESULTS); minutes;
 #                ARGS="door --quick" for a first look
 #   make experiments
@@ -70,7 +77,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo franka foxglove arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak soak-machines format check headers lint clean
+.PHONY: demo franka foxglove arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak soak-machines format check headers lint clean wheel deb test-wheel test-packages
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -85,6 +92,34 @@ test:
 	@tools/configure.sh $(PRESET) test
 	@cmake --build $(BUILD)
 	@PATH="$(CURDIR)/.venv/bin:$$PATH" ctest --test-dir $(BUILD) --output-on-failure --no-tests=error
+
+# pack,wheel or deb: builds what it is made of, then packs it
+define pack
+@tools/setup.sh wheel
+@tools/configure.sh $(PRESET) build
+@cmake --build $(BUILD) --target hapticgiant _core_stubs
+@tools/make_$(1).sh build/$(1)
+endef
+# test_package,wheel or deb,FILES: packs it again, compares, and uses it as its user does
+define test_package
+@tools/make_$(1).sh build/$(1)_again
+@cmp build/$(1)/$(2) build/$(1)_again/$(2)
+@PATH="$(CURDIR)/.venv/bin:$$PATH" .venv/bin/python tests/packages/installed_test.py $(1) \
+  $(BUILD)/hapticgiant build/$(1)/$(2) build/$(1)_installed || [ $$? = 77 ]
+endef
+
+wheel:
+	$(call pack,wheel)
+
+deb:
+	$(call pack,deb)
+
+test-wheel: wheel
+	$(call test_package,wheel,*.whl)
+
+test-packages: test-wheel deb
+	$(call test_package,deb,*.deb)
+	@tools/check_pip_install.sh
 
 bench:
 	@tools/setup.sh bench

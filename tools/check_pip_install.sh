@@ -12,7 +12,7 @@ mkdir -p "$work/source"
 git archive HEAD | tar -x -C "$work/source"
 
 python3 -m venv "$work/venv"
-"$work/venv/bin/pip" install --quiet --disable-pip-version-check "$work/source[recording,figures]"
+"$work/venv/bin/pip" install --quiet --disable-pip-version-check "$work/source"
 
 # from another folder, so that nothing is imported from the sources
 tests=$PWD/tests/packages/python_package_test.py

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Configures build/PRESET, again only when the purpose or the place of the clone has changed or when
 # recording was off; otherwise builds reconfigure themselves when CMakeLists.txt changes.
-#   tools/configure.sh PRESET build    test libraries and recording may be missing
+#   tools/configure.sh PRESET build    test libraries and recording may be missing; one for tests will do
 #   tools/configure.sh PRESET test     they must be there
 set -euo pipefail
 cd -P "$(dirname "$0")/.."
@@ -13,7 +13,9 @@ log=$build/configure.log
 
 options=(-DHG_REQUIRE_TESTS="$([ "$purpose" = test ] && echo ON || echo OFF)")
 command -v ccache >/dev/null 2>&1 && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-[ "$(cat "$stamp" 2>/dev/null)" != "$purpose in $PWD" ] || exit 0
+case "$(cat "$stamp" 2>/dev/null)" in
+  "$purpose in $PWD" | "test in $PWD") exit 0 ;;
+esac
 
 echo "build: configuring $build"
 mkdir -p "$build"

@@ -6,6 +6,7 @@
 #   tools/setup.sh test     that, and what the tests need; fails where anything is missing
 #   tools/setup.sh bench    as build, and what `hapticgiant bench` is compared with
 #   tools/setup.sh count    as build, and what counts instructions
+#   tools/setup.sh wheel    as build, and what packs a wheel
 #   tools/setup.sh sanitize as build, and a compiler with all sanitizers: SANITIZER_CXX, or clang++-22
 #
 # Works without root when the system packages are there, and names them otherwise.
@@ -14,9 +15,9 @@ cd -P "$(dirname "$0")/.."
 
 purpose=${1:-build}
 case "$purpose" in
-  build | test | bench | count | sanitize) ;;
+  build | test | bench | count | wheel | sanitize) ;;
   *)
-    echo "setup: expected 'build', 'test', 'bench', 'count' or 'sanitize', got '$purpose'" >&2
+    echo "setup: expected 'build', 'test', 'bench', 'count', 'wheel' or 'sanitize', got '$purpose'" >&2
     exit 2
     ;;
 esac
@@ -132,41 +133,14 @@ if [ "$purpose" = bench ]; then
   install_list tools/requirements-bench.txt .venv/.hapticgiant-requirements-bench \
     "eiquadprog, below the paper's solver"
 fi
+if [ "$purpose" = wheel ]; then
+  install_list tools/requirements-wheel.txt .venv/.hapticgiant-requirements-wheel "nanobind, what packs wheels"
+fi
 
 # --- viewer page -------------------------------------------------------------------------------
-# Node 18 with npm 10, or newer, builds the page; without a system one it comes as a wheel.
-export PATH="$PWD/.venv/bin:$PATH"
-node_works() {
-  local node npm
-  node=$(node --version 2>/dev/null) && npm=$(npm --version 2>/dev/null) || return 1
-  at_least 18 "${node#v}" && at_least 10 "$npm"
-}
-install_node() {
-  if node_works; then return; fi
-  say "installing node into .venv"
-  install_wheels tools/requirements-node.txt && node_works
-}
-page_packages=viewer/node_modules/.hapticgiant-lock
-install_page_packages() {
-  if cmp -s viewer/package-lock.json "$page_packages"; then return; fi
-  install_node || return 1
-  say "installing the viewer's packages"
-  (cd viewer && npm ci --loglevel=error --no-audit --no-fund >/dev/null) &&
-    cp viewer/package-lock.json "$page_packages"
-}
-page_stamp=viewer/dist/.hapticgiant-sources
-page_sources=$(find viewer/*.json viewer/*.ts viewer/index.html viewer/src viewer/public -type f \
-  -exec sha256sum {} + | LC_ALL=C sort)
-build_page() {
-  if [ "$(cat "$page_stamp" 2>/dev/null)" = "$page_sources" ]; then return; fi
-  install_page_packages || return 1
-  say "building the viewer page"
-  (cd viewer && npm run --loglevel=error build >/dev/null) && echo "$page_sources" >"$page_stamp"
-}
 if [ "$purpose" = test ]; then
-  install_node && install_page_packages && build_page ||
-    { echo "setup: the page could not be built" >&2; exit 1; }
+  tools/build_page.sh test || { echo "setup: the page could not be built" >&2; exit 1; }
 else
-  build_page || say "the page could not be built; the program runs without it"
+  tools/build_page.sh || say "the page could not be built; the program runs without it"
 fi
 say "ready"

@@ -2,6 +2,8 @@
 
     third_party.py            writes it; needs what `tools/setup.sh test` installs
     third_party.py --check    compares it with the lists that say what is installed: quick, offline
+    third_party.py --texts FILE
+                              writes the licences in full, for who gives the program away
     third_party.py --audit    queries advisory databases (cargo audit, npm audit) where they answer
 
 Exit codes: 0 fine, 1 a component without an entry, an entry without a component, a licence that is
@@ -27,7 +29,17 @@ ALLOWED = {"0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause
            "BSL-1.0", "GPL-3.0-only WITH GCC-exception-3.1", "ISC", "LGPL-2.1-or-later", "LGPL-2.1+", "MIT",
            "MPL-2.0", "Qhull", "Unicode-3.0", "Unicode-DFS-2016", "Unlicense", "Zlib"}
 # where the metadata of a wheel is wrong or says nothing
-CORRECTED = {"cmeel-eigen": "MPL-2.0", "cmeel-qhull": "Qhull"}
+CORRECTED = {"cmeel-console-bridge": "BSD-3-Clause", "cmeel-eigen": "MPL-2.0", "cmeel-qhull": "Qhull"}
+# of wheels without a text: a header that begins with it, below include
+HEADERS = {
+    "cmeel-assimp": "assimp/scene.h",
+    "cmeel-boost": "boost/outcome/detail/version.hpp",
+    "cmeel-console-bridge": "console_bridge/console.h",
+    "cmeel-octomap": "octomap/octomap.h",
+    "cmeel-tinyxml2": "tinyxml2.h",
+    "cmeel-urdfdom": "urdfdom/urdf_parser/urdf_parser.h",
+    "cmeel-urdfdom-headers": "urdfdom_headers/urdf_model/model.h",
+}
 # packages of Debian: licence of what is linked, and how
 SYSTEM = {
     "g++": ("GPL-3.0-only WITH GCC-exception-3.1", "libstdc++ and libgcc, linked dynamically"),
@@ -38,6 +50,7 @@ SYSTEM = {
     "libyaml-cpp-dev": ("MIT", "linked dynamically"),
     "libzstd-dev": ("BSD-3-Clause", "linked dynamically"),
     "nlohmann-json3-dev": ("MIT", "headers"),
+    "rustc": ("MIT OR Apache-2.0", "Rust's standard library, linked"),
     "zlib1g-dev": ("Zlib", "linked dynamically"),
 }
 # numbers in URDFs of models/arms, by name and version
@@ -54,7 +67,7 @@ PROTOCOLS = {
     ("libfranka-common", "d96c221"): ("Apache-2.0", "layout of messages: hg/device/franka/protocol.h"),
 }
 SPDX_TEXT = "that of this name in the SPDX list"
-IMPLIED = ["g++", "libc6"]  # not in the list of setup.sh that libraries are in
+IMPLIED = ["g++", "libc6", "rustc"]  # not in the list of setup.sh that libraries are in
 
 
 def system_names():
@@ -133,18 +146,23 @@ def wheel_rows():
         texts = [str(path) for path in found.files or []
                  if re.match(r"(?i)licen[cs]e|copying", path.name)]
         how = "Python extension" if name == "nanobind" else "linked or headers"
+        if name in HEADERS:
+            texts.append(f"include/{HEADERS[name]}")
         text = f"in the wheel: {texts[0]}" if texts else SPDX_TEXT
         yield "PyPI", name, version, licence or "unknown", how, text
 
 
-def crate_rows():
+def crate_packages():
+    """What cargo says of each crate of others."""
     done = subprocess.run(
         ["cargo", "metadata", "--format-version", "1", "--offline", "--locked", "--manifest-path",
          RUST / "Cargo.toml"], capture_output=True, text=True, check=True)
-    for package in sorted(json.loads(done.stdout)["packages"],
-                          key=lambda package: (package["name"], package["version"])):
-        if package["source"] is None:
-            continue
+    packages = [package for package in json.loads(done.stdout)["packages"] if package["source"]]
+    return sorted(packages, key=lambda package: (package["name"], package["version"]))
+
+
+def crate_rows():
+    for package in crate_packages():
         folder = pathlib.Path(package["manifest_path"]).parent
         is_macro = any("proc-macro" in target["kind"] for target in package["targets"])
         yield ("crates.io", package["name"], package["version"], package["license"],
@@ -185,6 +203,95 @@ def write():
     ]
     lines += ["| " + " | ".join(row) + " |" for row in rows]
     PAGE.write_text("\n".join(lines) + "\n")
+
+
+MIT = """Permission is hereby granted, free of charge, to any person obtaining a copy of this software and
+associated documentation files (the "Software"), to deal in the Software without restriction,
+including without limitation the rights to use, copy, modify, merge, publish, distribute, sublicense,
+and/or sell copies of the Software, and to permit persons to whom the Software is furnished to do so,
+subject to the following conditions:
+
+The above copyright notice and this permission notice shall be included in all copies or substantial
+portions of the Software.
+
+THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT
+LIMITED TO THE WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN
+NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY,
+WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE
+SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE."""
+
+
+def standard_text(name, licence, authors=""):
+    """The text of a licence of which the component has no copy of its own."""
+    ids = set().union(*alternatives(licence))
+    holders = f"Copyright (c) {authors or 'the authors of ' + name}\n\n"
+    if "MIT" in ids:
+        return holders + MIT
+    for known in ("Apache-2.0", "MPL-2.0"):
+        if known in ids:
+            return holders + pathlib.Path("/usr/share/common-licenses", known).read_text()
+    sys.exit(f"third_party: {name}: no text of its licence {licence}")
+
+
+def first_comment(header):
+    """What stands in the first comment of a C++ header."""
+    comment = re.search(r"/\*+(.*?)\*+/", header.read_text(), re.DOTALL)[1]
+    return "\n".join(re.sub(r"^ ?\*", "", line) for line in comment.splitlines())
+
+
+def system_text(name, licence):
+    found = pathlib.Path("/usr/share/doc", name, "copyright")
+    return found.read_text(errors="replace") if found.exists() else standard_text(name, licence)
+
+
+def wheel_text(name, licence):
+    found = importlib.metadata.distribution(name)
+    for path in found.files or []:
+        if re.match(r"(?i)licen[cs]e|copying", path.name):
+            return pathlib.Path(found.locate_file(path)).read_text()
+    if name in HEADERS:
+        return first_comment(pathlib.Path(found.locate_file("cmeel.prefix/include")) / HEADERS[name])
+    return standard_text(name, licence)
+
+
+def folder_text(folder, name, licence, authors=""):
+    """The licences in the folder of a crate or npm package; a licence to choose from is chosen."""
+    names = [path for path in text_in(folder).split(", ") if path and (folder / path).is_file()]
+    mit = [path for path in names if "mit" in path.lower()]
+    if not names:
+        return standard_text(name, licence, authors)
+    return "\n\n".join((folder / path).read_text(errors="replace") for path in (mit or names))
+
+
+def write_texts(file):
+    """Our licence and those of all that is in a package, each text once."""
+    crates = {(package["name"], package["version"]):
+              (pathlib.Path(package["manifest_path"]).parent, ", ".join(package["authors"]))
+              for package in crate_packages()}
+    texts = {}  # by text: the components that have it
+    rows = [*system_rows(), *wheel_rows(), *crate_rows(), *npm_rows(), *protocol_rows()]
+    for source, name, version, licence, how, _ in rows:
+        if (source == "Debian" and name in ("g++", "libc6") or how == "while compiling" or
+                re.match(r"windows|winapi", name)):
+            continue  # not in it
+        if source == "Debian":
+            text = system_text(name, licence)
+        elif source == "PyPI":
+            text = wheel_text(name, licence)
+        elif source == "crates.io":
+            text = folder_text(crates[name, version][0], name, licence, crates[name, version][1])
+        elif source == "npm":
+            text = folder_text(ROOT / "viewer/node_modules" / name, name, licence)
+        else:
+            text = standard_text(name, licence)
+        lines = [line.rstrip() for line in text.strip("\n").splitlines()]
+        texts.setdefault("\n".join(lines), []).append(f"{name} {version}".strip() + f" ({licence})")
+    line = "=" * 100
+    parts = ["HapticGiant\n\n" + (ROOT / "LICENSE").read_text() +
+             "\nIt is made of the components below, THIRD_PARTY.md, and of models with licences of their own,"
+             "\nmodels/arms/LICENSES.md."]
+    parts += ["\n".join(sorted(names)) + "\n\n" + text for text, names in texts.items()]
+    file.write_text(f"\n\n{line}\n".join(parts) + "\n")
 
 
 def faults():
@@ -229,7 +336,11 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--audit", action="store_true")
+    parser.add_argument("--texts", type=pathlib.Path, metavar="FILE")
     arguments = parser.parse_args()
+    if arguments.texts:
+        write_texts(arguments.texts)
+        return
     if arguments.audit:
         sys.exit(0 if audit() else 1)
     if not arguments.check:

@@ -158,6 +158,7 @@ int new_driver(const NewDriverArguments& arguments) {
   }
   fs::create_directory(folder);
   for (const fs::directory_entry& entry : fs::directory_iterator(templates)) {
+    if (!entry.is_regular_file()) continue;  // __pycache__, which pip writes
     std::string text = read_file(entry.path());
     for (const auto& [from, to] : names) text = replaced(text, from, to);
     write_output((folder / entry.path().filename()).string(), text);

@@ -93,8 +93,9 @@ std::vector<std::string> report_program() {
 
 [[noreturn]] void refuse(const std::string& interpreter) {
   throw SetupError(fmt::format(
-      "{} cannot write the report: it needs scipy, matplotlib and jinja2; tools/setup.sh build, or "
-      "pip install scipy matplotlib jinja2, then the same command again",
+      "{} cannot write the report: it needs scipy, matplotlib and jinja2; tools/setup.sh build, "
+      "pip install scipy matplotlib jinja2, or apt install python3-scipy python3-matplotlib "
+      "python3-jinja2, then the same command again",
       interpreter));
 }
 
@@ -117,7 +118,9 @@ int write_report(const fs::path& folder, const std::string& docs,
   print_out(said);
   if (code == 0) return 0;
   if (code > kVerdict && code <= kVerdict + kLargestVerdict) return code - kVerdict;
-  throw SetupError(fmt::format("{}: no report: {} ended with {}", folder.string(), words[2], code));
+  const std::string& program = words[words[2] == "-m" ? 3 : 2];
+  throw SetupError(fmt::format("{}: no report: {} of {} ended with {}", folder.string(), program,
+                               words[0], code));
 }
 
 int report_on(const fs::path& folder, const nlohmann::ordered_json& results,

@@ -9,7 +9,7 @@ import numpy as np
 
 from hapticgiant import _core
 
-MODELS = pathlib.Path(__file__).resolve().parent / "models"
+MODELS = pathlib.Path(__file__).resolve().parent / "share" / "hapticgiant" / "models"
 """Folder of the shipped devices, twins, scripts and scenarios."""
 
 

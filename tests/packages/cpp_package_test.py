@@ -18,7 +18,7 @@ DOOR_OPEN = re.compile(r"hinge at 1\.[0-9]+ rad after 10\.6 s")
 
 REMOTE_PROJECT = """cmake_minimum_required(VERSION 3.22)
 project(remote LANGUAGES CXX)
-find_package(hapticgiant 0.1 REQUIRED CONFIG COMPONENTS udp)
+find_package(hapticgiant 0.2 REQUIRED CONFIG COMPONENTS udp)
 add_executable(remote main.cpp)
 target_link_libraries(remote PRIVATE hapticgiant::udp)
 """

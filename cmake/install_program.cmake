@@ -1,0 +1,53 @@
+# The programs with what they look for below their prefix, as component `program`; the wheel
+# (pyproject.toml, tools/make_wheel.sh) and the Debian package (tools/make_deb.sh) are made of it.
+# A program that is to be in both says so: set_property(GLOBAL APPEND PROPERTY HG_PROGRAMS target).
+#
+# HG_PROGRAM_PREFIX is put before all destinations, "hapticgiant/" in a wheel.
+include(GNUInstallDirs)
+get_property(programs GLOBAL PROPERTY HG_PROGRAMS)
+# where the Debian package has its libraries, or the wheels beside ours theirs
+set_target_properties(${programs} PROPERTIES
+  INSTALL_RPATH "$ORIGIN/../lib/hapticgiant/lib:$ORIGIN/../../cmeel.prefix/lib")
+install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET hg_libraries
+  RUNTIME DESTINATION ${HG_PROGRAM_PREFIX}bin COMPONENT program)
+set(share ${HG_PROGRAM_PREFIX}share/hapticgiant)
+set(program COMPONENT program PATTERN __pycache__ EXCLUDE PATTERN ".*" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${share} ${program})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/driver DESTINATION ${share}/examples ${program})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/viewer/dist DESTINATION ${share}/viewer OPTIONAL ${program})
+install(FILES ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md DESTINATION ${HG_PROGRAM_PREFIX}share/doc/hapticgiant
+  COMPONENT program)
+# the licences in full, which `tools/third_party.py --texts` writes for who gives the package away
+install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${HG_PROGRAM_PREFIX}share/doc/hapticgiant
+  COMPONENT program OPTIONAL)
+if(SKBUILD)
+  return()
+endif()
+
+# What a wheel has from other wheels and from its Python package
+install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
+  POST_INCLUDE_REGEXES "/cmeel[.]prefix/" POST_EXCLUDE_REGEXES "."
+  LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/hapticgiant/report
+  DESTINATION ${share}/python/hapticgiant COMPONENT debian PATTERN __pycache__ EXCLUDE)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL program debian)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/finish_package.cmake)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "The authors of HapticGiant <nobody@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "large robot as a kinesthetic haptic interface")
+set(CPACK_PACKAGE_DESCRIPTION "A person holds the handle of a robot and feels the digital twin of any
+serial chain: a door, an excavator, a free tool, any URDF. This package has the
+program, a page for the browser, models, a simulated machine and reports.")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${wheel_prefix}/lib)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-scipy, python3-matplotlib, python3-jinja2")
+include(CPack)
