@@ -30,12 +30,14 @@ struct TwinJoint {
   std::string name;
   /// Has 7 coordinates and 6 velocities, and is not part of a JointState
   bool is_floating = false;
+  bool is_slide = false;
 };
 
 struct RecordingInfo {
   std::filesystem::path folder = "recordings";
   std::string name = "run";  ///< first part of the file name, for example "door"
   std::vector<std::string> gantry_joints, manipulator_joints;
+  std::vector<std::string> gantry_units, manipulator_units;  ///< rad or m, of each of them
   std::vector<TwinJoint> twin_joints;
   LimitCatalogue limits;
   std::vector<NamedText> configuration;  ///< files that describe the run, kept as attachments

@@ -43,8 +43,12 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
   info.name = recording_name(options.scenario);
   info.gantry_joints = gantry_joints(scenario.device);
   info.manipulator_joints = manipulator_joints(scenario.device);
+  info.gantry_units = gantry_units(scenario.device);
+  info.manipulator_units = manipulator_units(scenario.device);
   for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
-    info.twin_joints.push_back({joint.name, joint.type == model::JointType::kFloating});
+    info.twin_joints.push_back({.name = joint.name,
+                                .is_floating = joint.type == model::JointType::kFloating,
+                                .is_slide = joint.is_slide()});
   }
   info.limits = scenario.limits;
   for (const auto& source : scenario.sources) {
