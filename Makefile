@@ -27,6 +27,10 @@
 #                it with pylibfranka, the maker's client, in an environment of their own (180 MB).
 #                FRANKY=1: against franky-sim, too (660 MB); MINUTES=10 measures its loop for so long
 #                instead
+#   make notebooks
+#                executes the notebooks of examples/notebooks as Jupyter does, reads exports by pandas,
+#                pyarrow and h5py, and records streams by LabRecorder, in an environment of their own
+#                (450 MB). Writes the .ipynb files from the .py files beside them
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -63,7 +67,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo franka arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
+.PHONY: demo notebooks franka arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -101,6 +105,13 @@ arms: build
 franka: build
 	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(FRANKY),--franky) \
 	  $(if $(MINUTES),--minutes $(MINUTES))
+
+notebooks: build
+	@tools/setup.sh test
+	@tools/configure.sh $(PRESET) test
+	@cmake --build $(BUILD) --target hapticgiant _core _core_stubs
+	@.venv/bin/python tools/notebooks.py
+	@.venv/bin/python tests/connect/notebooks_test.py $(BUILD) $(BUILD)/hapticgiant
 
 bench-instructions:
 	@tools/setup.sh count

@@ -10,8 +10,10 @@ import json
 import os
 import pathlib
 import resource
+import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -26,9 +28,9 @@ JUDGES = BUILD.parent / "connect_venv"
 
 def setUpModule():
     global DOOR, SAMPLES
-    code, out, err = run("run", "door", "--fast", "--no-viewer", "--duration", "3", "--seed", "7",
+    code, out, err = run("run", "door", "--fast", "--no-viewer", "--duration", "2", "--seed", "7",
                          "--flight-recorder", "off", "--recordings", RECORDINGS)
-    assert code in (0, 1), out + err  # events after 3 s are missing
+    assert code in (0, 1), out + err  # later events are missing
     DOOR = (RECORDINGS / "latest.mcap").resolve()
     SAMPLES = recorded.samples(DOOR)
 
@@ -208,6 +210,11 @@ class Rosbag2(Export):
         if why:
             raise unittest.SkipTest(f"rosbags cannot be installed: {why}")
 
+    def setUp(self):
+        # beside the recording: links do not reach other file systems
+        self.folder = pathlib.Path(tempfile.mkdtemp(dir=RECORDINGS))
+        self.addCleanup(shutil.rmtree, self.folder)
+
     def read(self):
         out = self.folder / "read.json"
         subprocess.run([JUDGES / "bin" / "python", "tests/connect/read_rosbag2.py",
@@ -232,7 +239,7 @@ class Rosbag2(Export):
         self.assertEqual(bag.stat().st_ino, DOOR.stat().st_ino)
         found = self.read()
         for topic in ("/joint_states", "/twin/joint_states", "/user_wrench", "/tf"):
-            self.assertGreater(len(found[topic]["numbers"]), 250, topic)
+            self.assertGreater(len(found[topic]["numbers"]), 150, topic)
         self.assertEqual(found["/tf"]["type"], "tf2_msgs/msg/TFMessage")
         self.is_the_recording(found)
 
