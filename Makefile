@@ -35,6 +35,10 @@
 #                FRANKY=1: against franky-sim, too (660 MB)
 #   make foxglove  opens the live interface of a run in the last open Foxglove Studio, in a headless
 #                browser, and uses it (36 MB, once)
+#   make notebooks
+#                executes the notebooks of examples/notebooks as Jupyter does, reads exports by pandas,
+#                pyarrow and h5py, and records streams by LabRecorder, in an environment of their own
+#                (450 MB). Writes the .ipynb files from the .py files beside them
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -77,7 +81,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo franka foxglove arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak soak-machines format check headers lint clean wheel deb test-wheel test-packages
+.PHONY: demo franka foxglove arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak soak-machines format check headers lint clean wheel deb test-wheel test-packages notebooks
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -145,6 +149,13 @@ franka: build
 
 foxglove: build
 	@node viewer/test/foxglove/run.mjs $(BUILD)/hapticgiant build/foxglove $(PICTURE)
+
+notebooks: build
+	@tools/setup.sh test
+	@tools/configure.sh $(PRESET) test
+	@cmake --build $(BUILD) --target hapticgiant _core _core_stubs
+	@.venv/bin/python tools/notebooks.py
+	@.venv/bin/python tests/connect/notebooks_test.py $(BUILD) $(BUILD)/hapticgiant
 
 bench-instructions:
 	@tools/setup.sh count

@@ -17,6 +17,7 @@
 #include "apps/hapticgiant/experiment_command.h"
 #include "apps/hapticgiant/experiments/recording_commands.h"
 #include "apps/hapticgiant/explain_command.h"
+#include "apps/hapticgiant/export_command.h"
 #include "apps/hapticgiant/faults_command.h"
 #include "apps/hapticgiant/haptify_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
@@ -104,6 +105,7 @@ int main(int argc, char** argv) {
   apps::add_bus(app, exit_code);
   apps::add_replay(app, exit_code);
   apps::add_explain(app, exit_code);
+  apps::add_export(app, exit_code);
   apps::add_simulate(app, exit_code);
   apps::add_start_test(app, exit_code);
   apps::add_commission(app, exit_code);

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
@@ -53,10 +54,15 @@ std::string read_all(int descriptor) {
 }
 
 // It starts in the root folder: Python would take modules from the working directory.
-Ended run_program(std::vector<std::string> words) {
+std::vector<char*> arguments_of(std::vector<std::string>& words) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  return arguments;
+}
+
+Ended run_program(std::vector<std::string> words) {
+  std::vector<char*> arguments = arguments_of(words);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return {};
   const OpenFile output(ends[0]);
@@ -88,6 +94,12 @@ std::vector<std::string> report_program() {
   } else {
     words.insert(words.end(), {"-m", "hapticgiant.report"});
   }
+  return words;
+}
+
+std::vector<std::string> export_program(const std::string& format) {
+  std::vector<std::string> words = report_program();
+  words.insert(words.end(), {"--export", format});
   return words;
 }
 
@@ -127,6 +139,74 @@ int report_on(const fs::path& folder, const nlohmann::ordered_json& results,
               const std::string& docs) {
   write_output((folder / "results.json").string(), results.dump() + "\n");
   return write_report(folder, docs);
+}
+
+std::string python_package_folder(const std::string& package) {
+  const std::string code = fmt::format(
+      "import importlib.util as u; s = u.find_spec('{}'); "
+      "print(s.submodule_search_locations[0] if s else '', end='')",
+      package);
+  const Ended ended = run_program({interpreter(config::installation_root()), "-B", "-c", code});
+  return ended.code == 0 ? ended.said : "";
+}
+
+void check_export_program(const std::string& format) {
+  const std::vector<std::string> words = export_program(format);
+  std::vector<std::string> check = words;
+  check.emplace_back("--check");
+  const Ended ended = run_program(check);
+  if (ended.code == kMissing) {
+    throw SetupError(
+        fmt::format("--format {}: {} lacks {}; pip install {} there, or set HAPTICGIANT_PYTHON to "
+                    "a Python that "
+                    "has it. --format csv needs nothing",
+                    format, words[0], ended.said, ended.said));
+  }
+  if (ended.code != 0) {
+    throw SetupError(fmt::format(
+        "--format {}: needs Python, and {} does not work; set HAPTICGIANT_PYTHON to one with "
+        "hapticgiant[export]. --format csv needs nothing",
+        format, words[0]));
+  }
+}
+
+ExportProgram::ExportProgram(const std::string& format) : words_(export_program(format)) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw SetupError("export: no pipe can be made");
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+  posix_spawn_file_actions_addchdir_np(&actions, "/");
+  std::vector<char*> arguments = arguments_of(words_);
+  const int error =
+      posix_spawnp(&child_, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[0]);
+  input_ = ends[1];
+  if (error != 0) child_ = 0;
+}
+
+ExportProgram::~ExportProgram() {
+  if (input_ >= 0) close(input_);
+  if (child_ > 0) waitpid(child_, nullptr, 0);
+}
+
+void ExportProgram::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(input_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return finish();  // which says why
+    bytes.remove_prefix(written);
+  }
+}
+
+void ExportProgram::finish() {
+  close(std::exchange(input_, -1));
+  int status = 0;
+  const pid_t child = std::exchange(child_, 0);
+  const bool has_ended = child > 0 && waitpid(child, &status, 0) == child;
+  if (has_ended && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  throw SetupError(fmt::format("{} could not write the export", words_[0]));
 }
 
 std::string report_text(const fs::path& folder, const nlohmann::ordered_json& results,

@@ -7,12 +7,14 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/lab_streams.h"
 #include "apps/hapticgiant/open_page.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
@@ -56,6 +58,7 @@ struct Observers {
   page::RunPage* page;  ///< page; nullptr = none
   scenario::RunRecording recording;
   recording::ProblemDumps dumps;
+  std::unique_ptr<lab_streaming::LabStreams> streams;  ///< nullptr = none
   bool is_fast = false;
   /// End of the script, to report if the run continues after it; 0 = it does not
   double script_end_s = 0.0;
@@ -69,6 +72,7 @@ struct Observers {
 void notify(Observers& observers, double time_s, std::string_view name, std::string_view what) {
   observers.status_line.print(fmt::format("{:8.3f} s  {:<18} {}", time_s, name, what));
   observers.recording.event(time_s, name, what);
+  if (observers.streams) observers.streams->mark(time_s, name, what);
   if (observers.page != nullptr) observers.page->announce(time_s, name, what);
 }
 
@@ -94,6 +98,7 @@ void observe(Observers& observers, const Sample& sample) {
     notify(observers, sample.record.time_s, news.name, news.text);
   }
   observers.recording.push(sample);
+  if (observers.streams) observers.streams->push(sample);
   if (const auto event = observers.detector.observe(sample.record)) {
     observers.summary.add(*event);
     notify(observers, event->time_s, event->name, event->what);
@@ -113,6 +118,12 @@ void show(Observers& observers, const Sample& sample) {
 
 void tell_problems(Observers& observers, const std::string& text) {
   if (!text.empty()) observers.status_line.print(text);
+}
+
+void check_streams(Observers& observers, double time_s) {
+  if (!observers.streams) return;
+  const std::string news = observers.streams->news();
+  if (!news.empty()) notify(observers, time_s, "lab clock", news);
 }
 
 void check_recording(Observers& observers, double time_s) {
@@ -135,6 +146,7 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
     if (any && !observers.is_fast) show(observers, *sample);
     tell_problems(observers, observers.dumps.look_at(runtime.kept_problems()));
     check_recording(observers, sample->record.time_s);
+    check_streams(observers, sample->record.time_s);
     if (is_finished) break;
     if (observers.page != nullptr) {
       observers.page->follow(&runtime, note(observers, *sample));
@@ -268,12 +280,13 @@ void tell_missing_meshes(const config::Scenario& scenario) {
 
 // to its end and its summary; the exit code
 int play(PreparedRun& run, const std::atomic<bool>& interrupted, const BackgroundOutput& output,
-         page::RunPage* page) {
+         page::RunPage* page, const lab_streaming::Liblsl* liblsl) {
   const RunArguments& arguments = run.arguments;
   const config::Scenario& scenario = run.scenario;
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
   const bool goes_on = is_terminal && page != nullptr;
   const runtime::RuntimeOptions options = runtime_options(run, goes_on, interrupted, page);
+  auto streams = liblsl == nullptr ? nullptr : open_lab_streams(*liblsl, scenario);
   // after all that may refuse the run, which then leaves no file
   const scenario::RecordingPlan plan = recording_plan(run);
   scenario::RunRecording recording(plan);
@@ -290,6 +303,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
       .page = page,
       .recording = std::move(recording),
       .dumps = problem_dumps(run, stem),
+      .streams = std::move(streams),
       .is_fast = arguments.is_fast,
       .script_end_s = options.duration_s == 0.0 ? scenario::planned_duration_s(scenario) : 0.0,
       .names = scenario::part_names(scenario),
@@ -327,6 +341,8 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
 
   const scenario::RunRecording::Result recorded = observers.recording.close();
   print_recorded(recorded, arguments.program);
+  std::optional<lab_streaming::StreamCounts> streamed;
+  if (observers.streams) streamed = observers.streams->close();
   analysis::RunFacts facts = scenario::facts_of_run(scenario, options, report);
   facts.version = kVersion;
   if (run.remote != nullptr) {
@@ -342,6 +358,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const std::vector<std::string> missing = observers.detector.missing();
   print_out(fmt::format("\n{}{}", observers.summary.to_text(facts, missing),
                         observers.dumps.summary(runtime.kept_problems())));
+  if (streamed) print_streamed(*streamed);
   if (run.machine != nullptr) print_out(fmt::format("  start test   {}\n", run.start_test));
   if (!run.computer.empty()) print_out(fmt::format("  computer     {}\n", run.computer));
   for (const std::string& line : about_machine) print_out(fmt::format("  {}\n", line));
@@ -364,6 +381,8 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
 
 int run(const RunArguments& arguments) {
   check_writable(arguments.summary, kJson);
+  const std::unique_ptr<lab_streaming::Liblsl> liblsl =
+      arguments.has_lab_streams ? load_liblsl() : nullptr;
   auto present = std::make_unique<PreparedRun>(arguments);
   const std::atomic<bool>& interrupted = watch_interruption();
   const BackgroundOutput output(interrupted);
@@ -375,7 +394,7 @@ int run(const RunArguments& arguments) {
   });
   if (page) present_page(page->url(), arguments.address, arguments.opens_browser);
   while (true) {
-    const int code = play(*present, interrupted, output, page.get());
+    const int code = play(*present, interrupted, output, page.get(), liblsl.get());
     if (!page || interrupted.load() || !page->take_next()) return code;
     last = std::move(present);
     present = std::move(next);

@@ -38,7 +38,8 @@ struct RunArguments {
   std::vector<std::string> despite;
   /// Joints of a machine confirmed to have moved since the last run
   std::vector<std::string> confirmed_joints;
-  bool has_recording = true;  ///< writes the recording and the solver's failed or slow problems
+  bool has_lab_streams = false;  ///< sends samples and events to the Lab Streaming Layer
+  bool has_recording = true;     ///< writes the recording and the solver's failed or slow problems
   /// Condition for writing the last seconds: fault, always, off
   std::string flight_recorder = "fault";
   int slow_solve = 100;  ///< number of active sets from which a problem is slow

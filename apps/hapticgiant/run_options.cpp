@@ -79,6 +79,11 @@ void add_run(CLI::App& app, const std::string& program, int& exit_code) {
       ->excludes(no_viewer)
       ->check(whole_number(0.0, 65535.0));
   command->add_flag("!--no-browser", arguments->opens_browser, "print the link only");
+  command
+      ->add_flag("--lsl", arguments->has_lab_streams,
+                 "send samples and events to the Lab Streaming Layer "
+                 "(docs/start/lab_streaming_layer.md)")
+      ->excludes(fast);
   command->add_option("--recordings", arguments->recordings, "folder of the recordings")
       ->capture_default_str();
   command->add_flag("!--no-recording", arguments->has_recording, "without a recording");

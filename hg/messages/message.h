@@ -9,6 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "hg/core/enumerators.h"
 #include "hg/core/fields.h"
 
 namespace hg::messages {
@@ -31,5 +32,16 @@ std::string message_name() {
 
 template <typename T>
 concept IsScalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+/// A field's note, with the meanings of an enum's numbers appended. Fault codes have a table of
+/// their own, docs/concepts/safety.md.
+template <typename T>
+std::string with_numbers(const std::string& note) {
+  if constexpr (std::is_enum_v<T> && sizeof(T) == 1) {
+    return note.empty() ? numbers_of<T>() : note + ": " + numbers_of<T>();
+  } else {
+    return note;
+  }
+}
 
 }  // namespace hg::messages

@@ -16,6 +16,7 @@ struct TwinJoint {
   std::string name;
   /// Has 7 coordinates and 6 velocities, and is not part of a JointState
   bool is_floating = false;
+  bool is_slide = false;
 };
 
 struct RunNames {

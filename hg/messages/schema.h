@@ -10,7 +10,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "hg/core/enumerators.h"
 #include "hg/core/types.h"
 #include "hg/messages/message.h"
 
@@ -41,17 +40,6 @@ class SchemaWriter {
   std::vector<Definition> inner;  ///< definitions of the messages inside it
 
  private:
-  // appends the meanings of an enum's numbers; fault codes have a table of their own,
-  // docs/concepts/safety.md
-  template <typename T>
-  static std::string with_numbers(const std::string& note) {
-    if constexpr (std::is_enum_v<T> && sizeof(T) == 1) {
-      return note.empty() ? numbers_of<T>() : note + ": " + numbers_of<T>();
-    } else {
-      return note;
-    }
-  }
-
   template <IsScalar T>
   static std::string type_name(const T*) {
     if constexpr (std::is_enum_v<T>) {

@@ -18,19 +18,38 @@
 
 namespace hg::recording {
 
+/// What the numbers in a row of a column belong to.
+enum class Axis {
+  kNone,
+  kGantry,          ///< axes of the gantry
+  kManipulator,     ///< joints of the manipulator
+  kJoint,           ///< gantry, then manipulator
+  kTwinCoordinate,  ///< coordinates of the twin; a floating joint has 7
+  kTwinVelocity,    ///< degrees of freedom of the twin; a floating joint has 6
+  kLimit,           ///< limits
+  kDirection,       ///< x, y, z
+  kSpatial,         ///< along x, y, z, then about x, y, z
+  kRotation,        ///< a rotation matrix, row by row
+  kUnitReading,     ///< six readings per inertial unit
+  kUnit,            ///< inertial units
+};
+
 /// All numbers of one field, row after row.
 struct Column {
   std::string name;
+  std::string note;  ///< what it is, with its unit; see hg/core/fields.h
+  Axis axis = Axis::kNone;
   char kind = 'f';        ///< kind of the numbers as numpy writes it: b, i, u, f
   std::size_t bytes = 0;  ///< bytes of one number
   bool is_wide = false;   ///< two dimensions even if every row has one number
   bool is_kept = true;    ///< whether append() adds to it
+  std::size_t least_width = 1;
   std::vector<std::byte> data;
   std::vector<std::size_t> counts;  ///< numbers in each row
 
-  /// Numbers of the longest row, at least one.
+  /// Numbers of the longest row, at least `least_width`.
   std::size_t width() const {
-    return counts.empty() ? 1 : std::max<std::size_t>(1, *std::ranges::max_element(counts));
+    return counts.empty() ? least_width : std::max(least_width, *std::ranges::max_element(counts));
   }
 };
 
@@ -54,12 +73,29 @@ class Columns {
     visit(sample, Pass::kAppend);
   }
 
+  /// Removes all rows; from then on no row is shorter than the longest one so far, so that columns
+  /// can be written in parts.
+  void clear() {
+    rows_ = 0;
+    for (Column& column : columns_) {
+      column.least_width = column.width();
+      column.data.clear();
+      column.counts.clear();
+    }
+  }
+
+  /// Gives rows at least the widths of these columns, which are those of another Columns.
+  void widen(const std::vector<Column>& columns) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) columns_[i].least_width = columns[i].width();
+  }
+
   std::size_t rows() const noexcept { return rows_; }
   /// All columns in the order of the fields; those that are not kept have no rows.
   const std::vector<Column>& all() const noexcept { return columns_; }
 
   template <typename T>
-  void operator()(const char* name, const T& value, const char* = "") {
+  void operator()(const char* name, const T& value, const char* note = "") {
+    if (pass_ == Pass::kDefine) note_ = with_numbers<T>(note);
     put(name, value);
   }
 
@@ -97,24 +133,59 @@ class Columns {
 
   template <messages::IsScalar T>
   void put(const char* name, const T& value) {
-    if (Column* column = next<T>(name, is_sequence_)) add(*column, &value);
+    const Axis axis = is_sequence_ ? Axis::kLimit : Axis::kNone;
+    if (Column* column = next<T>(name, axis)) add(*column, &value);
   }
 
   template <int kRows, int kCols, int kOptions, int kMaxRows, int kMaxCols>
   void put(const char* name,
            const Eigen::Matrix<double, kRows, kCols, kOptions, kMaxRows, kMaxCols>& matrix) {
-    Column* column = next<double>(name, true);
+    Column* column =
+        next<double>(name, axis_of(kRows == Eigen::Dynamic ? kMaxRows : -kRows * kCols));
     if (column == nullptr) return;
     for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
       for (Eigen::Index col = 0; col < matrix.cols(); ++col) add(*column, &matrix(row, col));
     }
   }
 
+  // `size`: the capacity, or minus the fixed number of entries
+  static constexpr Axis axis_of(int size) {
+    switch (size) {
+      case -3:
+        return Axis::kDirection;
+      case -6:
+      case 6:
+        return Axis::kSpatial;
+      case -9:
+        return Axis::kRotation;
+      case kMaxGantry:
+        return Axis::kGantry;
+      case kMaxManipulator:
+        return Axis::kManipulator;
+      case kMaxGantry + kMaxManipulator:
+        return Axis::kJoint;
+      case kMaxTwin:
+        return Axis::kTwinVelocity;
+      case kMaxTwinCoords:
+        return Axis::kTwinCoordinate;
+      case kMaxInertialUnits:
+        return Axis::kUnit;
+      case 6 * kMaxInertialUnits:
+        return Axis::kUnitReading;
+      default:
+        return Axis::kNone;
+    }
+  }
+
   template <typename T>
-  Column* next(const char* name, bool is_wide) {
+  Column* next(const char* name, Axis axis) {
     if (pass_ == Pass::kDefine) {
-      columns_.push_back(
-          {.name = path_ + name, .kind = kind_of<T>(), .bytes = sizeof(T), .is_wide = is_wide});
+      columns_.push_back({.name = path_ + name,
+                          .note = note_,
+                          .axis = axis,
+                          .kind = kind_of<T>(),
+                          .bytes = sizeof(T),
+                          .is_wide = axis != Axis::kNone});
     }
     Column& column = columns_[next_++];
     if (pass_ == Pass::kDefine || !column.is_kept) return nullptr;
@@ -140,6 +211,7 @@ class Columns {
   Pass pass_ = Pass::kDefine;
   bool is_sequence_ = false;
   std::string path_;
+  std::string note_;      ///< of the field being defined
   std::size_t next_ = 0;  ///< column that the next field belongs to
   std::size_t rows_ = 0;
   std::vector<Column> columns_;

@@ -10,14 +10,11 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
-#include <vector>
 
+#include "hg/recording/key_values.h"
 #include "hg/recording/mcap_sink/mcap_sink.h"
 
 namespace hg::recording {
-
-using KeyValues = std::vector<std::pair<std::string, std::string>>;
 
 class McapFile {
  public:

@@ -16,6 +16,7 @@
 #include "hg/messages/ros_messages.h"
 #include "hg/messages/schema.h"
 #include "hg/messages/tool_messages.h"
+#include "hg/recording/column_facts.h"
 #include "hg/recording/mcap_file.h"
 #include "hg/recording/recording_folder.h"
 
@@ -67,15 +68,21 @@ std::uint64_t start_ns(const RecordingInfo& info) {
 }
 
 KeyValues run_metadata(const RecordingInfo& info) {
-  std::vector<std::string> twin_names;
-  for (const messages::TwinJoint& joint : info.twin_joints) twin_names.push_back(joint.name);
+  std::vector<std::string> twin_names, twin_units;
+  for (const messages::TwinJoint& joint : info.twin_joints) {
+    twin_names.push_back(joint.name);
+    twin_units.emplace_back(joint.is_floating ? kFloating : joint.is_slide ? "m" : "rad");
+  }
   return {{"name", info.name},
           {"version", info.version},
           {"start_ns", std::to_string(start_ns(info))},
           {"rate_Hz", to_text(info.rate_Hz)},
           {"gantry_joints", join(info.gantry_joints)},
+          {"gantry_units", join(info.gantry_units)},
           {"manipulator_joints", join(info.manipulator_joints)},
-          {"twin_joints", join(twin_names)}};
+          {"manipulator_units", join(info.manipulator_units)},
+          {"twin_joints", join(twin_names)},
+          {"twin_units", join(twin_units)}};
 }
 
 KeyValues limit_metadata(const LimitCatalogue& limits) {

@@ -35,6 +35,7 @@ struct RecordingInfo : messages::RunNames {
   /// Makes the links of device and twin for /tf, once per thread; empty = without links
   std::function<messages::LinkTree()> make_links;
   std::string device_description, twin_description;  ///< URDF for tools; empty = none
+  std::vector<std::string> gantry_units, manipulator_units;  ///< rad or m, of each joint
   std::vector<NamedText> configuration;  ///< files that describe the run, kept as attachments
   std::string version;                   ///< version of the program
   double rate_Hz = 1000.0;               ///< samples per second, > 0

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -48,6 +49,22 @@ using Bytes = std::span<const std::byte>;
 
 std::string_view text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Keys and values of a metadata record, each with a zero behind it.
+KeyValues pairs_of(std::string_view text) {
+  const auto next = [&text] {
+    const std::size_t end = std::min(text.find('\0'), text.size());
+    std::string word(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    return word;
+  };
+  KeyValues pairs;
+  while (!text.empty()) {
+    std::string key = next();
+    pairs.emplace_back(std::move(key), next());
+  }
+  return pairs;
 }
 
 // Passes all items of the file to `receiver`. Shields the C interface from exceptions: they are
@@ -174,6 +191,7 @@ struct Teller {
     if (kind == mcap_attachment) {
       listener.configuration({std::string(name), std::string(text_of(bytes))});
     }
+    if (kind == mcap_metadata) listener.metadata(std::string(name), pairs_of(text_of(bytes)));
     if (kind == mcap_channel && name == kSamples) {
       has_samples = true;
       if (error.empty() && !is_same_schema(text_of(bytes))) error = kOtherVersion;
@@ -223,6 +241,57 @@ ReadResult read_recording(const std::filesystem::path& file, RecordingListener& 
   if (!teller->error.empty()) refuse(file, teller->error);
   if (teller->samples == 0) refuse(file, "it has no sample");
   return {teller->is_complete, teller->losses.since(teller->start)};
+}
+
+namespace {
+
+// Passes messages on as they are.
+struct Passer {
+  MessageListener& listener;
+  Losses losses = {};
+  std::uint64_t start = 0;  ///< log time at run time 0, ns
+  bool has_samples = false, is_complete = false;
+  std::string type;
+
+  void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
+    losses.take(kind, name, time_ns);
+    switch (kind) {
+      case mcap_end:
+        is_complete = true;
+        return;
+      case mcap_attachment:
+        return listener.configuration({std::string(name), std::string(text_of(bytes))});
+      case mcap_metadata:
+        return take_metadata(std::string(name), pairs_of(text_of(bytes)));
+      case mcap_type:
+        type = text_of(bytes);
+        return;
+      case mcap_channel:
+        has_samples = has_samples || name == kSamples;
+        return listener.topic({std::string(name), type, std::string(text_of(bytes))});
+      case mcap_message:
+        return listener.message(name, time_ns, bytes);
+      default:
+        return;
+    }
+  }
+
+  void take_metadata(const std::string& name, const KeyValues& pairs) {
+    for (const auto& [key, value] : pairs) {
+      if (name == "run" && key == "start_ns")
+        std::from_chars(value.data(), value.data() + value.size(), start);
+    }
+    listener.metadata(name, pairs);
+  }
+};
+
+}  // namespace
+
+ReadResult read_messages(const std::filesystem::path& file, MessageListener& listener) {
+  Passer passer{.listener = listener};
+  hand_out(file, passer);
+  if (!passer.has_samples) refuse_without_topic(file, passer.losses);
+  return {passer.is_complete, passer.losses.since(passer.start)};
 }
 
 // Collects the kept samples of a run, and an error.

@@ -5,10 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hg/messages/event.h"
+#include "hg/recording/key_values.h"
 #include "hg/recording/recorder.h"
 
 namespace hg::recording {
@@ -19,6 +22,8 @@ class RecordingListener {
   virtual ~RecordingListener() = default;
   /// Receives a file that describes the run; called before the first sample.
   virtual void configuration(const NamedText& text) = 0;
+  /// Receives a metadata record; called before the first sample.
+  virtual void metadata(const std::string& /*name*/, const KeyValues& /*pairs*/) {}
   virtual void event(const Event& event) = 0;
   virtual void sample(const Sample& sample) = 0;
 };
@@ -45,6 +50,29 @@ struct ReadResult {
 /// RecordedRun, and for a damaged sample; passes on exceptions of `listener`, a SetupError after
 /// the losses so far.
 ReadResult read_recording(const std::filesystem::path& file, RecordingListener& listener);
+
+/// Topic of a recording.
+struct Topic {
+  std::string name;
+  std::string type;    ///< for example "sensor_msgs/msg/JointState"
+  std::string schema;  ///< definition of the type
+};
+
+/// Receiver of the contents of a recording as they are, of any version. All functions are called in
+/// the order of the file.
+class MessageListener {
+ public:
+  virtual ~MessageListener() = default;
+  virtual void configuration(const NamedText& text) = 0;
+  virtual void metadata(const std::string& name, const KeyValues& pairs) = 0;
+  virtual void topic(const Topic& topic) = 0;
+  virtual void message(std::string_view topic, std::uint64_t time_ns,
+                       std::span<const std::byte> bytes) = 0;
+};
+
+/// Passes all intact messages of a recording to `listener`. Throws SetupError: no Rust, the file
+/// cannot be read or is no recording; passes on exceptions of `listener`.
+ReadResult read_messages(const std::filesystem::path& file, MessageListener& listener);
 
 class RecordedRun {
  public:

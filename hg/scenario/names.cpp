@@ -18,6 +18,14 @@ std::vector<std::string> joint_names(const DeviceModel& device, int first, int c
   return names;
 }
 
+std::vector<std::string> joint_units(const DeviceModel& device, int first, int count) {
+  std::vector<std::string> units;
+  for (int i = first; i < first + count; ++i) {
+    units.emplace_back(device.chain.joints()[i].is_slide() ? "m" : "rad");
+  }
+  return units;
+}
+
 std::string plant_words(const config::SimulatedDeviceConfig& device) {
   switch (plant_of(device)) {
     case config::PlantKind::kIdeal:
@@ -54,6 +62,14 @@ std::vector<std::string> gantry_joints(const config::DeviceConfig& device) {
 
 std::vector<std::string> manipulator_joints(const config::DeviceConfig& device) {
   return joint_names(device.model, device.model.n_p, device.model.n_m);
+}
+
+std::vector<std::string> gantry_units(const config::DeviceConfig& device) {
+  return joint_units(device.model, 0, device.model.n_p);
+}
+
+std::vector<std::string> manipulator_units(const config::DeviceConfig& device) {
+  return joint_units(device.model, device.model.n_p, device.model.n_m);
 }
 
 analysis::Names part_names(const config::Scenario& scenario) {

@@ -16,6 +16,10 @@ std::vector<std::string> gantry_joints(const config::DeviceConfig& device);
 /// Names of the manipulator's joints, from the gantry on.
 std::vector<std::string> manipulator_joints(const config::DeviceConfig& device);
 
+/// Units of these joints' positions, rad or m.
+std::vector<std::string> gantry_units(const config::DeviceConfig& device);
+std::vector<std::string> manipulator_units(const config::DeviceConfig& device);
+
 /// Names of the parts of the device for messages.
 analysis::Names part_names(const config::Scenario& scenario);
 

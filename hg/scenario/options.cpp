@@ -109,7 +109,7 @@ void apply_to_simulation(const ScenarioOptions& options, config::Scenario& scena
   }
 }
 
-// the options of to_text() that determine the cycle
+// the options of to_text() that determine the cycle, and the seed of the simulation
 ScenarioOptions recorded_options(const std::string& text) {
   ScenarioOptions options;
   std::istringstream lines(text);
@@ -121,6 +121,7 @@ ScenarioOptions recorded_options(const std::string& text) {
     if (option == "--twin") options.twin = value;
     if (option == "--rate-hz") options.rate_Hz = std::strtod(value.c_str(), nullptr);
     if (option == "--simulation") options.simulation = value;
+    if (option == "--seed") options.seed = std::strtoull(value.c_str(), nullptr, 10);
     if (option == "--plant") options.plant = value;
     if (option == "--law") options.law = value;
     if (option == "--bounds") options.bounds = value;

@@ -38,7 +38,7 @@ from hapticgiant._core import (
     start_posture,
     twin_parameters,
 )
-from hapticgiant.recording import read_recording
+from hapticgiant.recording import Recording, read_recording
 from hapticgiant.scenario import MODELS, load_scenario, run
 
 __all__ = [
@@ -61,6 +61,7 @@ __all__ = [
     "ParameterChange",
     "Person",
     "Pose",
+    "Recording",
     "Refusal",
     "Scenario",
     "SensorFrame",

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 import pathlib
 
-import numpy as np
-
 from hapticgiant import _core
+from hapticgiant.recording import Recording
 
 MODELS = pathlib.Path(__file__).resolve().parent / "share" / "hapticgiant" / "models"
 """Folder of the shipped devices, twins, scripts and scenarios."""
@@ -31,14 +30,16 @@ def load_scenario(scenario: str | os.PathLike) -> _core.Scenario:
 
 
 def run(scenario: str | os.PathLike | _core.Scenario,
-        duration_s: float | None = None) -> dict[str, np.ndarray]:
+        duration_s: float | None = None) -> Recording:
     """Runs a scenario on its simulated device, as fast as it can; every cycle as arrays.
 
     duration_s: then it is stopped; default: when everything planned has happened.
     Keys are the paths of the fields of a recording, those of the record without "record.":
     "time_s" (n), "twin.q_a" (n, n_a), "robot.w_h" (n, 6), "limits.reaction" (n, limits).
-    Where a cycle has no value, NaN or 0. Raises SetupError. Other threads run meanwhile.
+    Where a cycle has no value, NaN or 0. It has no events and no configuration. Raises SetupError.
+    Other threads run meanwhile.
     """
     if not isinstance(scenario, _core.Scenario):
         scenario = load_scenario(scenario)
-    return _core.run_scenario(scenario, duration_s)
+    run_parts, limits = _core.part_metadata(scenario)
+    return Recording(_core.run_scenario(scenario, duration_s), run=run_parts, limits=limits)

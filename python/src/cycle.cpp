@@ -69,6 +69,12 @@ void bind_scenario(nb::module_& module) {
           },
           "cycles per second")
       .def_prop_rw(
+          "seed", [](const Scenario& scenario) { return scenario.device.simulation.seed; },
+          [](Scenario& scenario, std::uint64_t seed) {
+            scenario.device.simulation.seed = scenario.device.simulation.sensors.seed = seed;
+          },
+          "of everything random in the simulation: the same seed gives the same run")
+      .def_prop_rw(
           "law", [](const Scenario& scenario) { return scenario.device.rendering.law; },
           [](Scenario& scenario, rendering::Law law) { scenario.device.rendering.law = law; })
       .def_prop_rw(

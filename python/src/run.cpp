@@ -2,17 +2,23 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "hg/core/error.h"
+#include "hg/recording/column_facts.h"
 #include "hg/recording/columns.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/names.h"
 #include "hg/scenario/session.h"
 #include "python/src/bind.h"
 
@@ -86,11 +92,56 @@ nb::dict run(const config::Scenario& scenario, std::optional<double> duration_s)
   return to_dict(columns);
 }
 
+using recording::KeyValues;
+
+// Metadata "run" and "limits" of a recording of the scenario, as far as columns need them.
+std::pair<KeyValues, KeyValues> part_metadata(const config::Scenario& scenario) {
+  std::vector<std::string> twin, twin_units;
+  for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
+    twin.push_back(joint.name);
+    const bool is_floating = joint.type == model::JointType::kFloating;
+    twin_units.emplace_back(is_floating ? recording::kFloating : joint.is_slide() ? "m" : "rad");
+  }
+  const auto joined = [](const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ",") + word;
+    return text;
+  };
+  KeyValues limits;
+  for (const LimitInfo& limit : scenario.limits) {
+    limits.emplace_back(".name", limit.name);
+    limits.emplace_back(".unit", limit.is_angle ? "rad" : "m");
+  }
+  return {{{"gantry_joints", joined(scenario::gantry_joints(scenario.device))},
+           {"gantry_units", joined(scenario::gantry_units(scenario.device))},
+           {"manipulator_joints", joined(scenario::manipulator_joints(scenario.device))},
+           {"manipulator_units", joined(scenario::manipulator_units(scenario.device))},
+           {"twin_joints", joined(twin)},
+           {"twin_units", joined(twin_units)}},
+          limits};
+}
+
+nb::dict column_facts(const KeyValues& run, const KeyValues& limits) {
+  const recording::RunParts parts(run, limits);
+  const Columns columns;
+  nb::dict all;
+  for (const Column& column : columns.all()) {
+    const recording::ColumnFacts facts = parts.facts_of(column);
+    all[column.name.c_str()] =
+        nb::make_tuple(facts.unit, column.note, facts.axis, facts.labels, facts.units);
+  }
+  return all;
+}
+
 }  // namespace
 
 void bind_run(nb::module_& module) {
   module.def("run_scenario", &run, nb::arg("scenario"), nb::arg("duration_s") = nb::none(),
              "Runs a loaded scenario as fast as it can and returns every cycle as arrays.");
+  module.def("part_metadata", &part_metadata, nb::arg("scenario"),
+             "Metadata \"run\" and \"limits\" of a recording: names of joints and limits.");
+  module.def("column_facts", &column_facts, nb::arg("run"), nb::arg("limits"),
+             "Unit, note, axis, labels and units of the entries of every column.");
   module.def(
       "empty_columns", [] { return to_dict(Columns()); },
       "What run_scenario() returns, without a cycle.");

@@ -5,6 +5,7 @@ wheels first. Or --installed: the package that this Python has, without a record
 those that an installation can break.
 """
 
+import importlib.util
 import os
 import pathlib
 import re
@@ -21,6 +22,8 @@ EXAMPLES = {
     "open_door.py": r"opens at 9\.\d\d s, force .* N, felt: ",
     "read_run.py": r"1\d{4} cycles, 14\.\d s.*\nhinge at most 1\.\d{3} rad, open from 9\.\d\d s on",
 }
+# libraries that notebooks need without importing them
+NEEDS = {"1_first_run.py": "import pandas", "2_forces_at_a_limit.py": "import xarray"}
 # the extension with its stubs and models, and figures, pages and their templates by the extra packages
 TESTS_OF_AN_INSTALLATION = ["enums_test", "hqp_test", "limits_test", "model_test",
                             "parameters_test", "run_test", "studies_test"]
@@ -71,6 +74,16 @@ def main():
         if not re.search(expected, output):
             sys.exit(f"{name} printed\n{output}\nexpected {expected}")
         print(f"{name}: fine")
+    # each notebook says what is true of it in assertions
+    for notebook in sorted((ROOT / "examples" / "notebooks").glob("*.py")):
+        missing = [name for name in ("pandas", "xarray", "matplotlib")
+                   if f"import {name}" in notebook.read_text() + NEEDS.get(notebook.name, "")
+                   and importlib.util.find_spec(name) is None]
+        if missing:
+            print(f"{notebook.name}: skipped, {', '.join(missing)} is not installed")
+            continue
+        run(sys.executable, notebook, env={**environment, "MPLBACKEND": "Agg"}, cwd=ROOT)
+        print(f"{notebook.name}: fine")
 
 
 if __name__ == "__main__":

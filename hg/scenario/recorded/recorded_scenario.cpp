@@ -45,7 +45,9 @@ messages::RunNames run_names(const config::Scenario& scenario) {
                            .twin_joints = {},
                            .limits = scenario.limits};
   for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
-    names.twin_joints.push_back({joint.name, joint.type == model::JointType::kFloating});
+    names.twin_joints.push_back({.name = joint.name,
+                                 .is_floating = joint.type == model::JointType::kFloating,
+                                 .is_slide = joint.is_slide()});
   }
   return names;
 }
@@ -55,6 +57,8 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
   recording::RecordingInfo info;
   static_cast<messages::RunNames&>(info) = run_names(scenario);
   info.name = recording_name(options.scenario);
+  info.gantry_units = gantry_units(scenario.device);
+  info.manipulator_units = manipulator_units(scenario.device);
   for (const auto& source : scenario.sources) {
     info.configuration.push_back({source.name, source.content});
   }

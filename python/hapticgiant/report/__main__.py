@@ -28,17 +28,25 @@ def main():
     parser.add_argument("runs", nargs="*", type=pathlib.Path, help="folders with run.json")
     parser.add_argument("--docs", type=pathlib.Path, help="refresh the page of this folder")
     parser.add_argument("--check", action="store_true", help="only check whether it would work")
+    parser.add_argument("--export", choices=("parquet", "hdf5"),
+                        help="write the table that standard input has; see export.py")
     arguments = parser.parse_args()
-    needed = ("numpy", "scipy", "matplotlib", "jinja2")
-    if not all(importlib.util.find_spec(name) for name in needed):
-        return MISSING
-    if arguments.check:
-        return 0
     if not __package__:
         # Run as a folder: the package's own __init__ would need its compiled part.
         package = types.ModuleType("hapticgiant")
         package.__path__ = [str(pathlib.Path(__file__).resolve().parents[1])]
         sys.modules["hapticgiant"] = package
+    if arguments.export:
+        if importlib.util.find_spec("numpy") is None:
+            print("numpy", end="")
+            return MISSING
+        export = importlib.import_module("hapticgiant.report.export")
+        return export.main(arguments.export, arguments.check)
+    needed = ("numpy", "scipy", "matplotlib", "jinja2")
+    if not all(importlib.util.find_spec(name) for name in needed):
+        return MISSING
+    if arguments.check:
+        return 0
     runs = [arguments.runs] if arguments.runs else []
     file = arguments.runs[0] / "run.json" if runs else arguments.folder / "results.json"
     kind = json.loads(file.read_text(encoding="utf-8"))["kind"]

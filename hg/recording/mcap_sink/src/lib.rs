@@ -264,6 +264,8 @@ pub unsafe extern "C" fn mcap_sink_read(
             Item::End => (3, "", 0, &[]),
             Item::Damage { part } => (4, part, 0, &[]),
             Item::Lost { topic, time_ns } => (5, topic, time_ns, &[]),
+            Item::Metadata { name, pairs } => (6, name, 0, pairs),
+            Item::Type { topic, name } => (7, topic, 0, name.as_bytes()),
         };
         take(context, kind, name.as_ptr(), name.len(), time_ns, data.as_ptr(), data.len());
     };

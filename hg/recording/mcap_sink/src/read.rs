@@ -34,6 +34,11 @@ extern "C" {
 
 /// What a file holds, in its order.
 pub enum Item<'a> {
+    /// The type of the messages of a topic, before the topic itself.
+    Type {
+        topic: &'a str,
+        name: &'a str,
+    },
     Channel {
         topic: &'a str,
         schema: &'a [u8],
@@ -46,6 +51,11 @@ pub enum Item<'a> {
     Attachment {
         name: &'a str,
         data: &'a [u8],
+    },
+    /// Keys and values, each with a zero behind it.
+    Metadata {
+        name: &'a str,
+        pairs: &'a [u8],
     },
     /// A part that cannot be read.
     Damage {
@@ -212,7 +222,7 @@ struct Reader<'a, Take: FnMut(Item)> {
     path: &'a Path,
     take: Take,
     /// Schemas and topics, which messages name by number.
-    schemas: BTreeMap<u16, Vec<u8>>,
+    schemas: BTreeMap<u16, (String, Vec<u8>)>,
     topics: BTreeMap<u16, String>,
     /// Messages of the last chunk by topic, until the index of that is seen.
     unindexed: BTreeMap<u16, usize>,
@@ -226,11 +236,13 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
     fn hand_out(&mut self, record: Record) {
         match record {
             Record::Schema { header, data } => {
-                self.schemas.entry(header.id).or_insert_with(|| data.into_owned());
+                self.schemas.entry(header.id).or_insert_with(|| (header.name, data.into_owned()));
             }
             // once more in the index
             Record::Channel(channel) if !self.topics.contains_key(&channel.id) => {
-                let schema = self.schemas.get(&channel.schema_id).map_or(&[][..], |text| text);
+                let (name, schema) = self.schemas.get(&channel.schema_id).map_or(
+                    ("", &[][..]), |(name, text)| (name.as_str(), &text[..]));
+                (self.take)(Item::Type { topic: &channel.topic, name });
                 (self.take)(Item::Channel { topic: &channel.topic, schema });
                 self.topics.insert(channel.id, channel.topic);
             }
@@ -242,6 +254,11 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
             }
             Record::Attachment { header, data, .. } => {
                 (self.take)(Item::Attachment { name: &header.name, data: &data });
+            }
+            Record::Metadata(metadata) => {
+                let texts = metadata.metadata.iter().flat_map(|(key, value)| [key, value]);
+                let pairs: Vec<u8> = texts.flat_map(|text| [text.as_bytes(), b"\0"].concat()).collect();
+                (self.take)(Item::Metadata { name: &metadata.name, pairs: &pairs });
             }
             Record::MessageIndex(index) => self.tell_lost(&index),
             Record::DataEnd(_) | Record::Footer(_) => self.has_ended = true,

@@ -1,0 +1,210 @@
+#include "apps/hapticgiant/export_table.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "apps/hapticgiant/report.h"
+#include "hg/core/error.h"
+#include "hg/core/open_file.h"
+#include "hg/core/whole_file.h"
+
+namespace hg::apps {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using recording::Column;
+using recording::Columns;
+
+std::string partial(const std::string& file) { return file + ".partial"; }
+
+class TextFile {
+ public:
+  explicit TextFile(const std::string& file)
+      : name_(file), file_(open_to_write(file, Content::kEmptied)) {}
+
+  void write(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t written = ::write(file_.descriptor(), text.data(), text.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) throw SetupError(name_ + ": could not be written: " + std::strerror(errno));
+      text.remove_prefix(written);
+    }
+  }
+
+ private:
+  std::string name_;
+  OpenFile file_;
+};
+
+// RFC 4180
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+template <typename T>
+void append_number(fmt::memory_buffer& text, const std::byte* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  if constexpr (std::is_floating_point_v<T>) {
+    if (std::isnan(value)) return;
+  }
+  fmt::format_to(std::back_inserter(text), "{}", value);
+}
+
+using Append = void (*)(fmt::memory_buffer&, const std::byte*);
+
+// what writes a number of a column; of bytes as numbers, not as letters
+Append append_of(const Column& column) {
+  if (column.kind == 'f') return append_number<double>;
+  const bool is_signed = column.kind == 'i';
+  switch (column.bytes) {
+    case 1:
+      return [](fmt::memory_buffer& text, const std::byte* bytes) {
+        fmt::format_to(std::back_inserter(text), "{}", std::to_integer<int>(*bytes));
+      };
+    case 2:
+      return is_signed ? append_number<std::int16_t> : append_number<std::uint16_t>;
+    case 4:
+      return is_signed ? append_number<std::int32_t> : append_number<std::uint32_t>;
+    default:
+      return is_signed ? append_number<std::int64_t> : append_number<std::uint64_t>;
+  }
+}
+
+class CsvTable final : public ExportTable {
+ public:
+  CsvTable(const std::string& file, const Json& facts) : file_(file) {
+    std::string head;
+    for (const Json& column : facts["columns"]) {
+      const std::string name = column["name"];
+      const std::size_t width = column.value("width", std::size_t{0});
+      if (width == 0) head += "," + cell(name);
+      for (std::size_t i = 0; i < width; ++i) head += fmt::format(",{}[{}]", name, i);
+    }
+    file_.write(head.substr(1) + "\n");
+  }
+
+  void write(const Columns& rows) override {
+    struct Part {
+      std::string name;
+      std::vector<std::byte> bytes;
+      std::size_t numbers, size;
+      Append append;
+    };
+    std::vector<Part> parts;
+    for (const Column& column : rows.all()) {
+      if (!column.is_kept) continue;
+      parts.push_back({column.name, padded(column, rows.rows()), column.width(), column.bytes,
+                       append_of(column)});
+    }
+    const auto time = std::ranges::find(parts, "time_s", &Part::name);
+    std::rotate(parts.begin(), time, time + 1);  // the first in the head
+    text_.clear();
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      char separator = '\0';
+      for (const Part& part : parts) {
+        const std::byte* number = part.bytes.data() + row * part.numbers * part.size;
+        for (std::size_t i = 0; i < part.numbers; ++i, number += part.size) {
+          if (separator != '\0') text_.push_back(separator);
+          part.append(text_, number);
+          separator = ',';
+        }
+      }
+      text_.push_back('\n');
+    }
+    file_.write({text_.data(), text_.size()});
+  }
+
+  void finish() override {}
+
+ private:
+  TextFile file_;
+  fmt::memory_buffer text_;
+};
+
+class PythonTable final : public ExportTable {
+ public:
+  PythonTable(const std::string& format, const Json& head) : program_(format) {
+    program_.write(head.dump() + "\n");
+  }
+  void write(const Columns& rows) override { program_.write(to_npy(rows)); }
+  void finish() override {
+    program_.write("end\n");
+    program_.finish();
+  }
+
+ private:
+  ExportProgram program_;
+};
+
+}  // namespace
+
+ExportFiles::~ExportFiles() {
+  std::error_code ignored;
+  for (const std::string& file : files_) fs::remove(partial(file), ignored);
+}
+
+std::string ExportFiles::add(const std::string& file, std::string_view beginning) {
+  check_writable(file, beginning);
+  std::error_code error;
+  const fs::file_type type = fs::symlink_status(file, error).type();
+  if (type != fs::file_type::regular && type != fs::file_type::not_found) {
+    throw SetupError(file + ": is no regular file, so that it cannot be replaced");
+  }
+  files_.push_back(file);
+  return partial(file);
+}
+
+std::vector<std::string> ExportFiles::keep() {
+  for (const std::string& file : files_) {
+    std::error_code error;
+    fs::rename(partial(file), file, error);
+    if (error) throw SetupError(file + ": could not be written: " + error.message());
+  }
+  return std::exchange(files_, {});
+}
+
+std::unique_ptr<ExportTable> make_csv(ExportFiles& files, const std::string& out, const Json& facts,
+                                      const std::vector<recording::Event>& events) {
+  const std::string table = files.add(out + ".csv", "time_s");
+  TextFile events_file(files.add(out + ".events.csv", "time_s"));
+  events_file.write("time_s,name,text\n");
+  for (const recording::Event& event : events) {
+    events_file.write(fmt::format("{},{},{}\n", event.time_s, cell(event.name), cell(event.text)));
+  }
+  TextFile(files.add(out + ".json", kJson)).write(facts.dump(2) + "\n");
+  return std::make_unique<CsvTable>(table, facts);
+}
+
+std::unique_ptr<ExportTable> make_python_table(ExportFiles& files, const std::string& format,
+                                               const std::string& out, const Json& facts,
+                                               const std::vector<recording::Event>& events) {
+  Json head = {{"facts", facts}, {"events", Json::array()}};
+  for (const recording::Event& event : events) {
+    head["events"].push_back({event.time_s, event.name, event.text});
+  }
+  if (format == "parquet") {
+    head["file"] = fs::absolute(files.add(out + ".parquet", "PAR1"));
+    head["events_file"] = fs::absolute(files.add(out + ".events.parquet", "PAR1"));
+  } else {
+    head["file"] = fs::absolute(files.add(out + ".h5", "\x89HDF"));
+  }
+  return std::make_unique<PythonTable>(format, head);
+}
+
+}  // namespace hg::apps
