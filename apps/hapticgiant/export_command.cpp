@@ -79,7 +79,7 @@ class Listener : public recording::RecordingListener {
       : columns_(names), part_(arguments) {}
 
   void configuration(const recording::NamedText&) override {}
-  void event(const recording::Event&) override {}
+  void event(const messages::Event&) override {}
   void sample(const Sample& sample) override {
     if (was_interrupted()) throw SetupError("export: interrupted, nothing is written");
     if (!part_.takes(sample.record.time_s)) return;
@@ -109,7 +109,7 @@ class Survey final : public Listener {
     if (name == "run") run_ = pairs;
     if (name == "limits") limits_ = pairs;
   }
-  void event(const recording::Event& event) override { events_.push_back(event); }
+  void event(const messages::Event& event) override { events_.push_back(event); }
   void sample(const Sample& sample) override {
     state_hash_ = sample.record.state_hash;
     Listener::sample(sample);
@@ -143,7 +143,7 @@ class Survey final : public Listener {
     return facts;
   }
 
-  const std::vector<recording::Event>& events() const noexcept { return events_; }
+  const std::vector<messages::Event>& events() const noexcept { return events_; }
   std::size_t row_bytes() const noexcept { return row_bytes_; }
   // with the lengths of their longest rows
   const std::vector<Column>& columns() const noexcept { return columns_.all(); }
@@ -199,7 +199,7 @@ class Survey final : public Listener {
 
   std::vector<recording::NamedText> configuration_;
   recording::KeyValues run_, limits_;
-  std::vector<recording::Event> events_;
+  std::vector<messages::Event> events_;
   std::vector<bool> has_numbers_;  // of each column
   std::uint64_t rows_ = 0, state_hash_ = 0;
   double from_s_ = 0.0, to_s_ = 0.0;

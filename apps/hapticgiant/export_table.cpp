@@ -180,11 +180,11 @@ std::vector<std::string> ExportFiles::keep() {
 }
 
 std::unique_ptr<ExportTable> make_csv(ExportFiles& files, const std::string& out, const Json& facts,
-                                      const std::vector<recording::Event>& events) {
+                                      const std::vector<messages::Event>& events) {
   const std::string table = files.add(out + ".csv", "time_s");
   TextFile events_file(files.add(out + ".events.csv", "time_s"));
   events_file.write("time_s,name,text\n");
-  for (const recording::Event& event : events) {
+  for (const messages::Event& event : events) {
     events_file.write(fmt::format("{},{},{}\n", event.time_s, cell(event.name), cell(event.text)));
   }
   TextFile(files.add(out + ".json", kJson)).write(facts.dump(2) + "\n");
@@ -193,9 +193,9 @@ std::unique_ptr<ExportTable> make_csv(ExportFiles& files, const std::string& out
 
 std::unique_ptr<ExportTable> make_python_table(ExportFiles& files, const std::string& format,
                                                const std::string& out, const Json& facts,
-                                               const std::vector<recording::Event>& events) {
+                                               const std::vector<messages::Event>& events) {
   Json head = {{"facts", facts}, {"events", Json::array()}};
-  for (const recording::Event& event : events) {
+  for (const messages::Event& event : events) {
     head["events"].push_back({event.time_s, event.name, event.text});
   }
   if (format == "parquet") {

@@ -44,12 +44,12 @@ class ExportTable {
 /// widths in their order. Throws SetupError.
 std::unique_ptr<ExportTable> make_csv(ExportFiles& files, const std::string& out,
                                       const nlohmann::ordered_json& facts,
-                                      const std::vector<recording::Event>& events);
+                                      const std::vector<messages::Event>& events);
 
 /// A table that Python writes: `format` parquet or hdf5. Throws SetupError, with what to install.
 std::unique_ptr<ExportTable> make_python_table(ExportFiles& files, const std::string& format,
                                                const std::string& out,
                                                const nlohmann::ordered_json& facts,
-                                               const std::vector<recording::Event>& events);
+                                               const std::vector<messages::Event>& events);
 
 }  // namespace hg::apps

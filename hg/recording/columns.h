@@ -95,7 +95,7 @@ class Columns {
 
   template <typename T>
   void operator()(const char* name, const T& value, const char* note = "") {
-    if (pass_ == Pass::kDefine) note_ = with_numbers<T>(note);
+    if (pass_ == Pass::kDefine) note_ = messages::with_numbers<T>(note);
     put(name, value);
   }
 
