@@ -90,6 +90,7 @@ test:
 define pack
 @tools/setup.sh wheel
 @tools/configure.sh $(PRESET) build
+@cmake --log-level=ERROR $(BUILD) >/dev/null  # finds what set-up has just fetched
 @cmake --build $(BUILD) --target hapticgiant _core_stubs
 @tools/make_$(1).sh build/$(1)
 endef

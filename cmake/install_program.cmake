@@ -28,6 +28,8 @@ endif()
 install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
   POST_INCLUDE_REGEXES "/cmeel[.]prefix/" POST_EXCLUDE_REGEXES "."
   LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)
+install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
+  DESTINATION ${share}/python/hapticgiant COMPONENT debian)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/hapticgiant/report
   DESTINATION ${share}/python/hapticgiant COMPONENT debian PATTERN __pycache__ EXCLUDE)
 
