@@ -1,20 +1,23 @@
 # The programs with what they look for below their prefix, as component `program`; the wheel
 # (pyproject.toml, tools/make_wheel.sh) and the Debian package (tools/make_deb.sh) are made of it.
-# A program that is to be in both says so: set_property(GLOBAL APPEND PROPERTY HG_PROGRAMS target).
+# A program that is to be in both says so before this file is included:
+# set_property(GLOBAL APPEND PROPERTY HG_PROGRAMS target).
 #
 # HG_PROGRAM_PREFIX is put before all destinations, "hapticgiant/" in a wheel.
 include(GNUInstallDirs)
 get_property(programs GLOBAL PROPERTY HG_PROGRAMS)
+add_custom_target(hg_programs)
+add_dependencies(hg_programs ${programs})
 # where the Debian package has its libraries, or the wheels beside ours theirs
 set_target_properties(${programs} PROPERTIES
   INSTALL_RPATH "$ORIGIN/../lib/hapticgiant/lib:$ORIGIN/../../cmeel.prefix/lib")
 install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET hg_libraries
   RUNTIME DESTINATION ${HG_PROGRAM_PREFIX}bin COMPONENT program)
 set(share ${HG_PROGRAM_PREFIX}share/hapticgiant)
-set(program COMPONENT program PATTERN __pycache__ EXCLUDE PATTERN ".*" EXCLUDE)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${share} ${program})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/driver DESTINATION ${share}/examples ${program})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/viewer/dist DESTINATION ${share}/viewer OPTIONAL ${program})
+set(in_program COMPONENT program PATTERN __pycache__ EXCLUDE PATTERN ".*" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${share} ${in_program})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/driver DESTINATION ${share}/examples ${in_program})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/viewer/dist DESTINATION ${share}/viewer OPTIONAL ${in_program})
 install(FILES ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md DESTINATION ${HG_PROGRAM_PREFIX}share/doc/hapticgiant
   COMPONENT program)
 # the licences in full, which `tools/third_party.py --texts` writes for who gives the package away
@@ -28,6 +31,8 @@ endif()
 install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
   POST_INCLUDE_REGEXES "/cmeel[.]prefix/" POST_EXCLUDE_REGEXES "."
   LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)
+install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
+  DESTINATION ${share}/python/hapticgiant COMPONENT debian)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/hapticgiant/report
   DESTINATION ${share}/python/hapticgiant COMPONENT debian PATTERN __pycache__ EXCLUDE)
 

@@ -54,6 +54,8 @@ done
 if [ "$purpose" = test ]; then
   need clang-format clang-format
   for package in libgtest-dev librapidcheck-dev chromium iproute2; do need "$package"; done
+fi
+if [ "$purpose" = test ] || [ "$purpose" = wheel ]; then
   "$(find_python)" -c 'import os, sysconfig
 os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need python3-dev
 fi
