@@ -1,10 +1,10 @@
 /// Tables that `hapticgiant export` writes, a block of rows at a time.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hg/recording/columns.h"

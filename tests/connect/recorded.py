@@ -1,5 +1,7 @@
 """A recording by the official MCAP reader: what exports and streams are compared with."""
 
+import re
+
 import numpy as np
 from mcap.reader import NonSeekingReader
 from mcap_ros2.decoder import DecoderFactory
@@ -20,6 +22,12 @@ def samples(file):
 def events(file):
     return [(event.time_s, event.name, event.text)
             for _, event in messages(file, "/hapticgiant/events")]
+
+
+def lab_clock(file):
+    """Offsets of the clock of the Lab Streaming Layer, in the order of their events."""
+    return [float(re.search(r"run time \+ ([\d.]+) s", text)[1])
+            for _, name, text in events(file) if name == "lab clock"]
 
 
 def quaternion(rotation):

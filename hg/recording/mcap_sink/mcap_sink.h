@@ -81,8 +81,8 @@ typedef enum {
 /// log time, an attachment with its name, the end of a file that was completed, a part that cannot
 /// be read with its name, a message of that part with its topic and log time, or a metadata record
 /// with its name and its keys and values, each with a terminating zero. Before a topic comes the
-/// type of its messages, for example "sensor_msgs/msg/JointState". Valid during the call; `name` has
-/// no terminating zero.
+/// type of its messages, for example "sensor_msgs/msg/JointState". Valid during the call; `name`
+/// has no terminating zero.
 typedef void (*mcap_take_item)(void* context, int kind, const char* name, size_t name_size,
                                uint64_t time_ns, const uint8_t* data, size_t size);
 
