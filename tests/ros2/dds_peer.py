@@ -32,31 +32,23 @@ from cyclonedds.util import duration  # noqa: E402
 PATIENCE = 60.0  # s
 
 
-def ros(name):
-    """A struct under the name that ROS 2 gives a type."""
-    package, kind, message = name.split("/")
-
-    def decorate(struct):
-        made = type(struct.__name__, (IdlStruct,), dict(struct.__dict__),
-                    typename=f"{package}.{kind}.dds_.{message}_")
-        return final(dataclass(made))
-    return decorate
-
-
-@ros("builtin_interfaces/msg/Time")
-class Time:
+@final
+@dataclass
+class Time(IdlStruct, typename="builtin_interfaces.msg.dds_.Time_"):
     sec: int32
     nanosec: uint32
 
 
-@ros("std_msgs/msg/Header")
-class Header:
+@final
+@dataclass
+class Header(IdlStruct, typename="std_msgs.msg.dds_.Header_"):
     stamp: Time
     frame_id: str
 
 
-@ros("sensor_msgs/msg/JointState")
-class JointState:
+@final
+@dataclass
+class JointState(IdlStruct, typename="sensor_msgs.msg.dds_.JointState_"):
     header: Header
     name: sequence[str]
     position: sequence[float64]
@@ -64,53 +56,61 @@ class JointState:
     effort: sequence[float64]
 
 
-@ros("geometry_msgs/msg/Vector3")
-class Vector3:
+@final
+@dataclass
+class Vector3(IdlStruct, typename="geometry_msgs.msg.dds_.Vector3_"):
     x: float64
     y: float64
     z: float64
 
 
-@ros("geometry_msgs/msg/Quaternion")
-class Quaternion:
+@final
+@dataclass
+class Quaternion(IdlStruct, typename="geometry_msgs.msg.dds_.Quaternion_"):
     x: float64
     y: float64
     z: float64
     w: float64
 
 
-@ros("geometry_msgs/msg/Transform")
-class Transform:
+@final
+@dataclass
+class Transform(IdlStruct, typename="geometry_msgs.msg.dds_.Transform_"):
     translation: Vector3
     rotation: Quaternion
 
 
-@ros("geometry_msgs/msg/TransformStamped")
-class TransformStamped:
+@final
+@dataclass
+class TransformStamped(IdlStruct, typename="geometry_msgs.msg.dds_.TransformStamped_"):
     header: Header
     child_frame_id: str
     transform: Transform
 
 
-@ros("tf2_msgs/msg/TFMessage")
-class TFMessage:
+@final
+@dataclass
+class TFMessage(IdlStruct, typename="tf2_msgs.msg.dds_.TFMessage_"):
     transforms: sequence[TransformStamped]
 
 
-@ros("geometry_msgs/msg/Pose")
-class Pose:
+@final
+@dataclass
+class Pose(IdlStruct, typename="geometry_msgs.msg.dds_.Pose_"):
     position: Vector3
     orientation: Quaternion
 
 
-@ros("geometry_msgs/msg/PoseStamped")
-class PoseStamped:
+@final
+@dataclass
+class PoseStamped(IdlStruct, typename="geometry_msgs.msg.dds_.PoseStamped_"):
     header: Header
     pose: Pose
 
 
-@ros("std_msgs/msg/String")
-class String:
+@final
+@dataclass
+class String(IdlStruct, typename="std_msgs.msg.dds_.String_"):
     data: str
 
 

@@ -1,6 +1,6 @@
 """A node of ROS 2 (rclpy) that looks at the bridge from the other side; prints what it saw as JSON.
 
-    peer.py watch SECONDS [--late]      subscribes to all topics
+    peer.py watch SECONDS [--brief]     subscribes to all topics
     peer.py call                        services, parameters and topics into the run
     peer.py robot SECONDS               a robot: states at 250 Hz, does what velocities say
 
@@ -12,6 +12,7 @@ import sys
 import time
 
 import rclpy
+import rclpy.executors
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
@@ -25,6 +26,7 @@ from tf2_msgs.msg import TFMessage
 from flat import DESCRIPTIONS, STREAMS, stamp_ns, values, xyz
 
 PATIENCE = 20.0  # s
+DEPTH = 1000  # messages: this program is slow
 LATCHED = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE,
                      durability=DurabilityPolicy.TRANSIENT_LOCAL)
 KINDS = {"sensor_msgs/msg/JointState": JointState, "geometry_msgs/msg/WrenchStamped": WrenchStamped,
@@ -32,7 +34,18 @@ KINDS = {"sensor_msgs/msg/JointState": JointState, "geometry_msgs/msg/WrenchStam
          "diagnostic_msgs/msg/DiagnosticArray": DiagnosticArray, "std_msgs/msg/String": String}
 
 
-def watch(node, seconds, is_brief):
+class Spinner:
+    """One executor for all turns: rclpy.spin_once() makes one each time."""
+
+    def __init__(self, node):
+        self.executor = rclpy.executors.SingleThreadedExecutor()
+        self.executor.add_node(node)
+
+    def once(self, seconds):
+        self.executor.spin_once(timeout_sec=seconds)
+
+
+def watch(node, spinner, seconds, is_brief):
     """`is_brief`: numbers only, for runs of many minutes."""
     seen = {topic: [] for topic in (*STREAMS, *DESCRIPTIONS)}
     brief = {topic: {"count": 0, "gaps": 0, "longest_gap_ms": 0.0, "last": None, "worst_age_ms": 0.0}
@@ -55,7 +68,7 @@ def watch(node, seconds, is_brief):
             facts["worst_age_ms"] = max(facts["worst_age_ms"], (now - stamp) * 1e-6)
 
     for topic, kind in STREAMS.items():
-        node.create_subscription(KINDS[kind], topic, lambda message, topic=topic: keep(topic, message), 10)
+        node.create_subscription(KINDS[kind], topic, lambda message, topic=topic: keep(topic, message), DEPTH)
     for topic in DESCRIPTIONS:
         node.create_subscription(String, topic, lambda message, topic=topic: keep(topic, message), LATCHED)
     best_effort = []
@@ -64,7 +77,7 @@ def watch(node, seconds, is_brief):
     print("ready", flush=True)
     until = time.monotonic() + seconds
     while time.monotonic() < until:
-        rclpy.spin_once(node, timeout_sec=0.1)
+        spinner.once(0.1)
     hashes = {}
     for topic in seen:
         for info in node.get_publishers_info_by_topic(topic):
@@ -80,8 +93,8 @@ def watch(node, seconds, is_brief):
 
 
 class Caller:
-    def __init__(self, node):
-        self.node = node
+    def __init__(self, node, spinner):
+        self.node, self.spinner = node, spinner
 
     def call(self, kind, name, **fields):
         client = self.node.create_client(kind, name)
@@ -89,7 +102,7 @@ class Caller:
             raise SystemExit(f"no service {name}")
         began = time.monotonic()
         future = client.call_async(kind.Request(**fields))
-        rclpy.spin_until_future_complete(self.node, future, timeout_sec=PATIENCE)
+        self.spinner.executor.spin_until_future_complete(future, timeout_sec=PATIENCE)
         if future.result() is None:
             raise SystemExit(f"{name} did not answer")
         return future.result(), time.monotonic() - began
@@ -108,8 +121,8 @@ class Caller:
         return [answer.results[0].successful, answer.results[0].reason]
 
 
-def call(node):
-    caller = Caller(node)
+def call(node, spinner):
+    caller = Caller(node, spinner)
     saw = {"services": {name: caller.trigger(name) for name in ("mark", "tare")}}
     answer, _ = caller.call(ListParameters, "/hapticgiant/list_parameters")
     saw["parameters"] = list(answer.result.names)
@@ -136,7 +149,7 @@ def call(node):
         until = time.monotonic() + seconds
         while time.monotonic() < until:
             publish()
-            rclpy.spin_once(node, timeout_sec=0.01)
+            spinner.once(0.01)
 
     spin(1.0)
     saw["handle_before"] = handles[-1] if handles else None
@@ -164,7 +177,7 @@ def call(node):
     return saw
 
 
-def robot(node, seconds):
+def robot(node, spinner, seconds):
     """Six joints that move with the commanded speeds, and a hand that pushes."""
     joints = [f"joint_{i}" for i in range(6)]
     q, dq, heard = [0.0, 0.6, 1.2, 0.0, 0.8, 0.0], [0.0] * 6, []
@@ -180,13 +193,12 @@ def robot(node, seconds):
     period = 1 / 250
     begin = last = time.monotonic()
     print("ready", flush=True)
-    moved, ended, zeros = 0.0, None, 0
+    moved = 0.0
     while time.monotonic() < begin + seconds:
-        rclpy.spin_once(node, timeout_sec=0.0)
+        spinner.once(0.0)
         now = time.monotonic()
         q = [a + (now - last) * v for a, v in zip(q, dq)]
         moved = max(moved, max(abs(v) for v in dq))
-        zeros = zeros + 1 if heard and not any(dq) else 0
         last = now
         stamp = node.get_clock().now().to_msg()
         state = JointState(name=joints[::-1], position=q[::-1], velocity=dq[::-1])
@@ -199,19 +211,20 @@ def robot(node, seconds):
         hand.publish(Bool(data=True))
         time.sleep(max(0.0, period - (time.monotonic() - now)))
     return {"commands": len(heard), "fastest": moved, "last": dq, "position": q,
-            "silent_for_s": time.monotonic() - heard[-1] if heard else None, "ended": ended}
+            "silent_for_s": time.monotonic() - heard[-1] if heard else None}
 
 
 def main():
     rclpy.init()
     node = rclpy.create_node("peer")
+    spinner = Spinner(node)
     what = sys.argv[1]
     if what == "watch":
-        result = watch(node, float(sys.argv[2]), "--brief" in sys.argv)
+        result = watch(node, spinner, float(sys.argv[2]), "--brief" in sys.argv)
     elif what == "call":
-        result = call(node)
+        result = call(node, spinner)
     else:
-        result = robot(node, float(sys.argv[2]))
+        result = robot(node, spinner, float(sys.argv[2]))
     print(json.dumps(result), flush=True)
     node.destroy_node()
     rclpy.shutdown()
