@@ -39,6 +39,9 @@
 #                executes the notebooks of examples/notebooks as Jupyter does, reads exports by pandas,
 #                pyarrow and h5py, and records streams by LabRecorder, in an environment of their own
 #                (450 MB). Writes the .ipynb files from the .py files beside them
+#   make ros2    runs the bridge to ROS 2 against rclpy of Jazzy and Kilted, in environments of their own
+#                (240 MB each), and a robot of ROS 2 as a device. MINUTES=30 measures rates and losses for
+#                so long instead
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -66,8 +69,6 @@ RTSAN_TESTS := $(addsuffix _test, controller runtime)
 FUZZ_SECONDS ?= 600
 FUZZ_TARGETS ?= hqp_reader hqp_solver config urdf protocol commands live recording
 SOAK_HOURS ?= 30
-MINUTES ?= 60
-MACHINES ?= udp ethercat franka
 first_of = $(firstword $(foreach name,$(1),$(shell command -v $(name))) $(firstword $(1)))
 SANITIZER_CXX ?= $(call first_of,clang++-22 clang++-21 clang++-20)
 with_sanitizers = CC=$(subst clang++,clang,$(SANITIZER_CXX)) CXX=$(SANITIZER_CXX)
@@ -81,7 +82,10 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo franka foxglove arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak soak-machines format check headers lint clean wheel deb test-wheel test-packages notebooks
+.PHONY: demo build wheel deb docs format clean \
+  test test-wheel test-packages check headers lint audit sanitize sanitizer-set-up rtsan rtsan-tests fuzz \
+  franka foxglove ros2 ros1 notebooks soak soak-machines \
+  bench bench-instructions experiments arms
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -158,6 +162,9 @@ notebooks: build
 	@.venv/bin/python tools/notebooks.py
 	@.venv/bin/python tests/connect/notebooks_test.py $(BUILD) $(BUILD)/hapticgiant
 
+ros2: build
+	@.venv/bin/python tests/ros2/ros2_test.py $(BUILD)/hapticgiant $(if $(MINUTES),--minutes $(MINUTES))
+
 bench-instructions:
 	@tools/setup.sh count
 	@tools/configure.sh $(PRESET) build
@@ -202,7 +209,8 @@ soak-machines:
 	@tools/setup.sh test
 	@tools/configure.sh $(PRESET) test
 	@cmake --build $(BUILD) --target hapticgiant segment
-	@.venv/bin/python tools/soak_machines.py $(BUILD)/hapticgiant --minutes $(MINUTES) --machines $(MACHINES) \
+	@.venv/bin/python tools/soak_machines.py $(BUILD)/hapticgiant --minutes $(or $(MINUTES),60) \
+	  --machines $(or $(MACHINES),udp ethercat franka) \
 	  $(if $(BUSY),--busy)
 
 DOCS_VENV := build/docs_venv
