@@ -1,0 +1,48 @@
+/// The node `hapticgiant_bridge`: a running program as topics, services and parameters of ROS 1.
+
+#include <ros/ros.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "bridge.h"
+
+namespace {
+
+constexpr int kBadInput = 2;
+
+std::filesystem::path default_mesh_folder() {
+  const char* ros_home = std::getenv("ROS_HOME");
+  const char* home = std::getenv("HOME");
+  if (ros_home != nullptr) return std::filesystem::path(ros_home) / "hapticgiant";
+  return std::filesystem::path(home != nullptr ? home : "/tmp") / ".ros/hapticgiant";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<char*> arguments(argv, argv + argc + 1);  // ros::init() takes its own out of argv
+  ros::init(argc, argv, "hapticgiant_bridge");
+  const ros::NodeHandle options("~");
+  const auto link = options.param<std::string>("link", argc > 1 ? argv[1] : "");
+  if (link.empty()) {
+    std::cerr << "hapticgiant_bridge: expected the link that `hapticgiant run` prints, or a file "
+                 "with it, as the argument or as the parameter ~link\n";
+    return kBadInput;
+  }
+  const auto folder = options.param("mesh_folder", default_mesh_folder().string());
+  try {
+    if (!hapticgiant::Bridge(link, folder).run()) return EXIT_SUCCESS;
+  } catch (const std::exception& error) {
+    std::cerr << "hapticgiant_bridge: " << error.what() << "\n";
+    return EXIT_FAILURE;
+  }
+  ROS_WARN("there is a new master: beginning again");
+  ros::shutdown();
+  execv("/proc/self/exe", arguments.data());
+  return EXIT_FAILURE;
+}
