@@ -50,10 +50,10 @@ int pid_of_master() {
 
 }  // namespace
 
-Bridge::Bridge(const std::string& link_or_file, std::filesystem::path mesh_folder)
+Bridge::Bridge(FindLink find_link, std::filesystem::path mesh_folder)
     : mesh_folder_(std::move(mesh_folder)),
       timer_(context_),
-      settings_([this](const std::string& name, double value) {
+      settings_([this](const std::string& name, const nlohmann::json& value) {
         boost::asio::post(context_, [this, name, value] { client_->set_parameter(name, value); });
       }) {
   pass_on<sensor_msgs::JointState>("/joint_states",
@@ -79,7 +79,7 @@ Bridge::Bridge(const std::string& link_or_file, std::filesystem::path mesh_folde
 
   std::vector<std::string> topics;
   for (const auto& [topic, handler] : handlers_) topics.push_back(topic);
-  client_.emplace(context_, link_or_file, topics, publications_, live_events());
+  client_.emplace(context_, std::move(find_link), topics, publications_, live_events());
 }
 
 // A topic of the program as a topic of ROS; `also` sees its messages, too.

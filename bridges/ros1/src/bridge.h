@@ -29,9 +29,8 @@ namespace hapticgiant {
 
 class Bridge {
  public:
-  /// `link_or_file`: the link that the program prints, or a file with it. `mesh_folder`: where the
-  /// meshes of URDFs are put for rviz.
-  Bridge(const std::string& link_or_file, std::filesystem::path mesh_folder);
+  /// `mesh_folder`: where the meshes of URDFs are put for rviz.
+  Bridge(FindLink find_link, std::filesystem::path mesh_folder);
 
   /// Until ROS ends, or the master is another one than before: true then, and the node must begin
   /// again to be known to it.

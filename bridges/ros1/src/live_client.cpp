@@ -8,10 +8,8 @@
 #include <chrono>
 #include <cstring>
 #include <deque>
-#include <fstream>
 #include <map>
 #include <optional>
-#include <regex>
 #include <stdexcept>
 #include <utility>
 
@@ -63,25 +61,6 @@ std::string bare(std::string host) {
 }
 
 }  // namespace
-
-Link read_link(const std::string& link_or_file) {
-  std::string text = link_or_file;
-  if (text.rfind("http://", 0) != 0) {
-    std::ifstream file(link_or_file);
-    if (!std::getline(file, text)) {
-      throw std::runtime_error("there is no file '" + link_or_file + "' with the program's link");
-    }
-  }
-  static const std::regex form(R"(http://(\[[0-9a-fA-F:]+\]|[^/:]+):(\d+)/?#token=([0-9a-f]+)\s*)");
-  std::smatch parts;
-  if (!std::regex_match(text, parts, form)) {
-    throw std::runtime_error(
-        "expected the link that the program prints, "
-        "http://HOST:PORT/#token=TOKEN, got '" +
-        text + "'");
-  }
-  return {parts[1], parts[2], parts[3]};
-}
 
 // One connection, from the first byte to its end.
 class LiveClient::Session : public std::enable_shared_from_this<Session> {
@@ -317,11 +296,11 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
   std::uint32_t last_id_ = 0;
 };
 
-LiveClient::LiveClient(asio::io_context& context, std::string link_or_file,
+LiveClient::LiveClient(asio::io_context& context, FindLink find_link,
                        std::vector<std::string> topics, std::vector<Publication> publications,
                        LiveEvents events)
     : context_(context),
-      link_or_file_(std::move(link_or_file)),
+      find_link_(std::move(find_link)),
       topics_(std::move(topics)),
       publications_(std::move(publications)),
       events_(std::move(events)),
@@ -338,7 +317,7 @@ LiveClient::~LiveClient() {
 
 void LiveClient::connect() {
   try {
-    link_ = read_link(link_or_file_);
+    link_ = find_link_();
   } catch (const std::exception& error) {
     return retry(error.what());
   }

@@ -13,18 +13,11 @@
 #include <string_view>
 #include <vector>
 
+#include "link.h"
+
 namespace hapticgiant {
 
 using Bytes = std::string_view;
-
-/// Address of a program and its secret, from the link that it prints.
-struct Link {
-  std::string host, port, token;
-};
-
-/// Reads "http://HOST:PORT/#token=TOKEN", or a file with such a link. Throws std::runtime_error
-/// that says what was expected.
-Link read_link(const std::string& link_or_file);
 
 /// Answer of a service or of fetch().
 struct Answer {
@@ -50,14 +43,16 @@ struct Publication {
   std::string topic, type;
 };
 
+/// Where the program is; asked before each attempt to connect. May throw std::runtime_error.
+using FindLink = std::function<Link()>;
+
 /// Connection that is opened again whenever it is lost. All functions are for the thread of the
 /// io_context. A program that is too slow to take messages loses them; requests without a
 /// connection fail at once.
 class LiveClient {
  public:
-  LiveClient(boost::asio::io_context& context, std::string link_or_file,
-             std::vector<std::string> topics, std::vector<Publication> publications,
-             LiveEvents events);
+  LiveClient(boost::asio::io_context& context, FindLink find_link, std::vector<std::string> topics,
+             std::vector<Publication> publications, LiveEvents events);
   ~LiveClient();
 
   void publish(const std::string& topic, Bytes message);
@@ -76,7 +71,7 @@ class LiveClient {
   void retry(const std::string& reason);
 
   boost::asio::io_context& context_;
-  const std::string link_or_file_;
+  const FindLink find_link_;
   const std::vector<std::string> topics_;
   const std::vector<Publication> publications_;
   const LiveEvents events_;

@@ -29,17 +29,14 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "hapticgiant_bridge");
   const ros::NodeHandle options("~");
   const auto link = options.param<std::string>("link", argc > 1 ? argv[1] : "");
-  if (link.empty()) {
-    std::cerr << "hapticgiant_bridge: expected the link that `hapticgiant run` prints, or a file "
-                 "with it, as the argument or as the parameter ~link\n";
-    return kBadInput;
-  }
   const auto folder = options.param("mesh_folder", default_mesh_folder().string());
   try {
-    if (!hapticgiant::Bridge(link, folder).run()) return EXIT_SUCCESS;
+    hapticgiant::FindLink find_link = hapticgiant::newest_link;
+    if (!link.empty()) find_link = [only = hapticgiant::parse_link(link)] { return only; };
+    if (!hapticgiant::Bridge(find_link, folder).run()) return EXIT_SUCCESS;
   } catch (const std::exception& error) {
     std::cerr << "hapticgiant_bridge: " << error.what() << "\n";
-    return EXIT_FAILURE;
+    return kBadInput;
   }
   ROS_WARN("there is a new master: beginning again");
   ros::shutdown();

@@ -3,6 +3,7 @@
 #include <dynamic_reconfigure/ConfigDescription.h>
 
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -10,6 +11,7 @@ namespace hapticgiant {
 namespace {
 
 constexpr auto kPatience = std::chrono::seconds(2);
+constexpr const char* kUnlimited = "unlimited";  // what the live interface calls infinity
 constexpr double kLargest = std::numeric_limits<double>::max();
 
 void add(dynamic_reconfigure::Config& config, const std::string& name, double value) {
@@ -54,10 +56,12 @@ void Settings::update(const nlohmann::json& parameters) {
   for (const nlohmann::json& parameter : parameters) {
     const std::string name = parameter.at("name");
     const auto value = parameter.find("value");
-    if (value == parameter.end() || !value->is_number()) continue;
+    const bool is_unlimited = value != parameter.end() && *value == kUnlimited;
+    if (value == parameter.end() || (!value->is_number() && !is_unlimited)) continue;
     const auto [setting, is_new] =
         settings_.try_emplace(name, Setting{name, "", "", -kLargest, kLargest, 0.0});
-    setting->second.value = *value;
+    setting->second.value =
+        is_unlimited ? std::numeric_limits<double>::infinity() : value->get<double>();
     has_new = has_new || is_new;
   }
   if (has_new) describe();
@@ -78,7 +82,11 @@ bool Settings::reconfigure(dynamic_reconfigure::Reconfigure::Request& request,
     }
     if (setting->second.value == wanted.value) continue;  // rqt_reconfigure sends all
     const std::uint64_t seen = updates_seen_;
-    set_(wanted.name, wanted.value);
+    if (std::isfinite(wanted.value)) {
+      set_(wanted.name, wanted.value);
+    } else {
+      set_(wanted.name, kUnlimited);
+    }
     if (!updated_.wait_for(lock, kPatience, [&] { return updates_seen_ != seen; })) {
       ROS_ERROR("no answer of the program to the setting '%s'", wanted.name.c_str());
       return false;

@@ -19,7 +19,7 @@ namespace hapticgiant {
 /// Server that rqt_reconfigure and dynparam talk to, in the node's private namespace.
 class Settings {
  public:
-  using Set = std::function<void(const std::string& name, double value)>;
+  using Set = std::function<void(const std::string& name, const nlohmann::json& value)>;
 
   /// `set` is called on the thread of ROS and hands a value on to the program.
   explicit Settings(Set set);
