@@ -275,9 +275,12 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const bool goes_on = is_terminal && page != nullptr;
   const runtime::RuntimeOptions options = runtime_options(run, goes_on, interrupted, page);
   // after all that may refuse the run, which then leaves no file
-  scenario::RunRecording recording(recording_plan(run));
+  const scenario::RecordingPlan plan = recording_plan(run);
+  scenario::RunRecording recording(plan);
   const std::string stem = recording.stem();
-  if (page != nullptr) page->begin(run.shown(), stem.empty() ? "" : stem + ".mcap");
+  if (page != nullptr) {
+    page->begin(run.shown(), stem.empty() ? "" : stem + ".mcap", plan.info.start);
+  }
   Observers observers{
       .interrupted = interrupted,
       .scenario = scenario,

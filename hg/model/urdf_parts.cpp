@@ -171,4 +171,26 @@ std::string with_mimics(const std::string& urdf, const std::vector<Coupling>& co
   return printer.CStr();
 }
 
+std::string with_link_prefix(const std::string& urdf, const std::string& prefix) {
+  tinyxml2::XMLDocument document;
+  const bool is_xml = document.Parse(urdf.data(), urdf.size()) == tinyxml2::XML_SUCCESS;
+  if (!is_xml || document.RootElement() == nullptr) return urdf;
+  const auto add = [&](tinyxml2::XMLElement* element, const char* attribute) {
+    const char* name = element != nullptr ? element->Attribute(attribute) : nullptr;
+    if (name != nullptr) element->SetAttribute(attribute, (prefix + name).c_str());
+  };
+  tinyxml2::XMLElement* element = document.RootElement()->FirstChildElement();
+  for (; element != nullptr; element = element->NextSiblingElement()) {
+    const std::string_view kind = element->Name();
+    if (kind == "link") add(element, "name");
+    if (kind == "joint") {
+      add(element->FirstChildElement("parent"), "link");
+      add(element->FirstChildElement("child"), "link");
+    }
+  }
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
+}
+
 }  // namespace hg::model

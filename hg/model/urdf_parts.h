@@ -40,4 +40,8 @@ void insert_behind(const std::string& behind, const std::string& name,
 /// in place of one that is there already. Joints that the text lacks are left out.
 std::string with_mimics(const std::string& urdf, const std::vector<Coupling>& couplings);
 
+/// The text of a URDF with `prefix` before the name of every link, so that two robots can share one
+/// tree of frames. A text that is no XML stays as it is.
+std::string with_link_prefix(const std::string& urdf, const std::string& prefix);
+
 }  // namespace hg::model

@@ -13,6 +13,7 @@
 #include "hg/config/shipped_files.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/model/urdf_parts.h"
+#include "hg/scenario/recorded/robot_models.h"
 #include "hg/scenario/start_posture.h"
 
 namespace hg::page {
@@ -210,6 +211,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   scene.description = scenario.description;
   scene.device = device_chain(scenario.device);
   scene.twin = twin_chain(scenario.twin);
+  scene.twin.live_text = scenario::twin_description(scenario);
   scene.gantry_joints = scenario.device.model.n_p;
   scene.limits = scenario.limits;
   scene.rate_hz = scenario.device.model.rate_Hz;

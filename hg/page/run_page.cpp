@@ -11,6 +11,8 @@
 #include "hg/page/page_scene.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/names.h"
+#include "hg/scenario/recorded/recorded_scenario.h"
+#include "hg/scenario/recorded/robot_models.h"
 
 namespace hg::page {
 namespace {
@@ -35,7 +37,8 @@ struct NamedRequest {
   std::string_view name;
   ModeRequest request;
 };
-constexpr NamedRequest kRequests[] = {{"arm", ModeRequest::kArm},
+constexpr NamedRequest kRequests[] = {{"tare", ModeRequest::kTare},
+                                      {"arm", ModeRequest::kArm},
                                       {"run", ModeRequest::kRun},
                                       {"run_alone", ModeRequest::kAutonomous},
                                       {"reset", ModeRequest::kReset}};
@@ -96,6 +99,7 @@ std::span<const RunPage::Order> RunPage::orders() {
   static constexpr Order kOrders[] = {{CommandName::kStop, false, &RunPage::stop},
                                       {CommandName::kSet, false, &RunPage::set},
                                       {CommandName::kMode, false, &RunPage::request_mode},
+                                      {CommandName::kMark, false, &RunPage::mark},
                                       {CommandName::kEmergencyStop, false, nullptr},
                                       {CommandName::kReleaseStop, false, nullptr},
                                       {CommandName::kPause, true, &RunPage::set_pace},
@@ -134,7 +138,8 @@ viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
   return scene;
 }
 
-void RunPage::begin(const ShownRun& run, const std::string& recording) {
+void RunPage::begin(const ShownRun& run, const std::string& recording,
+                    std::chrono::system_clock::time_point start) {
   const bool is_first = !analysis_;
   run_ = run;
   if (!is_first) {
@@ -144,6 +149,7 @@ void RunPage::begin(const ShownRun& run, const std::string& recording) {
     server_.set_scene(scene_of(run));
   }
   server_.set_values(values_);
+  has_new_values_ = false;
   analysis_.emplace(*run.scenario);
   names_ = scenario::part_names(*run.scenario);
   view_ = {};
@@ -152,6 +158,29 @@ void RunPage::begin(const ShownRun& run, const std::string& recording) {
   stop_was_asked_ = false;
   refuse_asked(kRunIsOver);
   has_news_ = false;
+  begin_live(start);
+}
+
+void RunPage::begin_live(std::chrono::system_clock::time_point start) {
+  const config::Scenario& scenario = *run_.scenario;
+  live_.emplace(scenario::run_names(scenario), scenario::link_tree(scenario),
+                scenario.device.model.rate_Hz, start);
+  marks_ = 0;
+  wrench_client_ = 0;
+  server_.latch_live(
+      live_->description(live::Topic::kDeviceDescription, scenario::device_description(scenario)));
+  server_.latch_live(
+      live_->description(live::Topic::kTwinDescription, scenario::twin_description(scenario)));
+}
+
+void RunPage::announce(double time_s, std::string_view name, std::string_view text) {
+  server_.announce_event(time_s, name, text);
+  if (live_) server_.publish_live({.time_ns = 0, .messages = {live_->event(time_s, name, text)}});
+}
+
+void RunPage::publish_live(const Sample& sample) {
+  if (!live_ || !live_->observe(sample) || !server_.has_live_clients()) return;
+  server_.publish_live(live_->batch(sample, server_.live_wanted()));
 }
 
 // The device's supervisor decides. If that sample was lost, the result is unknown.
@@ -160,12 +189,22 @@ void RunPage::answer_asked(const Sample& sample) {
   Asked& first = asked_.front();
   const ModeRequest request = sample.operator_input.request;
   first.is_next = first.is_next || request == ModeRequest::kNone;
-  const bool is_seen = first.is_next && request == first.request;
-  if (!is_seen && ++first.samples < kMostSamples) return;
-  const Refusal refusal = sample.record.refusal;
-  server_.answer(first.command, !is_seen ? "it is not known whether it was followed"
-                                : refusal != Refusal::kNone ? to_string(refusal)
-                                                            : std::string_view{});
+  const bool is_now = !first.is_seen && first.is_next && request == first.request;
+  first.is_seen = first.is_seen || is_now;
+  const bool is_lost = ++first.samples >= kMostSamples;
+  const bool is_tare = first.request == ModeRequest::kTare;
+  const TareStatus tare = sample.record.tare;
+  const Refusal refusal = is_now ? sample.record.refusal : Refusal::kNone;
+  if (!is_lost && (!first.is_seen || (is_tare && tare == TareStatus::kUnderWay))) return;
+  std::string_view why_not;
+  if (is_lost) {
+    why_not = "it is not known whether it was followed";
+  } else if (refusal != Refusal::kNone) {
+    why_not = to_string(refusal);
+  } else if (is_tare && tare != TareStatus::kDone) {
+    why_not = to_string(tare);
+  }
+  server_.answer(first.command, why_not);
   asked_.pop_front();
 }
 
@@ -176,6 +215,7 @@ void RunPage::refuse_asked(std::string_view why) {
 
 void RunPage::observe(const Sample& sample, const Note& note) {
   answer_asked(sample);
+  publish_live(sample);
   view_.cycle_time_max_us = std::max(view_.cycle_time_max_us, sample.cycle_time_us);
   if (sample.record.change == ChangeStatus::kNone) return;
   const int field = config::field_of(form_, sample.operator_input.change);
@@ -185,7 +225,7 @@ void RunPage::observe(const Sample& sample, const Note& note) {
   } else {
     values_[field] = sample.operator_input.change.value;
   }
-  server_.set_values(values_);
+  has_new_values_ = true;
 }
 
 void RunPage::show(const Sample& sample) {
@@ -211,12 +251,14 @@ void RunPage::publish() {
 void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
   HandTarget target;
   if (server_.take_hand_target(target) && runtime != nullptr) runtime->set_hand_target(target);
+  follow_reference_wrench(runtime, note);
   for (const Command& command : server_.take_commands()) take(command, runtime, note);
   while (!asked_.empty() && asked_.front().command.stops != desk_->stops()) {
     server_.answer(asked_.front().command, kStopped);
     asked_.pop_front();
   }
   if (runtime == nullptr) refuse_asked(kRunIsOver);
+  send_values();
   take_prepared(note);
   drop_overtaken(note);
   note_lost(note);
@@ -227,6 +269,16 @@ void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
   has_news_ = has_news_ || state != view_.run_state;
   view_.run_state = state;
   if (has_news_ && server_.is_due()) publish();
+}
+
+// A stream of changes, as of a reference wrench, is not sent to the pages value by value.
+void RunPage::send_values() {
+  constexpr std::chrono::milliseconds kPeriod(30);
+  const auto now = std::chrono::steady_clock::now();
+  if (!has_new_values_ || now - values_sent_ < kPeriod) return;
+  values_sent_ = now;
+  has_new_values_ = false;
+  server_.set_values(values_);
 }
 
 void RunPage::take(const Command& command, runtime::Runtime* runtime, const Note& note) {
@@ -278,6 +330,42 @@ std::string RunPage::request_mode(const Command& command, runtime::Runtime* runt
   note(command.argument, "requested in the page");
   asked_.push_back({command, named->request});
   return {};
+}
+
+std::string RunPage::mark(const Command& command, runtime::Runtime*, const Note& note) {
+  note("mark", fmt::format("{}{}{}", ++marks_, command.argument == "mark" ? "" : " ",
+                           command.argument == "mark" ? "" : command.argument));
+  return {};
+}
+
+// Like the settings of the same names, but without a line of text for each message.
+void RunPage::follow_reference_wrench(runtime::Runtime* runtime, const Note& note) {
+  Vector6 w;
+  std::uint64_t client = 0;
+  if (!server_.take_reference_wrench(w, client) || runtime == nullptr) return;
+  if (client != wrench_client_) {
+    note("reference_wrench",
+         client == 0 ? std::string("ended: zero") : fmt::format("given by page {}", client));
+    wrench_client_ = client;
+  }
+  for (int i = 0; i < 6; ++i) {
+    const int number =
+        config::field_of(form_, {Parameter::kReferenceWrench, static_cast<std::int16_t>(i), 0.0});
+    if (number < 0 || form_[number].changes.empty()) continue;
+    const std::string why_not = config::refusal(form_, number, w[i], values_);
+    if (!why_not.empty()) {
+      server_.warn(client, form_[number].name + ": " + why_not);
+      continue;
+    }
+    if (w[i] == values_[number]) continue;
+    for (ParameterChange change : form_[number].changes) {
+      change.value = w[i];
+      if (!runtime->change(change)) {
+        server_.warn(client, "/reference_wrench: too many changes are waiting");
+        return;
+      }
+    }
+  }
 }
 
 std::string RunPage::set_pace(const Command& command, runtime::Runtime* runtime, const Note& note) {

@@ -5,6 +5,7 @@
 /// Used by the observer thread.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <future>
@@ -17,6 +18,7 @@
 
 #include "hg/analysis/fault_figures.h"
 #include "hg/config/twin_form.h"
+#include "hg/live/publisher.h"
 #include "hg/page/hand_analysis.h"
 #include "hg/runtime/runtime.h"
 #include "hg/scenario/options.h"
@@ -51,16 +53,16 @@ class RunPage {
   /// Operator's desk, from which the control loop reads the actions of pages.
   OperatorDesk& desk() { return *desk_; }
 
-  /// Shows `run` from now on. `recording` is the name of its file.
-  void begin(const ShownRun& run, const std::string& recording);
+  /// Shows `run` from now on. `recording` is the name of its file; `start` is the time of its begin
+  /// in that file and in live messages.
+  void begin(const ShownRun& run, const std::string& recording,
+             std::chrono::system_clock::time_point start);
 
   /// Processes every sample, in order.
   void observe(const Sample& sample, const Note& note);
   /// Shows the newest sample.
   void show(const Sample& sample);
-  void announce(double time_s, std::string_view name, std::string_view text) {
-    server_.announce_event(time_s, name, text);
-  }
+  void announce(double time_s, std::string_view name, std::string_view text);
 
   /// Applies hand input and commands. `runtime` is nullptr when the run is over.
   void follow(runtime::Runtime* runtime, const Note& note);
@@ -84,6 +86,7 @@ class RunPage {
     ModeRequest request = ModeRequest::kNone;
     /// The pause before the request has been seen: requests act on their edge
     bool is_next = false;
+    bool is_seen = false;       ///< a cycle has taken the request
     std::uint32_t samples = 0;  ///< number of samples seen since the request is the first
   };
 
@@ -93,10 +96,16 @@ class RunPage {
   void take_prepared(const Note& note);
   void drop_overtaken(const Note& note);
   void note_lost(const Note& note);
+  void send_values();
+  void follow_reference_wrench(runtime::Runtime* runtime, const Note& note);
+  void begin_live(std::chrono::system_clock::time_point start);
+  void publish_live(const Sample& sample);
 
   // Execute a command; return the reason for a refusal, empty = executed or under way.
   std::string set(const viewer_server::Command& command, runtime::Runtime* runtime,
                   const Note& note);
+  std::string mark(const viewer_server::Command& command, runtime::Runtime* runtime,
+                   const Note& note);
   std::string request_mode(const viewer_server::Command& command, runtime::Runtime* runtime,
                            const Note& note);
   std::string stop(const viewer_server::Command& command, runtime::Runtime* runtime,
@@ -113,11 +122,16 @@ class RunPage {
   Prepare prepare_;
   std::uint64_t number_ = 1;
   std::vector<config::FormField> form_;
-  std::vector<double> values_;  ///< values of the form, as targets
+  std::vector<double> values_;   ///< values of the form, as targets
+  bool has_new_values_ = false;  ///< values_ not yet sent to the pages
+  std::chrono::steady_clock::time_point values_sent_;
   std::unique_ptr<OperatorDesk> desk_ = std::make_unique<OperatorDesk>();
   viewer_server::ViewerServer server_;
   analysis::Names names_;
   std::optional<HandAnalysis> analysis_;
+  std::optional<live::Publisher> live_;  ///< messages of this run for live clients
+  std::uint64_t wrench_client_ = 0;      ///< live client that gives the reference wrench; 0 = none
+  int marks_ = 0;                        ///< marks in this run
   viewer_server::View view_;
   std::unique_ptr<Sample> newest_;
   bool has_news_ = false;  ///< there is news not yet shown on any page

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "hg/recording/message.h"
+#include "hg/messages/message.h"
 #include "hg/signals/state.h"
 
 namespace hg::recording {
@@ -95,7 +95,7 @@ class Columns {
     path_.resize(length);
   }
 
-  template <IsScalar T>
+  template <messages::IsScalar T>
   void put(const char* name, const T& value) {
     if (Column* column = next<T>(name, is_sequence_)) add(*column, &value);
   }

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "hg/core/error.h"
-#include "hg/recording/cdr_reader.h"
+#include "hg/messages/cdr_reader.h"
 
 namespace hg::recording {
 namespace {
@@ -113,7 +113,7 @@ RecordingSummary FlightRecorder::write_to(const std::filesystem::path& folder,
   const auto sample = std::make_unique<Sample>();
   double first_s = 0.0;
   for (std::uint64_t i = pushed_ - kept; i < pushed_; ++i) {
-    if (!CdrReader(slots_[i % slots_.size()]).decode(*sample)) continue;
+    if (!messages::CdrReader(slots_[i % slots_.size()]).decode(*sample)) continue;
     if (i == pushed_ - kept) first_s = sample->record.time_s;
     recorder.push_waiting(*sample);
   }

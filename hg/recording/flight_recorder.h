@@ -14,8 +14,8 @@
 #include <thread>
 #include <vector>
 
-#include "hg/recording/cdr_writer.h"
-#include "hg/recording/event.h"
+#include "hg/messages/cdr_writer.h"
+#include "hg/messages/event.h"
 #include "hg/recording/recorder.h"
 
 namespace hg::recording {
@@ -53,7 +53,7 @@ class FlightRecorder {
   RecordingSummary write_to(const std::filesystem::path& folder, const std::string& cause);
 
   RecordingInfo info_;
-  CdrWriter cdr_;
+  messages::CdrWriter cdr_;
   std::vector<std::vector<std::byte>> slots_;  ///< encoded samples, a ring
   std::uint64_t pushed_ = 0;                   ///< samples pushed so far
   std::vector<Event> events_;                  ///< events of the kept samples, and some older

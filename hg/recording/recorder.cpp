@@ -11,17 +11,19 @@
 #include "hg/core/error.h"
 #include "hg/core/spsc_ring.h"
 #include "hg/core/text.h"
-#include "hg/recording/cdr_writer.h"
-#include "hg/recording/event.h"
+#include "hg/messages/cdr_writer.h"
+#include "hg/messages/event.h"
+#include "hg/messages/ros_messages.h"
+#include "hg/messages/schema.h"
+#include "hg/messages/tool_messages.h"
 #include "hg/recording/mcap_file.h"
 #include "hg/recording/recording_folder.h"
-#include "hg/recording/ros_messages.h"
-#include "hg/recording/schema.h"
-#include "hg/recording/tool_messages.h"
 
 namespace hg::recording {
 namespace {
 
+using messages::CdrWriter;
+using messages::ToolMessages;
 using namespace std::chrono_literals;
 
 constexpr double kRingSeconds = 0.7;  // outlasts the pauses of a busy disk
@@ -66,7 +68,7 @@ std::uint64_t start_ns(const RecordingInfo& info) {
 
 KeyValues run_metadata(const RecordingInfo& info) {
   std::vector<std::string> twin_names;
-  for (const TwinJoint& joint : info.twin_joints) twin_names.push_back(joint.name);
+  for (const messages::TwinJoint& joint : info.twin_joints) twin_names.push_back(joint.name);
   return {{"name", info.name},
           {"version", info.version},
           {"start_ns", std::to_string(start_ns(info))},
@@ -93,7 +95,8 @@ KeyValues limit_metadata(const LimitCatalogue& limits) {
 
 template <HasFields Message>
 std::uint16_t add_topic(McapFile& file, const std::string& topic) {
-  return file.add_channel(topic, schema_name<Message>(), schema_text<Message>());
+  return file.add_channel(topic, messages::schema_name<Message>(),
+                          messages::schema_text<Message>());
 }
 
 }  // namespace
@@ -115,6 +118,7 @@ class Recorder::Writer {
 
  private:
   void write_head(const RecordingInfo& info);
+  void write_description(const std::string& topic, const std::string& urdf);
   void run();
   bool write_waiting_samples();
   void write(const Sample& sample);
@@ -144,8 +148,8 @@ class Recorder::Writer {
   McapFile file_;
   CdrWriter cdr_;
   ToolMessages tool_messages_;
-  std::uint16_t sample_topic_ = 0, event_topic_ = 0, device_topic_ = 0, twin_topic_ = 0,
-                wrench_topic_ = 0, transform_topic_ = 0;
+  std::uint16_t sample_topic_ = 0, event_topic_ = 0;
+  std::vector<std::uint16_t> tool_topics_;  // in the order of the messages for tools
   Sample sample_;
   std::uint64_t flushed_samples_ = 0;
   std::uint64_t event_count_ = 0;
@@ -168,7 +172,7 @@ Recorder::Writer::Writer(const RecordingInfo& info)
       path_(folder_.new_path(info.name, info.start)),
       stem_(path_.stem().stem().string()),
       file_(path_),
-      tool_messages_(info) {
+      tool_messages_(info, info.make_links ? info.make_links() : messages::LinkTree()) {
   // a file that could not be created may belong to another run
   const bool is_mine = !file_.has_failed();
   write_head(info);
@@ -189,12 +193,19 @@ void Recorder::Writer::write_head(const RecordingInfo& info) {
   file_.add_metadata("run", run_metadata(info));
   file_.add_metadata("limits", limit_metadata(info.limits));
   for (const NamedText& text : info.configuration) file_.attach(text.name, text.text, start_ns_);
+  write_description("/robot_description", info.device_description);
+  write_description("/twin/robot_description", info.twin_description);
   sample_topic_ = add_topic<Sample>(file_, "/hapticgiant/sample");
   event_topic_ = add_topic<Event>(file_, "/hapticgiant/events");
-  device_topic_ = add_topic<JointState>(file_, "/joint_states");
-  twin_topic_ = add_topic<JointState>(file_, "/twin/joint_states");
-  wrench_topic_ = add_topic<WrenchStamped>(file_, "/user_wrench");
-  transform_topic_ = add_topic<TransformMessage>(file_, "/tf");
+  tool_messages_.pass_recorded([this]<typename Message>(const char* topic, const Message&) {
+    tool_topics_.push_back(add_topic<Message>(file_, topic));
+  });
+}
+
+void Recorder::Writer::write_description(const std::string& topic, const std::string& urdf) {
+  if (urdf.empty()) return;
+  const std::uint16_t number = add_topic<messages::TextMessage>(file_, topic);
+  file_.write(number, 0, start_ns_, cdr_.encode(messages::TextMessage{urdf}));
 }
 
 bool Recorder::Writer::push(const Sample& sample) noexcept {
@@ -280,10 +291,10 @@ void Recorder::Writer::write(const Sample& sample) {
 
   if (record.cycle % tool_samples_ == 0) {
     tool_messages_.update(sample, time_ns);
-    file_.write(device_topic_, record.cycle, time_ns, cdr_.encode(tool_messages_.device()));
-    file_.write(twin_topic_, record.cycle, time_ns, cdr_.encode(tool_messages_.twin()));
-    file_.write(wrench_topic_, record.cycle, time_ns, cdr_.encode(tool_messages_.user_wrench()));
-    file_.write(transform_topic_, record.cycle, time_ns, cdr_.encode(tool_messages_.transforms()));
+    std::size_t next = 0;
+    tool_messages_.pass_recorded([&](const char*, const auto& message) {
+      file_.write(tool_topics_[next++], record.cycle, time_ns, cdr_.encode(message));
+    });
   }
 
   if (summary_.samples - flushed_samples_ >= flush_samples_) flush();

@@ -8,15 +8,19 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "hg/signals/limit.h"
+#include "hg/messages/event.h"
+#include "hg/messages/run_names.h"
 #include "hg/signals/state.h"
 
 namespace hg::recording {
+
+using messages::Event;
 
 /// Whether a Recorder can be made; false when the program was built without Rust.
 bool recording_available() noexcept;
@@ -25,19 +29,12 @@ struct NamedText {
   std::string name, text;
 };
 
-/// Joint of the twin, in the order of its coordinates.
-struct TwinJoint {
-  std::string name;
-  /// Has 7 coordinates and 6 velocities, and is not part of a JointState
-  bool is_floating = false;
-};
-
-struct RecordingInfo {
+struct RecordingInfo : messages::RunNames {
   std::filesystem::path folder = "recordings";
   std::string name = "run";  ///< first part of the file name, for example "door"
-  std::vector<std::string> gantry_joints, manipulator_joints;
-  std::vector<TwinJoint> twin_joints;
-  LimitCatalogue limits;
+  /// Makes the links of device and twin for /tf, once per thread; empty = without links
+  std::function<messages::LinkTree()> make_links;
+  std::string device_description, twin_description;  ///< URDF for tools; empty = none
   std::vector<NamedText> configuration;  ///< files that describe the run, kept as attachments
   std::string version;                   ///< version of the program
   double rate_Hz = 1000.0;               ///< samples per second, > 0

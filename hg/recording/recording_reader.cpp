@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "hg/core/error.h"
-#include "hg/recording/cdr_reader.h"
+#include "hg/messages/cdr_reader.h"
+#include "hg/messages/schema.h"
 #include "hg/recording/mcap_sink/mcap_sink.h"
-#include "hg/recording/schema.h"
 
 namespace hg::recording {
 namespace {
@@ -41,7 +41,7 @@ bool is_same_schema(std::string_view recorded) {
     }
     return fields;
   };
-  return without_notes(recorded) == without_notes(schema_text<Sample>());
+  return without_notes(recorded) == without_notes(messages::schema_text<Sample>());
 }
 
 using Bytes = std::span<const std::byte>;
@@ -181,10 +181,10 @@ struct Teller {
     if (kind != mcap_message || !error.empty()) return;
     if (name == kEvents) {
       Event event;
-      if (CdrReader(bytes).decode(event)) listener.event(event);
+      if (messages::CdrReader(bytes).decode(event)) listener.event(event);
     }
     if (name != kSamples) return;
-    if (CdrReader(bytes).decode(sample)) {
+    if (messages::CdrReader(bytes).decode(sample)) {
       start = start_ns(time_ns, sample.record.time_s);
       listener.sample(sample);
     } else {
@@ -244,7 +244,7 @@ struct RecordedRun::Taker {
   void message(std::string_view topic, std::uint64_t time_ns, Bytes bytes) {
     if (topic == kEvents) {
       Event event;
-      if (CdrReader(bytes).decode(event)) run.events_.push_back(std::move(event));
+      if (messages::CdrReader(bytes).decode(event)) run.events_.push_back(std::move(event));
     }
     if (topic != kSamples || *error != '\0') return;
     last.time_ns = time_ns;
@@ -298,7 +298,7 @@ std::size_t RecordedRun::at(double time_s) const {
 }
 
 void RecordedRun::read(std::size_t index, Sample& sample) const {
-  if (!CdrReader(moments_[index].bytes).decode(sample)) {
+  if (!messages::CdrReader(moments_[index].bytes).decode(sample)) {
     throw SetupError(file_.string() + ": sample " + std::to_string(index) + " is damaged");
   }
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/recording/event.h"
+#include "hg/messages/event.h"
 #include "hg/recording/recorder.h"
 
 namespace hg::recording {

@@ -103,6 +103,17 @@ std::string_view bearer_token(std::string_view authorization) noexcept {
   return authorization.substr(kScheme.size());
 }
 
+std::string_view query_token(std::string_view target) noexcept {
+  constexpr std::string_view kToken = "token=";
+  target.remove_prefix(std::min(target.find('?'), target.size() - 1) + 1);
+  while (!target.empty()) {
+    const std::string_view part = target.substr(0, target.find('&'));
+    if (part.starts_with(kToken)) return part.substr(kToken.size());
+    target.remove_prefix(std::min(target.size(), part.size() + 1));
+  }
+  return {};
+}
+
 std::string_view protocol_token(std::string_view protocols) noexcept {
   constexpr std::string_view kToken = "token.";
   const std::size_t comma = protocols.find(',');

@@ -39,6 +39,12 @@ std::string_view path_of(std::string_view target) noexcept;
 /// Token in an Authorization header, "Bearer TOKEN"; empty if missing.
 std::string_view bearer_token(std::string_view authorization) noexcept;
 
+/// Path of the live interface's WebSocket.
+inline constexpr std::string_view kLivePath = "/live";
+
+/// Token in the query of a request target, "/live?token=TOKEN"; empty if missing.
+std::string_view query_token(std::string_view target) noexcept;
+
 /// Protocol name of the page's WebSocket.
 inline constexpr std::string_view kProtocol = "hapticgiant";
 

@@ -22,6 +22,7 @@ enum class CommandName : std::uint8_t {
   kPanel,          ///< switch or key `name` of the operator's panel: `value` 1 on, 0 off
   kMode,           ///< requests the mode `name`: arm, run, run_alone, hold or reset
   kEmergencyStop,  ///< presses the emergency stop
+  kMark,           ///< records an event
   kReleaseStop,    ///< releases the stop pressed by page `value`; 0: by the script
 };
 

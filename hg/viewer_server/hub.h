@@ -1,6 +1,7 @@
 /// State shared by all connections of the server, and the names used from Beast.
 ///
-/// hub.h, page.h and visitor.h include Boost.Beast and are included by viewer_server.cpp only.
+/// hub.h, page.h, live_client.h and visitor.h include Boost.Beast and are included by
+/// viewer_server.cpp only.
 #pragma once
 
 #include <atomic>
@@ -11,6 +12,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -20,10 +22,13 @@
 #include <vector>
 
 #include "hg/core/monotonic_clock.h"
+#include "hg/live/board.h"
+#include "hg/live/publisher.h"
 #include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/commands.h"
 #include "hg/viewer_server/hand_target_box.h"
+#include "hg/viewer_server/reference_wrench_box.h"
 
 namespace hg::viewer_server {
 
@@ -40,6 +45,7 @@ constexpr auto kRequestTimeout = std::chrono::seconds(15);
 constexpr auto kStrangerTimeout = std::chrono::seconds(5);  // time limit for a complete request
 constexpr std::size_t kMostStrangers = 32;  // connections that have not shown the token
 constexpr long kMostKnown = 64;             // connections that have shown the token
+constexpr std::size_t kMostLive = 16;       // clients of the live interface
 constexpr std::size_t kMaxEvents = 200;     // kept for pages that connect later, and per page
 constexpr std::size_t kMaxCommands = 64;    // waiting for the program
 constexpr std::size_t kMaxDone = 256;       // including those for information only
@@ -53,13 +59,14 @@ inline Text to_text(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
 }
 
+class LiveClient;
 class Page;
 class Visitor;
 
 /// Shared state. All but the counters, the hand target and the commands belongs to the server's
 /// thread.
 struct Hub {
-  explicit Hub(const Eigen::AlignedBox3d& limits) : hand(limits) {}
+  explicit Hub(const Eigen::AlignedBox3d& limits);
 
   bool has_token(const Request& request) const;
   /// Adds a connection that has not shown the token; the oldest is dropped when there are too many.
@@ -69,12 +76,27 @@ struct Hub {
   std::shared_ptr<int> make_known(const Visitor* visitor);
   void join(const std::shared_ptr<Page>& page);
   void leave(const std::shared_ptr<Page>& page);
+  void join(const std::shared_ptr<LiveClient>& client);
+  void leave(const std::shared_ptr<LiveClient>& client);
+  /// Ends what the page or client of this number holds.
+  void let_go(std::uint64_t number);
   void put_hand(std::uint64_t page, const HandTarget& target);
+  void put_wrench(std::uint64_t client, const Vector6& w);
   /// Queues a command for the program; false when too many are waiting.
   bool put_command(Command command);
   void show(Text frame);
   void announce(const Text& event);
-  void answer(std::uint64_t page, const Text& answer);
+  /// Answers a command; `refusal` is empty when it was accepted.
+  void answer(std::uint64_t page, double id, std::string_view refusal);
+  void warn(std::uint64_t client, std::string_view text);
+  /// Sends the messages of one moment to all live clients that want them.
+  void show(const live::Batch& batch);
+  /// Keeps a latched message and sends it to its subscribers.
+  void latch(const live::Message& message);
+  /// Updates the values of the parameters, in the order of Scene::settings.
+  void set_parameters(const std::vector<double>& values);
+  /// Collects what live clients want.
+  void note_wanted();
 
   Listener listener;
   std::string token;
@@ -82,6 +104,9 @@ struct Hub {
   OperatorDesk* desk = nullptr;       ///< nullptr: no operator
   std::vector<CommandName> followed;  ///< commands accepted by the scene
   std::set<std::shared_ptr<Page>> pages;
+  std::set<std::shared_ptr<LiveClient>> live_clients;
+  live::Board board;
+  std::map<std::string, std::string, std::less<>> live_assets;  ///< by name: address in `assets`
   std::deque<Text> events;
   Text newest_frame;
   Text values;  ///< encoded values of the settings
@@ -90,11 +115,14 @@ struct Hub {
   std::shared_ptr<int> known = std::make_shared<int>();  ///< one more owner per connection
 
   std::atomic<std::uint64_t> clients{0};
+  std::atomic<std::uint64_t> live_count{0};
+  std::atomic<unsigned long> wanted{0};  ///< channels that live clients want, live::Wanted
   std::atomic<std::uint64_t> sent{0};
   std::atomic<std::uint64_t> dropped{0};
   std::atomic<std::uint64_t> refused{0};
   std::mutex input_mutex;
   HandTargetBox hand;
+  ReferenceWrenchBox wrench;
   std::vector<Command> commands;  ///< not yet taken by the program
 };
 

@@ -1,7 +1,6 @@
 #include "hg/viewer_server/meshes.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "hg/core/mesh_file.h"
@@ -47,8 +46,7 @@ std::vector<MeshName> mesh_names(const std::string& text) {
 }  // namespace
 
 std::string with_meshes(const fs::path& urdf, const std::string& text, std::string_view folder,
-                        AssetTable& assets) {
-  std::map<std::string, std::string, std::less<>> addresses;  // by name in the URDF
+                        AssetTable& assets, MeshAddresses& addresses) {
   std::string served;
   std::size_t copied = 0;
   for (const auto& [begin, end] : mesh_names(text)) {

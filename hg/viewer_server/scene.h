@@ -45,6 +45,7 @@ struct SceneChain {
   std::filesystem::path urdf;            ///< empty: the page draws a plain body at the handle
   std::string address;                   ///< address of the URDF on the server, filled by it
   std::string urdf_text;                 ///< text of a recorded URDF; empty: the file is read
+  std::string live_text;                 ///< text of the URDF for live clients; empty: the same
   Pose T_B_root;                         ///< root link in B
   std::vector<SceneJoint> joints;        ///< in the order of the coordinates
   std::vector<SceneFollower> followers;  ///< joints of closed loops, which have no coordinates

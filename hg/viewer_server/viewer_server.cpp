@@ -21,8 +21,10 @@
 
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
+#include "hg/live/session.h"
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/hub.h"
+#include "hg/viewer_server/live_client.h"
 #include "hg/viewer_server/meshes.h"
 #include "hg/viewer_server/messages.h"
 #include "hg/viewer_server/page.h"
@@ -30,7 +32,20 @@
 
 namespace hg::viewer_server {
 
+Hub::Hub(const Eigen::AlignedBox3d& limits) : hand(limits) {
+  board.session = random_token().substr(0, 8);
+  board.find_asset = [this](std::string_view name) -> const std::string* {
+    const auto address = live_assets.find(name);
+    if (address == live_assets.end()) return nullptr;
+    const auto asset = assets.find(address->second);
+    return asset == assets.end() ? nullptr : &asset->second.content;
+  };
+}
+
 bool Hub::has_token(const Request& request) const {
+  if (websocket::is_upgrade(request) && path_of(view(request.target())) == kLivePath) {
+    return is_same_secret(query_token(view(request.target())), token);
+  }
   return websocket::is_upgrade(request)
              ? is_same_secret(protocol_token(view(request[http::field::sec_websocket_protocol])),
                               token)
@@ -66,9 +81,70 @@ void Hub::join(const std::shared_ptr<Page>& page) {
 void Hub::leave(const std::shared_ptr<Page>& page) {
   pages.erase(page);
   clients = pages.size();
-  if (desk != nullptr) desk->leave(page->number);
+  let_go(page->number);
+}
+
+void Hub::join(const std::shared_ptr<LiveClient>& client) {
+  client->number = next_page++;
+  live_clients.insert(client);
+  live_count = live_clients.size();
+}
+
+void Hub::leave(const std::shared_ptr<LiveClient>& client) {
+  live_clients.erase(client);
+  live_count = live_clients.size();
+  note_wanted();
+  let_go(client->number);
+}
+
+void Hub::let_go(std::uint64_t number) {
+  if (desk != nullptr) desk->leave(number);
   const std::lock_guard lock(input_mutex);
-  hand.leave(page->number);
+  hand.leave(number);
+  wrench.leave(number);
+}
+
+void Hub::note_wanted() {
+  live::Wanted all;
+  for (const auto& client : live_clients) {
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = all[i] || client->wants(i);
+  }
+  wanted = all.to_ulong();
+}
+
+void Hub::put_wrench(std::uint64_t client, const Vector6& w) {
+  const std::lock_guard lock(input_mutex);
+  if (w.isZero(0.0)) return wrench.leave(client);
+  wrench.put(client, w, now_s());
+}
+
+void Hub::warn(std::uint64_t client, std::string_view text) {
+  for (const auto& candidate : live_clients) {
+    if (candidate->number != client) continue;
+    candidate->answer({live::Session::status(live::Session::kWarning, text)});
+  }
+}
+
+void Hub::show(const live::Batch& batch) {
+  for (const auto& client : live_clients) {
+    if (batch.time_ns != 0) client->show(live::Session::time_frame(batch.time_ns));
+    for (const live::Message& message : batch.messages) client->show(message);
+  }
+}
+
+void Hub::latch(const live::Message& message) {
+  board.latched[message.channel] = message;
+  for (const auto& client : live_clients) client->show(message);
+}
+
+void Hub::set_parameters(const std::vector<double>& present) {
+  std::vector<std::string> changed;
+  for (std::size_t i = 0; i < std::min(present.size(), board.parameters.size()); ++i) {
+    live::Parameter& parameter = board.parameters[i];
+    if (std::exchange(parameter.value, present[i]) != present[i]) changed.push_back(parameter.name);
+  }
+  if (changed.empty()) return;
+  for (const auto& client : live_clients) client->tell_changes(changed);
 }
 
 void Hub::put_hand(std::uint64_t page, const HandTarget& target) {
@@ -83,9 +159,12 @@ bool Hub::put_command(Command command) {
   return true;
 }
 
-void Hub::answer(std::uint64_t page, const Text& answer) {
+void Hub::answer(std::uint64_t page, double id, std::string_view refusal) {
   for (const auto& candidate : pages) {
-    if (candidate->number == page) candidate->notify(answer);
+    if (candidate->number == page) candidate->notify(to_text(encode_answer(id, refusal)));
+  }
+  for (const auto& candidate : live_clients) {
+    if (candidate->number == page) candidate->answer(id, refusal);
   }
 }
 
@@ -104,7 +183,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kSendBuffer = 64 * 1024;  // bytes; small, so that what arrives is fresh
+constexpr std::string_view kLiveAssets = "package://hapticgiant";
+constexpr std::size_t kMostBatches = 100;  // waiting for the server's thread
+constexpr int kSendBuffer = 64 * 1024;     // bytes; small, so that what arrives is fresh
 
 tcp::acceptor listen_on(asio::io_context& context, const ServerOptions& options) {
   tcp::acceptor acceptor(context);
@@ -130,18 +211,26 @@ tcp::acceptor listen_on(asio::io_context& context, const ServerOptions& options)
 }
 
 void add_urdf(const SceneChain& chain, std::string_view address, std::string_view folder,
-              AssetTable& assets) {
+              AssetTable& assets, MeshAddresses& live_assets) {
   if (chain.urdf.empty()) return;
   const std::string text = chain.urdf_text.empty() ? read_file(chain.urdf) : chain.urdf_text;
-  assets[std::string(address)] = {"application/xml", with_meshes(chain.urdf, text, folder, assets)};
+  MeshAddresses meshes;
+  assets[std::string(address)] = {"application/xml",
+                                  with_meshes(chain.urdf, text, folder, assets, meshes)};
+  live_assets.merge(meshes);
+  // live clients fetch meshes by their names
+  const std::string original = std::string(folder) + "original.urdf";
+  assets[original] = {"application/xml", chain.live_text.empty() ? text : chain.live_text};
+  live_assets[std::string(kLiveAssets) + std::string(address.substr(address.rfind('/')))] =
+      original;
 }
 
-// Assets of a scene.
-AssetTable assets_of(const Scene& scene, double update_rate_hz) {
+// Assets of a scene, those of the live interface by the names of the meshes in the URDFs.
+AssetTable assets_of(const Scene& scene, double update_rate_hz, MeshAddresses& live_assets) {
   AssetTable assets;
   assets["/scene.json"] = {"application/json", encode_scene(scene, update_rate_hz)};
-  add_urdf(scene.device, kDeviceAddress, "/models/device/", assets);
-  add_urdf(scene.twin, kTwinAddress, "/models/twin/", assets);
+  add_urdf(scene.device, kDeviceAddress, "/models/device/", assets, live_assets);
+  add_urdf(scene.twin, kTwinAddress, "/models/twin/", assets, live_assets);
   return assets;
 }
 
@@ -160,7 +249,7 @@ struct ViewerServer::Impl {
     hub.desk = options.desk;
     hub.token = options.token.empty() ? random_token() : options.token;
     hub.assets = load_page(options.page);
-    take({scene, assets_of(scene, update_rate_hz)});
+    take(new_scene(scene, update_rate_hz));
     accept();
     thread = std::thread([this] { context.run(); });
     pthread_setname_np(thread.native_handle(), "page server");
@@ -170,6 +259,7 @@ struct ViewerServer::Impl {
     context.stop();
     thread.join();
     hub.pages.clear();  // their sockets need the context
+    hub.live_clients.clear();
   }
 
   void accept() {
@@ -192,10 +282,22 @@ struct ViewerServer::Impl {
   struct NewScene {
     Scene scene;
     AssetTable assets;
+    MeshAddresses live_assets;
   };
+
+  static NewScene new_scene(const Scene& scene, double update_rate_hz) {
+    NewScene next{.scene = scene, .assets = {}, .live_assets = {}};
+    next.assets = assets_of(scene, update_rate_hz, next.live_assets);
+    return next;
+  }
 
   struct Answer {
     std::uint64_t page;
+    double id;
+    std::string refusal;
+  };
+  struct Warning {
+    std::uint64_t client;
     std::string text;
   };
 
@@ -204,8 +306,11 @@ struct ViewerServer::Impl {
     std::unique_ptr<NewScene> scene;
     std::vector<std::string> events;
     std::vector<Answer> answers;
-    std::optional<std::string> values;
+    std::vector<Warning> warnings;
+    std::optional<std::vector<double>> values;
     std::unique_ptr<View> view;
+    std::vector<live::Message> latched;
+    std::vector<live::Batch> batches;
   };
 
   // On the server's thread, or before it runs.
@@ -217,6 +322,15 @@ struct ViewerServer::Impl {
     hub.followed = scene.scene.commands;
     hub.events.clear();
     hub.newest_frame.reset();
+    hub.live_assets = std::move(scene.live_assets);
+    hub.board.parameters.clear();
+    std::vector<std::string> names;
+    for (const Setting& setting : scene.scene.settings) {
+      hub.board.parameters.push_back(
+          {setting.name, setting.unit, setting.value, setting.min, setting.max});
+      names.push_back(setting.name);
+    }
+    for (const auto& client : hub.live_clients) client->tell_changes(names);
     const std::lock_guard lock(hub.input_mutex);
     hub.hand = HandTargetBox(scene.scene.box);
   }
@@ -232,10 +346,14 @@ struct ViewerServer::Impl {
     if (outbox.scene) take(std::move(*outbox.scene));
     for (std::string& event : outbox.events) hub.announce(to_text(std::move(event)));
     for (Answer& answer : outbox.answers) {
-      hub.answer(answer.page, to_text(std::move(answer.text)));
+      hub.answer(answer.page, answer.id, answer.refusal);
     }
+    for (const Warning& warning : outbox.warnings) hub.warn(warning.client, warning.text);
+    for (const live::Message& message : outbox.latched) hub.latch(message);
+    for (const live::Batch& batch : outbox.batches) hub.show(batch);
     if (outbox.values) {
-      hub.values = to_text(std::move(*outbox.values));
+      hub.set_parameters(*outbox.values);
+      hub.values = to_text(encode_values(*outbox.values));
       for (const auto& page : hub.pages) page->notify(hub.values);
     }
     if (outbox.view && hub.desk != nullptr) {
@@ -298,13 +416,13 @@ std::string ViewerServer::url() const {
 
 void ViewerServer::set_scene(const Scene& scene) {
   check_scene(scene);
-  auto next = std::make_unique<Impl::NewScene>(
-      Impl::NewScene{scene, assets_of(scene, impl_->update_rate_hz)});
+  auto next = std::make_unique<Impl::NewScene>(Impl::new_scene(scene, impl_->update_rate_hz));
   impl_->run = scene.run;
   const std::lock_guard lock(impl_->mutex);
   impl_->pending.scene = std::move(next);
   impl_->pending.events.clear();
   impl_->pending.view.reset();
+  impl_->pending.batches.clear();
   impl_->post_once();
 }
 
@@ -330,9 +448,8 @@ void ViewerServer::announce_event(double time_s, std::string_view name, std::str
 }
 
 void ViewerServer::set_values(const std::vector<double>& values) {
-  std::string text = encode_values(values);
   const std::lock_guard lock(impl_->mutex);
-  impl_->pending.values = std::move(text);
+  impl_->pending.values = values;
   impl_->post_once();
 }
 
@@ -341,22 +458,52 @@ bool ViewerServer::take_hand_target(HandTarget& target) {
   return impl_->hub.hand.take(target, now_s());
 }
 
+bool ViewerServer::take_reference_wrench(Vector6& w, std::uint64_t& client) {
+  const std::lock_guard lock(impl_->hub.input_mutex);
+  return impl_->hub.wrench.take(w, client, now_s());
+}
+
+void ViewerServer::warn(std::uint64_t client, std::string_view text) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->pending.warnings.push_back({client, std::string(text)});
+  impl_->post_once();
+}
+
+bool ViewerServer::has_live_clients() const { return impl_->hub.live_count > 0; }
+
+live::Wanted ViewerServer::live_wanted() const { return impl_->hub.wanted.load(); }
+
+void ViewerServer::publish_live(live::Batch batch) {
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->pending.batches.size() == kMostBatches) {  // the server's thread does not run
+    impl_->pending.batches.erase(impl_->pending.batches.begin());
+    ++impl_->hub.dropped;
+  }
+  impl_->pending.batches.push_back(std::move(batch));
+  impl_->post_once();
+}
+
+void ViewerServer::latch_live(live::Message message) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->pending.latched.push_back(std::move(message));
+  impl_->post_once();
+}
+
 std::vector<Command> ViewerServer::take_commands() {
   const std::lock_guard lock(impl_->hub.input_mutex);
   return std::exchange(impl_->hub.commands, {});
 }
 
 void ViewerServer::answer(const Command& command, std::string_view refusal) {
-  std::string text = encode_answer(command.id, refusal);
   if (!refusal.empty()) ++impl_->hub.refused;
   const std::lock_guard lock(impl_->mutex);
-  impl_->pending.answers.push_back({command.page, std::move(text)});
+  impl_->pending.answers.push_back({command.page, command.id, std::string(refusal)});
   impl_->post_once();
 }
 
 Counters ViewerServer::counters() const {
   const Hub& hub = impl_->hub;
-  return {hub.clients, hub.sent, hub.dropped, hub.refused};
+  return {hub.clients, hub.live_count, hub.sent, hub.dropped, hub.refused};
 }
 
 }  // namespace hg::viewer_server

@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hg/live/publisher.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/operator_desk.h"
 #include "hg/viewer_server/commands.h"
@@ -40,6 +41,7 @@ struct ServerOptions {
 /// Counts since the start; `clients` is the present number.
 struct Counters {
   std::uint64_t clients = 0;  ///< connected pages
+  std::uint64_t live = 0;     ///< connected clients of the live interface
   std::uint64_t sent = 0;     ///< frames handed to the network
   std::uint64_t dropped = 0;  ///< frames and events not sent to a slow client
   std::uint64_t refused = 0;  ///< requests and messages that were refused
@@ -68,6 +70,15 @@ class ViewerServer {
   /// gets the newest frame when it is ready for it; slow clients cause no delay.
   void publish(View view);
 
+  /// Whether a client of the live interface is connected.
+  bool has_live_clients() const;
+  /// Live channels that some client has subscribed to.
+  live::Wanted live_wanted() const;
+  /// Sends messages to the live clients; dropped for those that are too slow, which are told.
+  void publish_live(live::Batch batch);
+  /// Keeps a message that each new subscriber gets.
+  void latch_live(live::Message message);
+
   /// Adds a line to the list of events of all pages, also of those that connect later.
   void announce_event(double time_s, std::string_view name, std::string_view text);
 
@@ -78,6 +89,12 @@ class ViewerServer {
   /// Gets the newest hand target since the last call; false and `target` untouched if there is
   /// none. A page that closes or is silent for 0.5 s causes one last, inactive target.
   bool take_hand_target(HandTarget& target);
+
+  /// Gets the newest reference wrench of a live client, resolved in B, and the number of the
+  /// client, 0 when it has ended: then it is zero. False and nothing changed if there is none.
+  bool take_reference_wrench(Vector6& w, std::uint64_t& client);
+  /// Sends a warning to a live client.
+  void warn(std::uint64_t client, std::string_view text);
 
   /// Commands since the last call, in order. Each that is not done needs one answer().
   std::vector<Command> take_commands();

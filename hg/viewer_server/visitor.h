@@ -1,4 +1,5 @@
-/// One HTTP connection: checks each request, serves entries of the table, or becomes a page.
+/// One HTTP connection: checks each request, serves entries of the table, or becomes a
+/// page or a live client.
 #pragma once
 
 #include <memory>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "hg/viewer_server/hub.h"
+#include "hg/viewer_server/live_client.h"
 #include "hg/viewer_server/page.h"
 
 namespace hg::viewer_server {
@@ -51,14 +53,16 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     const Request& request = parser_->get();
     const beast::string_view origin = request[http::field::origin];
     const bool is_upgrade = websocket::is_upgrade(request);
+    const std::string_view path = path_of(view(request.target()));
+    const bool is_live = is_upgrade && path == kLivePath;
 
     if (!is_own_host(view(request[http::field::host]), hub_.listener)) {
       refuse(http::status::forbidden, "wrong host");
-    } else if (!origin.empty() && !is_own_origin(view(origin), hub_.listener)) {
+    } else if (!origin.empty() && !is_live && !is_own_origin(view(origin), hub_.listener)) {
       refuse(http::status::forbidden, "wrong origin");
     } else if (request.method() != http::verb::get) {
       refuse(http::status::method_not_allowed, "only GET");
-    } else if (is_upgrade && (origin.empty() || path_of(view(request.target())) != "/ws")) {
+    } else if (is_upgrade && !is_live && (origin.empty() || path != "/ws")) {
       refuse(http::status::forbidden, "wrong origin or path");
     } else if (const Asset* asset = found(); !is_upgrade && asset != nullptr && asset->is_public) {
       serve(*asset);
@@ -66,12 +70,28 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
       refuse(http::status::forbidden, "Open the link that the program printed: it has the token.");
     } else if (!known_ && !(known_ = hub_.make_known(this))) {
       refuse(http::status::service_unavailable, "too many connections");
+    } else if (is_live) {
+      become_live(request);
     } else if (is_upgrade) {
       std::make_shared<Page>(hub_, std::move(stream_), std::move(known_))->start(request);
     } else if (asset != nullptr) {
       serve(*asset);
     } else {
       respond(http::status::not_found, "text/plain", "not found\n");
+    }
+  }
+
+  void become_live(const Request& request) {
+    const std::string_view protocol =
+        live::chosen_protocol(view(request[http::field::sec_websocket_protocol]));
+    if (protocol.empty()) {
+      refuse(http::status::bad_request,
+             "the subprotocol must be foxglove.sdk.v1 or foxglove.websocket.v1");
+    } else if (hub_.live_clients.size() >= kMostLive) {
+      refuse(http::status::service_unavailable, "too many live clients");
+    } else {
+      std::make_shared<LiveClient>(hub_, std::move(stream_), std::move(known_))
+          ->start(request, protocol);
     }
   }
 

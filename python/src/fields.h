@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "hg/core/fields.h"
-#include "hg/recording/message.h"
+#include "hg/messages/message.h"
 #include "python/src/arrays.h"
 
 namespace hg::python {
@@ -54,7 +54,7 @@ class FieldBinder {
     return static_cast<const std::byte*>(member) - reinterpret_cast<const std::byte*>(&blank_);
   }
 
-  template <recording::IsScalar Value>
+  template <messages::IsScalar Value>
   void add(const char* name, Offset<Value> member, const char* note) {
     target_.def_prop_rw(
         name, [member](T& self) { return member.in(self); },

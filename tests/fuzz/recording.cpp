@@ -8,7 +8,7 @@
 #include <string>
 
 #include "hg/core/error.h"
-#include "hg/recording/cdr_reader.h"
+#include "hg/messages/cdr_reader.h"
 #include "hg/recording/recording_reader.h"
 #include "tests/fuzz/targets.h"
 
@@ -46,12 +46,12 @@ void recording(Bytes bytes) {
   if (bytes[0] % 2 == 0) return read_file(rest);
   const std::span message(reinterpret_cast<const std::byte*>(rest.data()), rest.size());
   static const auto sample = std::make_unique<Sample>();
-  if (recording::CdrReader(message).decode(*sample) &&
+  if (messages::CdrReader(message).decode(*sample) &&
       (sample->record.limit_count < 0 || sample->record.limit_count > kMaxLimits)) {
     std::abort();
   }
   recording::Event event;
-  static_cast<void>(recording::CdrReader(message).decode(event));
+  static_cast<void>(messages::CdrReader(message).decode(event));
 }
 
 }  // namespace hg::fuzz

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "apps/hapticgiant/run_setup.h"
-#include "hg/recording/cdr_writer.h"
+#include "hg/messages/cdr_writer.h"
 #include "hg/recording/columns.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
@@ -18,7 +18,7 @@
 namespace hg::apps {
 namespace {
 
-using recording::CdrWriter;
+using messages::CdrWriter;
 using recording::Column;
 using recording::Columns;
 

@@ -97,18 +97,19 @@ def check_complete(path):
         (START_NS + SECONDS * 10**9, "end", ""),
     ]
 
-    topics = ["/joint_states", "/twin/joint_states", "/tf", "/user_wrench"]
+    topics = ["/joint_states", "/twin/joint_states", "/tf", "/user_wrench", "/handle_twist"]
     assert sorted(by_topic) == sorted(topics)
     for topic in topics:
         assert [t for t, _ in by_topic[topic]] == [
             START_NS + k * 10**7 for k in range(SECONDS * 100)
         ]
     for k, rows in enumerate(zip(*(by_topic[topic] for topic in topics))):
-        device, twin, transforms, wrench = (decoded for _, decoded in rows)
+        device, twin, transforms, wrench, twist = (decoded for _, decoded in rows)
         stamp = device.header.stamp
         assert stamp.sec * 10**9 + stamp.nanosec == START_NS + k * 10**7
         check_joint_states(device, twin, samples[10 * k][1])
         check_frames(transforms, wrench, samples[10 * k][1])
+        assert twist.header.frame_id == "handle" and twist.header.stamp == device.header.stamp
 
     assert attachments == {"device.yaml": "urdf: device.urdf\n", "twin.yaml": "urdf: door.urdf\n"}
     assert metadata["run"]["version"] == "0.1.0"

@@ -1,10 +1,12 @@
 #include "hg/scenario/recorded/recorded_scenario.h"
 
 #include <filesystem>
+#include <memory>
 #include <string_view>
 #include <utility>
 
 #include "hg/scenario/names.h"
+#include "hg/scenario/recorded/robot_models.h"
 
 namespace hg::scenario {
 namespace {
@@ -37,16 +39,22 @@ config::Scenario recorded_scenario(const std::vector<recording::NamedText>& conf
   return load_recorded(std::move(sources), options);
 }
 
+messages::RunNames run_names(const config::Scenario& scenario) {
+  messages::RunNames names{.gantry_joints = gantry_joints(scenario.device),
+                           .manipulator_joints = manipulator_joints(scenario.device),
+                           .twin_joints = {},
+                           .limits = scenario.limits};
+  for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
+    names.twin_joints.push_back({joint.name, joint.type == model::JointType::kFloating});
+  }
+  return names;
+}
+
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const ScenarioOptions& options) {
   recording::RecordingInfo info;
+  static_cast<messages::RunNames&>(info) = run_names(scenario);
   info.name = recording_name(options.scenario);
-  info.gantry_joints = gantry_joints(scenario.device);
-  info.manipulator_joints = manipulator_joints(scenario.device);
-  for (const model::Joint& joint : scenario.twin.model.chain.joints()) {
-    info.twin_joints.push_back({joint.name, joint.type == model::JointType::kFloating});
-  }
-  info.limits = scenario.limits;
   for (const auto& source : scenario.sources) {
     info.configuration.push_back({source.name, source.content});
   }
@@ -54,6 +62,11 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
     info.configuration.push_back({kArguments, text});
   }
   info.rate_Hz = scenario.device.model.rate_Hz;
+  // the scenario may be gone when links are made
+  const auto kept = std::make_shared<const config::Scenario>(scenario);
+  info.make_links = [kept] { return link_tree(*kept); };
+  info.device_description = device_description(scenario);
+  info.twin_description = twin_description(scenario);
   return info;
 }
 

@@ -69,6 +69,15 @@ TEST(IsOwnOrigin, AcceptsPlainHttpOfThisServerOnly) {
   }
 }
 
+TEST(Access, FindsTheTokenInAQuery) {
+  EXPECT_EQ(query_token("/live?token=abc"), "abc");
+  EXPECT_EQ(query_token("/live?x=1&token=abc&y=2"), "abc");
+  for (const char* other :
+       {"", "/", "/live", "?", "/live?", "/live?xtoken=abc", "/live?token", "token=abc"}) {
+    EXPECT_EQ(query_token(other), "") << other;
+  }
+}
+
 TEST(Token, IsFoundInTheHeadersOfRequestAndWebSocket) {
   EXPECT_EQ(path_of("/a/b?token=1"), "/a/b");
   EXPECT_EQ(bearer_token("Bearer abc"), "abc");
@@ -87,6 +96,7 @@ TEST(Token, IsPartOfAnyInput) {
   rc::check([](const std::string& text) {
     RC_ASSERT(bearer_token(text).size() <= text.size());
     RC_ASSERT(protocol_token(text).size() <= text.size());
+    RC_ASSERT(query_token(text).size() <= text.size());
   });
 }
 

@@ -20,11 +20,12 @@ class Meshes : public ::testing::Test {
 
   std::string serve(const std::string& urdf) {
     const std::filesystem::path file = folder_.write("robots/arm/urdf/arm.urdf", urdf);
-    return with_meshes(file, urdf, "/models/device/", assets_);
+    return with_meshes(file, urdf, "/models/device/", assets_, addresses_);
   }
 
   const TemporaryFolder folder_;
   AssetTable assets_;
+  MeshAddresses addresses_;
 };
 
 TEST_F(Meshes, OfAPackageAboveTheUrdfGetAddresses) {

@@ -96,7 +96,7 @@ class RawClient {
   }
 
   struct Message {
-    int opcode = -1;  ///< 1 text, 8 close, 9 ping; -1 = the server closed the connection
+    int opcode = -1;  ///< 1 text, 2 binary, 8 close, 9 ping; -1 = the server closed the connection
     std::string text;
   };
 
@@ -109,6 +109,12 @@ class RawClient {
     if (size == 126) {
       size = 256u * byte(2) + byte(3);
       start = 4;
+    } else if (size == 127) {
+      while (received_.size() < 10 && receive()) continue;
+      if (received_.size() < 10) return {};
+      size = 0;
+      for (std::size_t i = 2; i < 10; ++i) size = 256u * size + byte(i);
+      start = 10;
     }
     while (received_.size() < start + size && receive()) continue;
     if (received_.size() < start + size) return {};

@@ -11,7 +11,7 @@
 
 #include "hg/core/fields.h"
 
-namespace hg::recording {
+namespace hg::messages {
 
 /// Name of a standard message in ROS notation inside a definition, for example "std_msgs/Header".
 /// Empty for our own messages, which have the name of their struct.
@@ -32,4 +32,4 @@ std::string message_name() {
 template <typename T>
 concept IsScalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-}  // namespace hg::recording
+}  // namespace hg::messages

@@ -9,10 +9,10 @@
 #include <string>
 
 #include "hg/core/types.h"
-#include "hg/recording/cdr_writer.h"
-#include "hg/recording/message.h"
+#include "hg/messages/cdr_writer.h"
+#include "hg/messages/message.h"
 
-namespace hg::recording {
+namespace hg::messages {
 
 /// Decodes one message. A message of fixed capacity, such as a sample, needs no allocation.
 class CdrReader {
@@ -89,4 +89,4 @@ class CdrReader {
   bool is_ok_ = true;
 };
 
-}  // namespace hg::recording
+}  // namespace hg::messages

@@ -1,19 +1,21 @@
-#include "hg/recording/tool_messages.h"
+#include "hg/messages/tool_messages.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace hg::recording {
+namespace hg::messages {
 namespace {
 
 constexpr double kRounding = 1e-15;  // values are of order 1
 
-RecordingInfo info() {
-  RecordingInfo info;
+RunNames info() {
+  RunNames info;
   info.gantry_joints = {"p1"};
   info.manipulator_joints = {"m1", "m2"};
   info.twin_joints = {{"slide", false}, {"root", true}, {"hinge", false}};
+  info.limits = {{LimitKind::kManipulatorJoint, "m1", true, {-1.0, 1.0}},
+                 {LimitKind::kCartesian, "elbow x", false, {-1.0, 1.0}}};
   return info;
 }
 
@@ -52,7 +54,7 @@ TEST(ToolMessages, LeaveFloatingJointsOut) {
 TEST(ToolMessages, SayNanForWhatTheSampleDoesNotHave) {
   ToolMessages messages(info());
   messages.update(Sample{}, 0);
-  for (const JointState& state : {messages.device(), messages.twin()}) {
+  for (const JointState& state : {messages.device(), messages.twin(), messages.limits()}) {
     ASSERT_EQ(state.position.size(), state.name.size());
     ASSERT_EQ(state.velocity.size(), state.name.size());
     ASSERT_EQ(state.effort.size(), state.name.size());
@@ -101,5 +103,52 @@ TEST(ToolMessages, PlaceHandleAndElbowInTheBase) {
   EXPECT_NEAR(twin_end.transform.rotation.z, std::sqrt(0.5), kRounding);
 }
 
+TEST(ToolMessages, TurnTheTwistIntoTheHandle) {
+  Sample sample;
+  // the handle's x axis points along y of the base
+  sample.record.T_B_H.R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  sample.record.v_H = {0.0, 2.0, 0.0};
+  ToolMessages messages(info());
+  messages.update(sample, 0);
+  EXPECT_EQ(messages.handle_twist().header.frame_id, "handle");
+  EXPECT_EQ(messages.handle_twist().twist.linear.x, 2.0);
+  EXPECT_EQ(messages.handle_twist().twist.angular.z, 0.0);
+  // 10 ms later it has turned by 20 mrad about its own y axis
+  sample.record.time_s = 0.01;
+  sample.record.T_B_H.R *= Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  messages.update(sample, 0);
+  EXPECT_NEAR(messages.handle_twist().twist.angular.y, 2.0, 1e-9);
+  EXPECT_NEAR(messages.handle_twist().twist.angular.x, 0.0, 1e-9);
+}
+
+TEST(ToolMessages, SayHowFarTheLimitsAre) {
+  Sample sample;
+  sample.record.limit_count = 2;
+  sample.record.limits[1] = {.to_lower = 0.3, .to_upper = 0.1, .reaction = -5.0};
+  ToolMessages messages(info());
+  messages.update(sample, 0);
+  EXPECT_EQ(messages.limits().name, (std::vector<std::string>{"m1", "elbow x"}));
+  EXPECT_EQ(messages.limits().position[1], 0.1);
+  EXPECT_EQ(messages.limits().effort[1], -5.0);
+  EXPECT_TRUE(std::isinf(messages.limits().position[0]));
+}
+
+TEST(ToolMessages, HaveTheLinksInTheTransforms) {
+  LinkTree links;
+  links.frames = {{"base", "m1"}, {"m1", "m2"}};
+  links.poses = [](const Sample& sample, std::vector<Pose>& poses) {
+    poses.at(1).p.x() = sample.record.time_s;
+  };
+  Sample sample;
+  sample.record.time_s = 3.0;
+  ToolMessages messages(info(), links);
+  messages.update(sample, 0);
+  const auto& transforms = messages.transforms().transforms;
+  ASSERT_EQ(transforms.size(), 5u);
+  EXPECT_EQ(transforms[4].header.frame_id, "m1");
+  EXPECT_EQ(transforms[4].child_frame_id, "m2");
+  EXPECT_EQ(transforms[4].transform.translation.x, 3.0);
+}
+
 }  // namespace
-}  // namespace hg::recording
+}  // namespace hg::messages

@@ -5,7 +5,7 @@
 
 #include "hg/core/fields.h"
 
-namespace hg::recording {
+namespace hg::messages {
 
 /// Noteworthy event in a recording.
 struct Event {
@@ -20,4 +20,4 @@ void fields(Archive& a, T& event) {
   a("text", event.text);
 }
 
-}  // namespace hg::recording
+}  // namespace hg::messages

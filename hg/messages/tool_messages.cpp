@@ -1,17 +1,19 @@
-#include "hg/recording/tool_messages.h"
+#include "hg/messages/tool_messages.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "hg/core/types.h"
 
-namespace hg::recording {
+namespace hg::messages {
 namespace {
 
-constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
+constexpr double kLongestTurn_s = 0.5;  // a mean over a longer time says nothing
 
-enum FrameIndex : std::size_t { kHandle = 0, kElbow = 1, kTwinEnd = 2 };
+enum FrameIndex : std::size_t { kHandle = 0, kElbow = 1, kTwinEnd = 2, kFirstLink = 3 };
 
 template <typename Vector>
 double value_or_nan(const Vector& vector, int index) {
@@ -33,16 +35,18 @@ void resize(JointState& state) {
 
 }  // namespace
 
-ToolMessages::ToolMessages(const RecordingInfo& info)
-    : gantry_joints_(static_cast<int>(info.gantry_joints.size())),
-      manipulator_joints_(static_cast<int>(info.manipulator_joints.size())) {
-  device_.name = info.gantry_joints;
-  device_.name.insert(device_.name.end(), info.manipulator_joints.begin(),
-                      info.manipulator_joints.end());
+ToolMessages::ToolMessages(const RunNames& names, LinkTree links)
+    : gantry_joints_(static_cast<int>(names.gantry_joints.size())),
+      manipulator_joints_(static_cast<int>(names.manipulator_joints.size())),
+      links_(std::move(links)),
+      link_poses_(links_.frames.size()) {
+  device_.name = names.gantry_joints;
+  device_.name.insert(device_.name.end(), names.manipulator_joints.begin(),
+                      names.manipulator_joints.end());
   resize(device_);
 
   Place place = {0, 0};
-  for (const TwinJoint& joint : info.twin_joints) {
+  for (const TwinJoint& joint : names.twin_joints) {
     if (!joint.is_floating) {
       twin_.name.push_back(joint.name);
       twin_places_.push_back(place);
@@ -52,24 +56,34 @@ ToolMessages::ToolMessages(const RecordingInfo& info)
   }
   resize(twin_);
 
+  for (const LimitInfo& limit : names.limits) limits_.name.push_back(limit.name);
+  resize(limits_);
+
   user_wrench_.header.frame_id = "handle";
-  transforms_.transforms.resize(3);
+  handle_twist_.header.frame_id = "handle";
+  transforms_.transforms.resize(kFirstLink + links_.frames.size());
   transforms_.transforms[kHandle].child_frame_id = "handle";
   transforms_.transforms[kElbow].child_frame_id = "elbow";
   transforms_.transforms[kTwinEnd].child_frame_id = "twin_end";
   for (TransformStamped& transform : transforms_.transforms) transform.header.frame_id = "base";
+  for (std::size_t i = 0; i < links_.frames.size(); ++i) {
+    TransformStamped& transform = transforms_.transforms[kFirstLink + i];
+    transform.header.frame_id = links_.frames[i].parent;
+    transform.child_frame_id = links_.frames[i].child;
+  }
 }
 
 void ToolMessages::update(const Sample& sample, std::uint64_t time_ns) {
-  const Time stamp = {static_cast<std::int32_t>(time_ns / kNanosecondsPerSecond),
-                      static_cast<std::uint32_t>(time_ns % kNanosecondsPerSecond)};
-  device_.header.stamp = stamp;
-  twin_.header.stamp = stamp;
+  const Time stamp = to_ros(time_ns);
+  for (JointState* state : {&device_, &twin_, &limits_}) state->header.stamp = stamp;
   user_wrench_.header.stamp = stamp;
+  handle_twist_.header.stamp = stamp;
   for (TransformStamped& transform : transforms_.transforms) transform.header.stamp = stamp;
 
   update_joints(sample);
-  update_frames(sample.record);
+  update_frames(sample);
+  update_twist(sample.record);
+  update_limits(sample.record);
 }
 
 void ToolMessages::update_joints(const Sample& sample) {
@@ -95,7 +109,8 @@ void ToolMessages::update_joints(const Sample& sample) {
   }
 }
 
-void ToolMessages::update_frames(const CycleRecord& record) {
+void ToolMessages::update_frames(const Sample& sample) {
+  const CycleRecord& record = sample.record;
   const Eigen::Matrix3d R_H_B = record.T_B_H.R.transpose();
   user_wrench_.wrench.force = to_ros(R_H_B * record.robot.w_H.head<3>());
   user_wrench_.wrench.torque = to_ros(R_H_B * record.robot.w_H.tail<3>());
@@ -103,6 +118,35 @@ void ToolMessages::update_frames(const CycleRecord& record) {
   transforms_.transforms[kHandle].transform = to_ros(record.T_B_H);
   transforms_.transforms[kTwinEnd].transform = to_ros(record.T_B_E);
   transforms_.transforms[kElbow].transform.translation = to_ros(record.p_B_elbow);
+  if (links_.frames.empty()) return;
+  links_.poses(sample, link_poses_);
+  for (std::size_t i = 0; i < link_poses_.size(); ++i) {
+    transforms_.transforms[kFirstLink + i].transform = to_ros(link_poses_[i]);
+  }
 }
 
-}  // namespace hg::recording
+void ToolMessages::update_twist(const CycleRecord& record) {
+  const Eigen::Matrix3d& R_B_H = record.T_B_H.R;
+  handle_twist_.twist.linear = to_ros(R_B_H.transpose() * record.v_H);
+  const double elapsed_s = record.time_s - last_time_s_;
+  if (has_last_ && elapsed_s > 0.0 && elapsed_s < kLongestTurn_s) {
+    const Eigen::AngleAxisd turn(Eigen::Matrix3d(last_R_B_H_.transpose() * R_B_H));
+    handle_twist_.twist.angular = to_ros(turn.axis() * (turn.angle() / elapsed_s));
+  }
+  last_R_B_H_ = R_B_H;
+  last_time_s_ = record.time_s;
+  has_last_ = true;
+}
+
+void ToolMessages::update_limits(const CycleRecord& record) {
+  for (std::size_t i = 0; i < limits_.name.size(); ++i) {
+    const bool is_there = std::cmp_less(i, record.limit_count);
+    const LimitReport& report = record.limits[std::min(i, record.limits.size() - 1)];
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    limits_.position[i] = is_there ? std::min(report.to_lower, report.to_upper) : kNan;
+    limits_.velocity[i] = kNan;
+    limits_.effort[i] = is_there ? report.reaction : kNan;
+  }
+}
+
+}  // namespace hg::messages

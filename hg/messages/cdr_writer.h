@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "hg/core/types.h"
-#include "hg/recording/message.h"
+#include "hg/messages/message.h"
 
-namespace hg::recording {
+namespace hg::messages {
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -96,4 +96,4 @@ class CdrWriter {
   std::size_t size_ = 0;
 };
 
-}  // namespace hg::recording
+}  // namespace hg::messages

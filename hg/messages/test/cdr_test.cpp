@@ -6,13 +6,13 @@
 #include <limits>
 
 #include "hg/core/allocation_counter.h"
-#include "hg/recording/cdr_reader.h"
-#include "hg/recording/cdr_writer.h"
-#include "hg/recording/ros_messages.h"
-#include "hg/recording/test/random_message.h"
+#include "hg/messages/cdr_reader.h"
+#include "hg/messages/cdr_writer.h"
+#include "hg/messages/ros_messages.h"
+#include "hg/messages/test/random_message.h"
 #include "hg/signals/state.h"
 
-namespace hg::recording {
+namespace hg::messages {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -122,4 +122,4 @@ TEST(CdrReader, RefusesBigEndian) {
 }
 
 }  // namespace
-}  // namespace hg::recording
+}  // namespace hg::messages

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "hg/core/types.h"
-#include "hg/recording/message.h"
+#include "hg/messages/message.h"
 
-namespace hg::recording {
+namespace hg::messages {
 
 class RandomFiller {
  public:
@@ -48,4 +48,4 @@ class RandomFiller {
   std::mt19937_64 random_;
 };
 
-}  // namespace hg::recording
+}  // namespace hg::messages

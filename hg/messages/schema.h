@@ -12,9 +12,9 @@
 
 #include "hg/core/enumerators.h"
 #include "hg/core/types.h"
-#include "hg/recording/message.h"
+#include "hg/messages/message.h"
 
-namespace hg::recording {
+namespace hg::messages {
 
 /// The archive that collects definitions. Use schema_text() below.
 class SchemaWriter {
@@ -120,4 +120,4 @@ std::string schema_name() {
   return name.insert(name.find('/'), "/msg");
 }
 
-}  // namespace hg::recording
+}  // namespace hg::messages

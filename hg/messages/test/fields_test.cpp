@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "hg/core/fields.h"
-#include "hg/recording/cdr_reader.h"
-#include "hg/recording/cdr_writer.h"
-#include "hg/recording/schema.h"
-#include "hg/recording/test/random_message.h"
+#include "hg/messages/cdr_reader.h"
+#include "hg/messages/cdr_writer.h"
+#include "hg/messages/schema.h"
+#include "hg/messages/test/random_message.h"
 #include "hg/signals/state.h"
 
-namespace hg::recording {
+namespace hg::messages {
 namespace {
 
 // Members of an aggregate: how many values of any type it can be made from.
@@ -157,4 +157,4 @@ TEST(Fields, HaveNotesThatCanBeReadAlone) {
 }
 
 }  // namespace
-}  // namespace hg::recording
+}  // namespace hg::messages

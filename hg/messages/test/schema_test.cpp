@@ -1,15 +1,15 @@
-#include "hg/recording/schema.h"
+#include "hg/messages/schema.h"
 
 #include <gtest/gtest.h>
 
 #include <regex>
 #include <sstream>
 
-#include "hg/recording/event.h"
-#include "hg/recording/ros_messages.h"
+#include "hg/messages/event.h"
+#include "hg/messages/ros_messages.h"
 #include "hg/signals/state.h"
 
-namespace hg::recording {
+namespace hg::messages {
 namespace {
 
 const std::string kLine = std::string(80, '=') + "\n";
@@ -66,4 +66,4 @@ TEST(SchemaName, HasThreeParts) {
 }
 
 }  // namespace
-}  // namespace hg::recording
+}  // namespace hg::messages
