@@ -27,6 +27,9 @@
 #                it with pylibfranka, the maker's client, in an environment of their own (180 MB).
 #                FRANKY=1: against franky-sim, too (660 MB); MINUTES=10 measures its loop for so long
 #                instead
+#   make ros1    builds the ROS 1 bridge against Debian's ROS 1 and tests it by rospy and rviz under a
+#                virtual screen, in real time; as root it installs what is missing (300 MB).
+#                PICTURE=FILE.png keeps the picture of rviz
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -63,7 +66,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo franka arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
+.PHONY: demo franka ros1 arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -101,6 +104,11 @@ arms: build
 franka: build
 	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(FRANKY),--franky) \
 	  $(if $(MINUTES),--minutes $(MINUTES))
+
+ros1: build
+	@bridges/ros1/build.sh test
+	@/usr/bin/python3 tests/ros1/ros1_test.py $(BUILD)/hapticgiant \
+	  $(if $(PICTURE),--picture $(PICTURE)) $(ARGS)
 
 bench-instructions:
 	@tools/setup.sh count

@@ -41,4 +41,8 @@ python=/usr/bin/python3
 cmake -S bridges/ros1 -B build/ros1 -DPython3_EXECUTABLE=$python -DPYTHON_EXECUTABLE=$python \
   >build/ros1.log 2>&1 || { cat build/ros1.log >&2; exit 1; }
 cmake --build build/ros1 >build/ros1.log 2>&1 || { cat build/ros1.log >&2; exit 1; }
-echo "ros1: build/ros1/devel/lib/hapticgiant_bridge/hapticgiant_bridge"
+bridge=build/ros1/devel/lib/hapticgiant_bridge/hapticgiant_bridge
+for program in build/*/hapticgiant; do  # `hapticgiant bridge ros1` looks beside itself
+  [ ! -f "$program" ] || ln -sf "$PWD/$bridge" "$program-ros1"
+done
+echo "ros1: $bridge"

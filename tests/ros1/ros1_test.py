@@ -140,9 +140,10 @@ class Ros1(unittest.TestCase):
         answer = services["stop"]()
         self.assertTrue(answer.success, answer.message)
         ear.next(lambda m: value_of(m, "mode") not in (None, "running"), "another mode")
-        answer = services["run"]()
-        self.assertTrue(answer.success, answer.message)
-        mode("running")
+        for name in ("arm", "run"):
+            answer = services[name]()
+            self.assertTrue(answer.success, name + ": " + answer.message)
+        until(lambda: value_of(ear.messages[-1], "mode") == "running", "it runs again")
 
     def test_a_hand_target_pulls_the_handle(self):
         self.run_door("--user", "mouse", "--duration", "1000")
@@ -154,7 +155,7 @@ class Ros1(unittest.TestCase):
         message.header.frame_id = "base"
         place = message.pose.position
         place.x, place.y, place.z = handle.x, handle.y + 0.05, handle.z
-        message.pose.orientation.w = 1.0
+        message.pose.orientation.w = 0.0  # all zero: free to turn
 
         def is_pulled():
             target.publish(message)

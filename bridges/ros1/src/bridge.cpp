@@ -116,8 +116,10 @@ void Bridge::describe(const std::string& topic) {
   handlers_[topic] = [this, topic](Bytes bytes) {
     std_msgs::String urdf;
     if (!from_cdr(bytes, urdf)) return;
-    if (topic == "/robot_description") markers_.set_device(urdf.data);
-    update_scene();  // a new URDF is a new scene
+    if (topic == "/robot_description") {
+      markers_.set_device(urdf.data);
+      update_scene();
+    }
     fetch_meshes(*client_, urdf.data, mesh_folder_, [this, topic](const std::string& text) {
       ros::param::set(node_.resolveName(relative(topic)), text);
       ROS_INFO("parameter %s is set", node_.resolveName(relative(topic)).c_str());
@@ -174,9 +176,9 @@ LiveEvents Bridge::live_events() {
   events.parameters = [this](const auto& parameters) { settings_.update(parameters); };
   events.status = [](const std::string& text, bool is_error) {
     if (is_error) {
-      ROS_ERROR("program: %s", text.c_str());
+      ROS_ERROR_THROTTLE(1.0, "program: %s", text.c_str());
     } else {
-      ROS_WARN("program: %s", text.c_str());
+      ROS_WARN_THROTTLE(1.0, "program: %s", text.c_str());
     }
   };
   return events;
@@ -186,7 +188,6 @@ void Bridge::opened() {
   ROS_INFO("connected to the program");
   is_open_ = true;
   last_reason_.clear();
-  update_scene();
 }
 
 void Bridge::closed(const std::string& reason) {
@@ -225,7 +226,9 @@ bool Bridge::run() {
 
 void Bridge::tick() {
   if (!ros::ok() || has_new_master_) return context_.stop();
-  if (is_open_) markers_topic_.publish(markers_.moving(joints_, wrench_));
+  if (is_open_ && markers_topic_.getNumSubscribers() > 0) {
+    markers_topic_.publish(markers_.moving(joints_, wrench_));
+  }
   if (ticks_++ % kTicksPerSecond == 0) tick_second();
   timer_.expires_after(kTick);
   timer_.async_wait([this](boost::system::error_code) { tick(); });

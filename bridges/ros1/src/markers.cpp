@@ -202,6 +202,7 @@ Marker surface_marker(const Surface& surface, int id) {
 void Markers::set_scene(const Scene& scene) {
   scene_ = scene;
   has_scene_ = true;
+  is_new_ = true;
 }
 
 void Markers::set_device(const std::string& text) {
@@ -220,9 +221,13 @@ void Markers::set_device(const std::string& text) {
   }
 }
 
-MarkerArray Markers::fixed() const {
+MarkerArray Markers::fixed() {
   MarkerArray out;
   if (!has_scene_) return out;
+  if (std::exchange(is_new_, false)) {
+    out.markers.emplace_back();
+    out.markers.back().action = Marker::DELETEALL;
+  }
   add_zone(out, scene_, is_field_clear_);
   out.markers.push_back(box(scene_));
   int id = 0;

@@ -25,8 +25,9 @@ class Markers {
   /// Whether the scanner sees nobody; unknown until the first call.
   void set_field_clear(bool is_clear) { is_field_clear_ = is_clear; }
 
-  /// What stands still: zone, box and surfaces, in the frame `base`.
-  visualization_msgs::MarkerArray fixed() const;
+  /// What stands still: zone, box and surfaces, in the frame `base`. The first time after
+  /// set_scene() what was there before is deleted.
+  visualization_msgs::MarkerArray fixed();
 
   /// Wrench and torques, in the frames of handle and links. Values that are not numbers are not
   /// shown.
@@ -41,7 +42,7 @@ class Markers {
   };
 
   Scene scene_;
-  bool has_scene_ = false, is_field_clear_ = true;
+  bool has_scene_ = false, is_new_ = false, is_field_clear_ = true;
   std::map<std::string, Joint> joints_;
 };
 
