@@ -75,7 +75,7 @@ class World:
         return master
 
     def start_bridge(self, *arguments):
-        return self.start(BRIDGE, *arguments)
+        return self.start(BRIDGE, *arguments, log="bridge.log")
 
     def run(self, *arguments):
         """A run of the door in real time, ready when it is seen by bridges."""

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <future>
 #include <memory>
+#include <thread>
 #include <utility>
 
 #include "cdr.h"
@@ -218,10 +219,21 @@ void Bridge::note_diagnostics(const diagnostic_msgs::DiagnosticArray& diagnostic
 bool Bridge::run() {
   ros::AsyncSpinner spinner(2);  // a service that waits leaves one for topics
   spinner.start();
-  master_pid_ = pid_of_master();
+  std::thread watch([this] { watch_master(); });  // a master may be far away, and slow
   tick();
   context_.run();
+  watch.join();
   return has_new_master_;
+}
+
+void Bridge::watch_master() {
+  int first = 0;
+  while (ros::ok() && !has_new_master_) {
+    const int pid = pid_of_master();  // 0: it is away
+    if (first == 0) first = pid;
+    has_new_master_ = pid != 0 && pid != first;
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
 }
 
 void Bridge::tick() {
@@ -235,8 +247,6 @@ void Bridge::tick() {
 }
 
 void Bridge::tick_second() {
-  const int pid = pid_of_master();
-  has_new_master_ = pid != 0 && master_pid_ != 0 && pid != master_pid_;
   if (is_open_) return markers_topic_.publish(markers_.fixed());
   diagnostic_msgs::DiagnosticArray lost;
   lost.header.stamp = ros::Time::now();

@@ -1,7 +1,7 @@
 /// The node: what a running program says becomes topics, what others say goes to the program.
 ///
-/// Topics and services have the names of the live interface, relative to the node's namespace. Two
-/// threads: the caller of run() has the connection, ROS calls on threads of its own.
+/// Topics and services have the names of the live interface, relative to the node's namespace. The
+/// thread that calls run() has the connection; ROS calls on threads of its own.
 #pragma once
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -11,6 +11,7 @@
 #include <sensor_msgs/JointState.h>
 #include <std_srvs/Trigger.h>
 
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdint>
@@ -53,6 +54,7 @@ class Bridge {
   bool trigger(const std::string& service, std_srvs::Trigger::Response& response);
   void tick();
   void tick_second();
+  void watch_master();
 
   const std::filesystem::path mesh_folder_;
   ros::NodeHandle node_;
@@ -68,10 +70,10 @@ class Bridge {
   Markers markers_;
   sensor_msgs::JointState joints_;
   geometry_msgs::WrenchStamped wrench_;
-  bool is_open_ = false, has_new_master_ = false;
+  bool is_open_ = false;
+  std::atomic<bool> has_new_master_{false};
   std::string last_reason_;
   std::uint64_t ticks_ = 0;
-  int master_pid_ = 0;
   std::optional<LiveClient> client_;  ///< last: it uses what stands above
 };
 
