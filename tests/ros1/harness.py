@@ -132,10 +132,11 @@ class Screen:
 
     def picture(self, file=None):
         """What is on the screen: rows of pixels as bytes RGB; also written to `file` (PNG)."""
-        if file is not None:
-            subprocess.run(["import", "-window", "root", "-depth", "8", file], check=True)
         ppm = subprocess.run(["import", "-window", "root", "-depth", "8", "ppm:-"], check=True,
                              capture_output=True).stdout
+        if file is not None:  # few colours: a small file
+            subprocess.run(["convert", "ppm:-", "-colors", "128", f"png8:{file}"], input=ppm,
+                           check=True)
         return ppm.split(b"\n", 3)[3]
 
 

@@ -31,6 +31,8 @@ RECORDED = {"/joint_states": JointState, "/twin/joint_states": JointState,
 TOPICS = {**RECORDED, "/limits": JointState, "/diagnostics": DiagnosticArray,
           "/hapticgiant/events": String, "/hapticgiant/markers": MarkerArray}
 FORCE, TORQUE, FIELD = (0xf0, 0x64, 0x3c), (0xa8, 0x55, 0xd8), (0x2f, 0xa3, 0x6b)
+BACKGROUND = (232, 236, 240)  # of hapticgiant.rviz
+RVIZ_PATIENCE_S = 240.0  # software draws
 PICTURE = None  # file
 
 
@@ -40,6 +42,7 @@ class Ear:
     def __init__(self, topic, kind):
         self.messages = []
         self.subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=1000)
+        until(lambda: self.subscriber.get_num_connections() > 0, topic + " is published")
 
     def next(self, when=lambda message: True, what="a message"):
         """The first new message for which `when` holds."""
@@ -247,9 +250,9 @@ class Ros1(unittest.TestCase):
         screen = Screen(self.world)
         rviz = self.world.start("/usr/bin/rviz", "-d", harness.PACKAGE / "rviz/hapticgiant.rviz")
         self.addCleanup(stop, rviz)
-        log = lambda: self.world.said("rviz.log")
-        until(lambda: "OpenGl version" in log(), "rviz has a window")
-        time.sleep(5.0)
+        background = lambda: near(screen.picture(), BACKGROUND, 1) > 100_000
+        until(background, "rviz has a window", RVIZ_PATIENCE_S)
+        time.sleep(1.0)
         empty = screen.picture()
         for color in (FORCE, TORQUE, FIELD):
             self.assertLess(near(empty, color, 12), 20)
@@ -260,6 +263,8 @@ class Ros1(unittest.TestCase):
         rviz = self.world.start("/usr/bin/rviz", "-d", harness.PACKAGE / "rviz/hapticgiant.rviz")
         self.addCleanup(stop, rviz)
 
+        self.counts = {}
+
         def is_seen():
             pixels = screen.picture(PICTURE)
             self.counts = {name: near(pixels, color, tolerance) for name, color, tolerance in (
@@ -268,7 +273,7 @@ class Ros1(unittest.TestCase):
             return all(count > 60 for count in self.counts.values())
 
         try:
-            until(is_seen, "all is in the picture")
+            until(is_seen, "all is in the picture", RVIZ_PATIENCE_S)
         finally:
             print("pixels:", self.counts)
         names = {marker.ns for message in markers.messages for marker in message.markers}
