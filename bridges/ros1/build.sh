@@ -14,7 +14,7 @@ packages="catkin cmake g++ libdiagnostic-msgs-dev libdynamic-reconfigure-config-
   libstd-srvs-dev libtf2-msgs-dev liburdf-dev libvisualization-msgs-dev make nlohmann-json3-dev
   rviz python3-roslaunch python3-rosmaster rosout"
 [ "${1:-}" != test ] || packages="$packages imagemagick libgl1-mesa-dri python3-diagnostic-msgs
-  python3-dynamic-reconfigure python3-geometry-msgs python3-rospy python3-sensor-msgs
+  python3-dynamic-reconfigure python3-geometry-msgs python3-numpy python3-rospy python3-sensor-msgs
   python3-std-srvs python3-tf2-msgs python3-visualization-msgs xvfb"
 
 missing=()

@@ -15,7 +15,7 @@ import unittest
 
 import dynamic_reconfigure.client
 import harness
-import rosgraph
+import numpy
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TwistStamped, WrenchStamped
@@ -62,14 +62,9 @@ def newest(ear):
 
 
 def near(pixels, color, tolerance):
-    """Pixels of this colour."""
-    count = 0
-    r, g, b = color
-    for i in range(0, len(pixels), 3):
-        if (abs(pixels[i] - r) <= tolerance and abs(pixels[i + 1] - g) <= tolerance
-                and abs(pixels[i + 2] - b) <= tolerance):
-            count += 1
-    return count
+    """Number of pixels of this colour."""
+    distances = numpy.abs(numpy.frombuffer(pixels, numpy.uint8).reshape(-1, 3).astype(int) - color)
+    return int((distances.max(axis=1) <= tolerance).sum())
 
 
 def value_of(diagnostics, key):
