@@ -2,17 +2,21 @@
 """What pages cost: cycle times with four pages and with none, and the server's processor time;
 and how many frames a second reach a page.
 
-Usage, in the source folder, with the page built: page_timing.py PROGRAM [SECONDS]
+Usage, in the source folder, with the page built: page_timing.py PROGRAM [SECONDS] [--live]
 
 One run of the door at rest, so that all cycles have the same work; every SECONDS (default 10) four
 pages come or go, and in the end one page is there alone. Cycle times are those of the recording,
-every cycle counts.
+every cycle counts. With --live, clients of the live interface instead of pages, each subscribed to
+everything.
 """
 
+import json
 import pathlib
 import re
 import shutil
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -23,7 +27,37 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "tests/comm
 from web_socket import Page  # noqa: E402
 
 PHASES = (0, 4, 4, 0, 0, 4, 4, 0, 0, 4, 4, 0, 1)
+LIVE_PHASES = (0, 1, 4, 0, 4, 1, 0, 1, 4, 0, 4, 1)
 SETTLE_S = 1.0  # after pages have come or gone
+
+
+class LiveClient:
+    """Subscribed to all channels of the live interface; takes what comes and counts its bytes."""
+
+    def __init__(self, link):
+        host, token = re.match(r"http://([^/]+)/#token=(\w+)", link).groups()
+        name, _, port = host.rpartition(":")
+        self.socket = socket.create_connection((name, int(port)), timeout=30)
+        self.socket.sendall((f"GET /live?token={token} HTTP/1.1\r\nHost: {host}\r\nConnection: Upgrade\r\n"
+                             "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                             "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n"
+                             "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n").encode())
+        head = b""
+        while b"\r\n\r\n" not in head:
+            head += self.socket.recv(4096)
+        assert head.startswith(b"HTTP/1.1 101"), head
+        subscriptions = [{"id": channel, "channelId": channel} for channel in range(1, 12)]
+        text = json.dumps({"op": "subscribe", "subscriptions": subscriptions}).encode()
+        mask = bytes(4)
+        self.socket.sendall(bytes((0x81, 0x80 | 126)) + struct.pack(">H", len(text)) + mask + text)
+        self.frames = 0  # bytes of them
+
+    def listen(self):
+        try:
+            while chunk := self.socket.recv(65536):
+                self.frames += len(chunk)
+        except OSError:
+            pass
 
 
 def listen(page):
@@ -53,7 +87,9 @@ def quantile(times, share):
 
 
 def main():
-    program, seconds = sys.argv[1], float((sys.argv + ["10"])[2])
+    is_live = "--live" in sys.argv
+    program, seconds = ([*(word for word in sys.argv[1:] if word != "--live"), "10"])[:2]
+    seconds = float(seconds)
     folder = pathlib.Path(tempfile.mkdtemp())
     process = subprocess.Popen([program, "run", "door", "--user", "mouse", "--no-browser", "--recordings", folder,
                                 "--duration", "100000"], stdout=subprocess.PIPE, text=True)
@@ -66,11 +102,12 @@ def main():
         clock.next("frame", lambda frame: frame["mode"] == "running")
         offset = time.monotonic() - clock.next("frame")["time_s"]
         clock.close()
-        for count in PHASES:
-            pages = [Page(link[0]) for _ in range(count)]
+        for count in LIVE_PHASES if is_live else PHASES:
+            pages = [(LiveClient if is_live else Page)(link[0]) for _ in range(count)]
             for page in pages:
                 page.frames = 0
-                threading.Thread(target=listen, args=[page], daemon=True).start()
+                target = page.listen if is_live else lambda page=page: listen(page)
+                threading.Thread(target=target, daemon=True).start()
             time.sleep(SETTLE_S)
             begin, ticks = time.monotonic(), server_ticks(process)
             seen = sum(page.frames for page in pages)
@@ -98,18 +135,21 @@ def main():
     for phase, (count, _, _) in zip(phases, spans):
         phase.sort()
         times[count] += phase
-    print("pages  cycles  median us  99 % us  99.9 % us  server thread, % of a core")
+    print("count  cycles  median us  99 % us  99.9 % us  server thread, % of a core")
     for count, values in times.items():
         values.sort()
         print(f"{count:5}  {len(values):6}  {quantile(values, .5):9.2f}  "
               f"{quantile(values, .99):7.1f}  {quantile(values, .999):9.1f}  "
               f"{100 * sum(cpu[count]) / len(cpu[count]):8.2f}")
-    print(f"frames per second and page: {min(rates):.1f} .. {max(rates):.1f}")
+    if is_live:
+        print(f"kB per second and client: {1e-3 * min(rates):.0f} .. {1e-3 * max(rates):.0f}")
+    else:
+        print(f"frames per second and page: {min(rates):.1f} .. {max(rates):.1f}")
     alone = [quantile(phase, .5) for phase, span in zip(phases, spans) if span[0] == 0]
-    print(f"median of single phases without pages: {min(alone):.2f} .. {max(alone):.2f} us")
+    print(f"median of single phases with none: {min(alone):.2f} .. {max(alone):.2f} us")
     for name, share in (("median", .5), ("99 %", .99), ("99.9 %", .999)):
         ratio = quantile(times[4], share) / quantile(times[0], share)
-        print(f"four pages / none, {name}: {ratio:.3f}")
+        print(f"four / none, {name}: {ratio:.3f}")
 
 
 if __name__ == "__main__":

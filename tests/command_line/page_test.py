@@ -205,7 +205,7 @@ class PageTest(TemporaryFolder):
         for command in ("pause", "restart"):
             self.assertIn("keeps its own time", self.refuse(page, command))
         self.assertEqual(set(page.scene()["commands"]),
-                         {"stop", "set", "mode", "emergency_stop", "release_stop"})
+                         {"stop", "set", "mode", "mark", "emergency_stop", "release_stop"})
         self.assertIn("keeps its own time", self.refuse(page, "panel", "override_key", 1))
         self.accept(page, "emergency_stop")
         page.next("frame", lambda frame: frame["mode"] == "fault")

@@ -32,6 +32,7 @@ TEST(Fuzz, EveryTargetTakesItsCorpus) {
   EXPECT_GT(replay("tests/fuzz/corpus/urdf", urdf), 3);
   EXPECT_GT(replay("tests/fuzz/corpus/protocol", protocol), 5);
   EXPECT_GT(replay("tests/fuzz/corpus/commands", commands), 5);
+  EXPECT_GT(replay("tests/fuzz/corpus/live", live), 5);
   EXPECT_GT(replay("tests/fuzz/corpus/recording", recording), 3);
 }
 

@@ -13,6 +13,7 @@ if(HG_SANITIZE MATCHES "fuzzer")
   hg_fuzz(urdf hg_model)
   hg_fuzz(protocol hg_udp)
   hg_fuzz(commands hg_viewer_server)
+  hg_fuzz(live hg_live)
   hg_fuzz(recording hg_recording)
 endif()
 
@@ -20,4 +21,4 @@ endif()
 file(GLOB fuzz_sources CONFIGURE_DEPENDS tests/fuzz/*.cpp)
 list(REMOVE_ITEM fuzz_sources ${PROJECT_SOURCE_DIR}/tests/fuzz/entry.cpp)
 hg_test(fuzz_replay_test KIND loop_test SOURCES ${fuzz_sources}
-  LINKS hg_hqp_checks hg_simulation hg_udp hg_viewer_server hg_recording)
+  LINKS hg_hqp_checks hg_simulation hg_udp hg_viewer_server hg_live hg_recording)

@@ -32,6 +32,10 @@ void protocol(Bytes bytes);
 /// What a page may send: refused, or within the ranges that messages.h promises.
 void commands(Bytes bytes);
 
+/// Frames of a live client, each after a byte of flags and one for its size: answered with frames
+/// that are well formed, and orders within the ranges of the parameters.
+void live(Bytes bytes);
+
 /// A recording (first byte even), or the bytes of one sample or event: refused, or handed out.
 void recording(Bytes bytes);
 

@@ -26,7 +26,7 @@ export interface Scene {
   shapes: SceneShape[]; // of the device, watched for collisions with itself
   choices: Choices;
   settings: Setting[];
-  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop")[]; // accepted commands
+  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop")[]; // accepted commands
   refusal: string; // reason for refusing other commands; empty = all are accepted
   stopping: string; // duration and distance of a stop; empty = unknown
 }
@@ -280,7 +280,7 @@ export interface Hold {
 export interface Command {
   type: "command";
   id: number; // any whole number of 0..2^53, comes back in the answer
-  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "release_stop";
+  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop";
   name: string; // name of the chosen option or setting; else empty
   value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value, release_stop: page
 }

@@ -30,6 +30,8 @@ const TOPICS = {
 };
 const RECORDED = Object.keys(TOPICS).filter((topic) => !["/limits", "/diagnostics"].includes(topic));
 
+const [ARMED, RUNNING] = [2, 3]; // record.mode
+
 async function topics_and_time(tool) {
   await tool.greeted();
   for (const [topic, type] of Object.entries(TOPICS)) {
@@ -60,19 +62,17 @@ async function topics_and_time(tool) {
 }
 
 async function services(tool) {
-  const running = () => tool.newest.get("/hapticgiant/sample")?.record.mode === 3;
-  await eventually(running, "the device runs");
-  const tare = await tool.call("tare");
-  expect(!tare.success && tare.message.length > 0, `tare while running is refused: ${tare.message}`);
-  const stop = await tool.call("stop");
-  expect(stop.success, "stop");
-  await eventually(() => tool.newest.get("/hapticgiant/sample").record.mode === 1, "the device is ready");
-  const early = await tool.call("run");
-  expect(!early.success && early.message.length > 0, `run before arm is refused: ${early.message}`);
-  const again = await tool.call("tare");
-  expect(again.success, `tare: ${again.message}`);
-  const arm = await tool.call("arm");
-  expect(arm.success, `arm: ${arm.message}`);
+  const mode = () => tool.newest.get("/hapticgiant/sample")?.record.mode;
+  await eventually(() => mode() === RUNNING, "the device runs");
+  for (const name of ["tare", "arm", "reset"]) {
+    const refused = await tool.call(name);
+    expect(!refused.success && refused.message.length > 0, `${name} is refused: ${refused.message}`);
+  }
+  expect((await tool.call("stop")).success, "stop");
+  await eventually(() => mode() === ARMED, "the device has stopped");
+  const run = await tool.call("run");
+  expect(run.success, `run: ${run.message}`);
+  await eventually(() => mode() === RUNNING, "the device runs again");
   const mark = await tool.call("mark");
   expect(mark.success, "mark");
   await eventually(() => tool.events.some((event) => event.name === "mark"), "the mark is an event");
