@@ -135,7 +135,7 @@ class Screen:
         ppm = subprocess.run(["import", "-window", "root", "-depth", "8", "ppm:-"], check=True,
                              capture_output=True).stdout
         if file is not None:  # few colours: a small file
-            subprocess.run(["convert", "ppm:-", "-colors", "128", f"png8:{file}"], input=ppm,
+            subprocess.run(["convert", "ppm:-", "+dither", "-colors", "200", f"png8:{file}"], input=ppm,
                            check=True)
         return ppm.split(b"\n", 3)[3]
 
