@@ -42,6 +42,9 @@
 #   make ros2    runs the bridge to ROS 2 against rclpy of Jazzy and Kilted, in environments of their own
 #                (240 MB each), and a robot of ROS 2 as a device. MINUTES=30 measures rates and losses for
 #                so long instead
+#   make ros1    builds the ROS 1 bridge against Debian's ROS 1 and tests it by rospy and rviz under a
+#                virtual screen, in real time; as root it installs what is missing (300 MB).
+#                PICTURE=FILE.png keeps the picture of rviz
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -152,6 +155,10 @@ arms: build
 franka: build
 	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(FRANKY),--franky)
 
+ros1: build
+	@bridges/ros1/build.sh test
+	@/usr/bin/python3 tests/ros1/ros1_test.py $(BUILD)/hapticgiant \
+	  $(if $(PICTURE),--picture $(PICTURE)) $(ARGS)
 foxglove: build
 	@node viewer/test/foxglove/run.mjs $(BUILD)/hapticgiant build/foxglove $(PICTURE)
 

@@ -26,6 +26,8 @@ struct BridgeFacts {
 constexpr std::array kBridges = {
     BridgeFacts{"ros2", "Shows a run to ROS 2, without ROS (docs/start/ros2.md).",
                 "Fast DDS 2 (Debian: libfastrtps-dev)"},
+    BridgeFacts{"ros1", "Shows a run to ROS 1 and rviz (docs/start/ros1.md).",
+                "Debian's ROS 1 (bridges/ros1/build.sh)"},
 };
 
 /// Becomes the bridge; returns only by an exception.
