@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "hg/recording/columns.h"
 #include "hg/messages/event.h"
+#include "hg/recording/columns.h"
 
 namespace hg::apps {
 

@@ -34,7 +34,7 @@ struct RecordingInfo : messages::RunNames {
   std::string name = "run";  ///< first part of the file name, for example "door"
   /// Makes the links of device and twin for /tf, once per thread; empty = without links
   std::function<messages::LinkTree()> make_links;
-  std::string device_description, twin_description;  ///< URDF for tools; empty = none
+  std::string device_description, twin_description;          ///< URDF for tools; empty = none
   std::vector<std::string> gantry_units, manipulator_units;  ///< rad or m, of each joint
   std::vector<NamedText> configuration;  ///< files that describe the run, kept as attachments
   std::string version;                   ///< version of the program
