@@ -27,6 +27,9 @@
 #                it with pylibfranka, the maker's client, in an environment of their own (180 MB).
 #                FRANKY=1: against franky-sim, too (660 MB); MINUTES=10 measures its loop for so long
 #                instead
+#   make sweep-engines
+#                runs a sweep on a Dask cluster, one worker of which is killed, and on a Slurm node of
+#                its own (root, slurm-wlm), and compares: same hashes, same Parquet (250 MB)
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -63,7 +66,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo franka arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
+.PHONY: demo franka sweep-engines arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -101,6 +104,9 @@ arms: build
 franka: build
 	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(FRANKY),--franky) \
 	  $(if $(MINUTES),--minutes $(MINUTES))
+
+sweep-engines: build
+	@.venv/bin/python tests/sweep/engines_test.py $(BUILD)/hapticgiant
 
 bench-instructions:
 	@tools/setup.sh count

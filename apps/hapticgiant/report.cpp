@@ -7,12 +7,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "hg/config/shipped_files.h"
+#include "apps/hapticgiant/python_program.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 
@@ -29,16 +28,6 @@ struct Ended {
   int code = kNotStarted;  ///< exit code; -1: a signal
   std::string said;
 };
-
-std::string interpreter(const fs::path& root) {
-  if (const char* chosen = std::getenv("HAPTICGIANT_PYTHON")) {
-    const std::string name = chosen;
-    return name.find('/') == std::string::npos ? name : fs::absolute(name).string();
-  }
-  const fs::path own = root / ".venv" / "bin" / "python";
-  std::error_code error;
-  return !root.empty() && fs::exists(own, error) ? own.string() : "python3";
-}
 
 // Everything that comes from a descriptor until it closes.
 std::string read_all(int descriptor) {
@@ -77,20 +66,6 @@ Ended run_program(std::vector<std::string> words) {
   return ended;
 }
 
-// Words that start python/hapticgiant/report, or its module where the package is installed.
-std::vector<std::string> report_program() {
-  const fs::path home = config::installation_root();
-  const fs::path script = home / "python" / "hapticgiant" / "report";
-  std::error_code error;
-  std::vector<std::string> words = {interpreter(home), "-B"};
-  if (!home.empty() && fs::exists(script, error)) {
-    words.push_back(script.string());
-  } else {
-    words.insert(words.end(), {"-m", "hapticgiant.report"});
-  }
-  return words;
-}
-
 [[noreturn]] void refuse(const std::string& interpreter) {
   throw SetupError(fmt::format(
       "{} cannot write the report: it needs scipy, matplotlib and jinja2; tools/setup.sh build, or "
@@ -101,14 +76,14 @@ std::vector<std::string> report_program() {
 }  // namespace
 
 void check_report_program() {
-  std::vector<std::string> words = report_program();
+  std::vector<std::string> words = python_program("report");
   words.emplace_back("--check");
   if (run_program(words).code != 0) refuse(words[0]);
 }
 
 int write_report(const fs::path& folder, const std::string& docs,
                  const std::vector<fs::path>& runs) {
-  std::vector<std::string> words = report_program();
+  std::vector<std::string> words = python_program("report");
   words.push_back(fs::absolute(folder).string());
   for (const fs::path& run : runs) words.push_back(fs::absolute(run).string());
   if (!docs.empty()) words.insert(words.end(), {"--docs", fs::absolute(docs).string()});
