@@ -26,7 +26,7 @@ PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 VENV = ROOT / "build" / "sweep_venv"
 PYTHON = VENV / "bin" / "python"
 SKIPPED = 77
-RUNS = 60
+RUNS = 30
 STUDY = f"""\
 fixed: {{scenario: door, duration_s: 2}}
 parameters:
@@ -56,7 +56,7 @@ def sweep(*words, **options):
                           **options)
 
 
-def wait_for(what, seconds=60):
+def wait_for(what, seconds=180):
     deadline = time.monotonic() + seconds
     while not what():
         if time.monotonic() > deadline:
@@ -117,7 +117,9 @@ class Engines(unittest.TestCase):
                  address], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                 env={**os.environ, "HAPTICGIANT_PYTHON": str(PYTHON)})
             manifest = out / "manifest.jsonl"
-            wait_for(lambda: manifest.exists() and manifest.stat().st_size > 0)
+            self.addCleanup(process.kill)
+            wait_for(lambda: process.poll() is not None
+                     or manifest.exists() and manifest.stat().st_size > 0)
             workers[0].send_signal(signal.SIGKILL)
             said = "\n".join(process.communicate(timeout=600))
         self.assertEqual(process.returncode, 0, said)
