@@ -45,6 +45,9 @@
 #   make ros1    builds the ROS 1 bridge against Debian's ROS 1 and tests it by rospy and rviz under a
 #                virtual screen, in real time; as root it installs what is missing (300 MB).
 #                PICTURE=FILE.png keeps the picture of rviz
+#   make sweep-engines
+#                runs a sweep on a Dask cluster, one worker of which is killed, and on a Slurm node of
+#                its own (root, slurm-wlm), and compares: same hashes, same Parquet (250 MB)
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -87,7 +90,7 @@ endef
 
 .PHONY: demo build wheel deb docs format clean \
   test test-wheel test-packages check headers lint audit sanitize sanitizer-set-up rtsan rtsan-tests fuzz \
-  franka foxglove ros2 ros1 notebooks soak soak-machines \
+  franka foxglove ros2 ros1 notebooks sweep-engines soak soak-machines \
   bench bench-instructions experiments arms
 
 demo: build
@@ -171,6 +174,9 @@ notebooks: build
 
 ros2: build
 	@.venv/bin/python tests/ros2/ros2_test.py $(BUILD)/hapticgiant $(if $(MINUTES),--minutes $(MINUTES))
+
+sweep-engines: build
+	@.venv/bin/python tests/sweep/engines_test.py $(BUILD)/hapticgiant
 
 bench-instructions:
 	@tools/setup.sh count

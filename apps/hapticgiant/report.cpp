@@ -7,13 +7,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "hg/config/shipped_files.h"
+#include "apps/hapticgiant/python_program.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 
@@ -30,16 +29,6 @@ struct Ended {
   int code = kNotStarted;  ///< exit code; -1: a signal
   std::string said;
 };
-
-std::string interpreter(const fs::path& root) {
-  if (const char* chosen = std::getenv("HAPTICGIANT_PYTHON")) {
-    const std::string name = chosen;
-    return name.find('/') == std::string::npos ? name : fs::absolute(name).string();
-  }
-  const fs::path own = root / ".venv" / "bin" / "python";
-  std::error_code error;
-  return !root.empty() && fs::exists(own, error) ? own.string() : "python3";
-}
 
 // Everything that comes from a descriptor until it closes.
 std::string read_all(int descriptor) {
@@ -83,22 +72,8 @@ Ended run_program(std::vector<std::string> words) {
   return ended;
 }
 
-// Words that start python/hapticgiant/report, or its module where the package is installed.
-std::vector<std::string> report_program() {
-  const fs::path home = config::installation_root();
-  const fs::path script = home / "python" / "hapticgiant" / "report";
-  std::error_code error;
-  std::vector<std::string> words = {interpreter(home), "-B"};
-  if (!home.empty() && fs::exists(script, error)) {
-    words.push_back(script.string());
-  } else {
-    words.insert(words.end(), {"-m", "hapticgiant.report"});
-  }
-  return words;
-}
-
 std::vector<std::string> export_program(const std::string& format) {
-  std::vector<std::string> words = report_program();
+  std::vector<std::string> words = python_program("report");
   words.insert(words.end(), {"--export", format});
   return words;
 }
@@ -114,14 +89,14 @@ std::vector<std::string> export_program(const std::string& format) {
 }  // namespace
 
 void check_report_program() {
-  std::vector<std::string> words = report_program();
+  std::vector<std::string> words = python_program("report");
   words.emplace_back("--check");
   if (run_program(words).code != 0) refuse(words[0]);
 }
 
 int write_report(const fs::path& folder, const std::string& docs,
                  const std::vector<fs::path>& runs) {
-  std::vector<std::string> words = report_program();
+  std::vector<std::string> words = python_program("report");
   words.push_back(fs::absolute(folder).string());
   for (const fs::path& run : runs) words.push_back(fs::absolute(run).string());
   if (!docs.empty()) words.insert(words.end(), {"--docs", fs::absolute(docs).string()});
@@ -146,7 +121,7 @@ std::string python_package_folder(const std::string& package) {
       "import importlib.util as u; s = u.find_spec('{}'); "
       "print(s.submodule_search_locations[0] if s else '', end='')",
       package);
-  const Ended ended = run_program({interpreter(config::installation_root()), "-B", "-c", code});
+  const Ended ended = run_program({python_interpreter(), "-B", "-c", code});
   return ended.code == 0 ? ended.said : "";
 }
 

@@ -1,8 +1,5 @@
 /// Reports whose numbers are the program's and whose text and pictures are Python's
 /// (python/hapticgiant/report).
-///
-/// The interpreter is that of the environment variable HAPTICGIANT_PYTHON, else .venv/bin/python of
-/// the installation (shipped_files.h), else python3.
 #pragma once
 
 #include <sys/types.h>

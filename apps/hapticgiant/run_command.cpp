@@ -36,6 +36,7 @@
 #include "hg/runtime/runtime.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/names.h"
+#include "hg/scenario/options.h"
 #include "hg/scenario/recorded/run_recording.h"
 #include "hg/scenario/run.h"
 #include "hg/viewer_server/meshes.h"
@@ -366,7 +367,10 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   bool is_written = recorded.is_whole();
   try {
     if (!arguments.summary.empty()) {
-      write_output(arguments.summary, observers.summary.to_json(facts, missing).dump(2) + "\n");
+      nlohmann::ordered_json json = observers.summary.to_json(facts, missing);
+      json["configuration"] = scenario::hash_of(scenario.sources);
+      json["interrupted"] = interrupted.load();
+      write_output(arguments.summary, json.dump(2) + "\n");
     }
   } catch (const SetupError& error) {
     print_error("{}\n", error.what());

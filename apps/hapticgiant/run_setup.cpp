@@ -19,6 +19,11 @@ void refuse_what_is_simulated(const scenario::ScenarioOptions& world) {
   if (!world.hand.empty()) given.push_back("--hand");
   if (!world.simulation.empty()) given.push_back("--simulation");
   if (!world.sensors.empty()) given.push_back("--sensors");
+  for (const std::string& change : world.changes) {
+    if (change.starts_with("simulation.") || change.starts_with("script.")) {
+      given.push_back("--set " + change);
+    }
+  }
   if (given.empty()) return;
   throw SetupError(
       fmt::format("{}: the device of --device-address is simulated elsewhere; give this to "

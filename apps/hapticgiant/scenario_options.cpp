@@ -50,6 +50,11 @@ void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
   command.add_option("--step", world.step_s, "largest step of the simulated machine, s")
       ->check(number_that("from 1e-5 to 2e-3",
                           [](double value) { return value >= 1e-5 && value <= 2e-3; }));
+  command
+      .add_option("--set", world.changes,
+                  "another value for a key of scenario, device, simulation, twin or script, as "
+                  "twin.mass_scale=2; may be given several times")
+      ->allow_extra_args(false);
   command.add_option("--user", world.user, "file or name of a script, mouse or none");
   command.add_option("--rate-hz", world.rate_Hz, "control rate, 100..20000; default: the device's")
       ->check(number_that("from 100 to 20000",

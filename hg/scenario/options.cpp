@@ -1,17 +1,23 @@
 #include "hg/scenario/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <filesystem>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
+#include "hg/config/changed_text.h"
 #include "hg/config/law_names.h"
 #include "hg/config/shipped_files.h"
 #include "hg/config/simulation/script_schema.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
+#include "hg/core/nearest_name.h"
 
 namespace hg::scenario {
 namespace {
@@ -147,15 +153,110 @@ void apply_law(const ScenarioOptions& options, config::Scenario& scenario) {
   config::settle_law(scenario);
 }
 
-}  // namespace
-
-config::Scenario load(const ScenarioOptions& options) {
-  config::Scenario scenario = config::load_scenario(config::find_scenario(options.scenario));
-  config::SourceReader reader;
+config::Scenario apply_all(const ScenarioOptions& options, config::SourceReader& reader,
+                           config::Scenario scenario) {
   apply(options, reader, scenario);
   apply_to_simulation(options, scenario);
   apply_law(options, scenario);
   return scenario;
+}
+
+// A file of a scenario whose keys --set can change.
+struct Part {
+  std::string name;
+  std::string file;  ///< empty = the scenario has none
+  std::vector<config::ChangedValue> changes;
+};
+
+std::string first_of(const std::vector<config::SourceText>& sources) {
+  return sources.empty() ? "" : sources.front().name;
+}
+
+std::vector<Part> parts_of(const ScenarioOptions& options, const config::Scenario& scenario) {
+  const config::SimulatedDeviceConfig& device = scenario.device;
+  std::filesystem::path simulation = device.simulation_file;
+  if (!options.simulation.empty()) {
+    simulation = config::find_simulation(options.simulation, device, {});
+  }
+  std::vector<Part> parts = {{"scenario", first_of(scenario.sources), {}},
+                             {"device", first_of(device.sources), {}},
+                             {"simulation", simulation.lexically_normal().generic_string(), {}},
+                             {"twin", first_of(scenario.twin.sources), {}},
+                             {"script", first_of(scenario.script.sources), {}}};
+  std::vector<std::string> names;
+  for (const Part& part : parts) names.push_back(part.name);
+  for (const std::string& change : options.changes) {
+    const std::size_t dot = change.find('.'), equals = change.find('=');
+    if (dot >= equals || equals == std::string::npos) {
+      throw SetupError(
+          fmt::format("--set {}: expected PART.KEY=VALUE, as twin.mass_scale=2; a part is {}",
+                      change, fmt::join(names, ", ")));
+    }
+    const std::string name = change.substr(0, dot);
+    const auto part = std::ranges::find(parts, name, &Part::name);
+    if (part == parts.end()) {
+      throw SetupError(fmt::format("--set {}: no such part, did you mean '{}'?", change,
+                                   nearest_name(name, names)));
+    }
+    if (part->file.empty()) {
+      throw SetupError(fmt::format("--set {}: this run has no {} file", change, name));
+    }
+    part->changes.push_back({change.substr(dot + 1, equals - dot - 1), change.substr(equals + 1)});
+  }
+  std::erase_if(parts, [](const Part& part) { return part.changes.empty(); });
+  return parts;
+}
+
+// A fault "FILE:LINE:COLUMN: ITEM: WHAT" in a file with changed values, as one of these values:
+// before them there was none.
+std::string as_change(const std::string& fault, const std::vector<Part>& parts) {
+  for (const Part& part : parts) {
+    if (!fault.starts_with(part.file + ":")) continue;
+    const std::size_t place = fault.find(": ", part.file.size());
+    if (place == std::string::npos) continue;
+    const std::string rest = fault.substr(place + 2);
+    const bool has_item = rest.find(": ") < rest.find(' ');
+    return fmt::format("--set {}{}{}", part.name, has_item ? "." : ": ", rest);
+  }
+  return fault;
+}
+
+// The files of `scenario`, which options have made, with the values of --set.
+config::Scenario load_changed(const ScenarioOptions& options, const config::Scenario& scenario) {
+  const std::vector<Part> parts = parts_of(options, scenario);
+  std::vector<config::SourceText> sources = scenario.sources;
+  for (const Part& part : parts) {
+    try {
+      for (config::SourceText& source : sources) {
+        if (source.name == part.file) {
+          source.content = config::changed_text(source.content, part.changes);
+        }
+      }
+    } catch (const SetupError& error) {
+      throw SetupError(fmt::format("--set {}.{}", part.name, error.what()));
+    }
+  }
+  ScenarioOptions known = options;  // as the files are called in `sources`
+  if (!options.device.empty()) known.device = first_of(scenario.device.sources);
+  if (!options.twin.empty()) known.twin = first_of(scenario.twin.sources);
+  try {
+    config::SourceReader reader(sources);
+    return apply_all(known, reader, config::load_scenario(sources));
+  } catch (const SetupError& error) {
+    std::istringstream lines(error.what());
+    std::vector<std::string> faults;
+    for (std::string line; std::getline(lines, line);) faults.push_back(as_change(line, parts));
+    throw SetupError(fmt::format("{}", fmt::join(faults, "\n")));
+  }
+}
+
+}  // namespace
+
+config::Scenario load(const ScenarioOptions& options) {
+  config::SourceReader reader;
+  const config::Scenario scenario =
+      apply_all(options, reader, config::load_scenario(config::find_scenario(options.scenario)));
+  return options.changes.empty() ? scenario : load_changed(options, scenario);
 }
 
 std::string to_text(const ScenarioOptions& options) {
@@ -180,17 +281,24 @@ std::string to_text(const ScenarioOptions& options) {
   line("--gantry", options.gantry);
   line("--braking", options.braking);
   line("--passivity", options.passivity);
+  for (const std::string& change : options.changes) line("--set", change);
   return text;
+}
+
+std::string hash_of(const std::vector<config::SourceText>& sources) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  const auto mix = [&](unsigned char byte) { hash = (hash ^ byte) * 0x100000001b3; };
+  for (const config::SourceText& source : sources) {
+    for (const char byte : source.content) mix(static_cast<unsigned char>(byte));
+    mix(0);  // ends the text
+  }
+  return fmt::format("{:016x}", hash);
 }
 
 config::Scenario load_recorded(std::vector<config::SourceText> sources, const std::string& text) {
   const ScenarioOptions options = recorded_options(text);
-  config::Scenario scenario = config::load_scenario(sources);
-  config::SourceReader reader(std::move(sources));
-  apply(options, reader, scenario);
-  apply_to_simulation(options, scenario);
-  apply_law(options, scenario);
-  return scenario;
+  config::SourceReader reader(sources);
+  return apply_all(options, reader, config::load_scenario(std::move(sources)));
 }
 
 }  // namespace hg::scenario

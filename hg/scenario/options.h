@@ -30,6 +30,9 @@ struct ScenarioOptions {
   std::string gantry;     ///< guidance of the gantry, "law" or "rule"; empty = the device's
   std::string braking;    ///< braking, "alone" or "together"; empty = the device's
   std::string passivity;  ///< passivity reaction, "off", "observe" or "act"; empty = the device's
+  /// Values for keys of the files, "PART.KEY=VALUE"; a part is scenario, device, simulation, twin
+  /// or script: "twin.joints.hinge.damping_Nms_per_rad=2"
+  std::vector<std::string> changes;
 };
 
 /// Loads the scenario and applies the options. Throws SetupError, which names an option as the
@@ -39,8 +42,11 @@ config::Scenario load(const ScenarioOptions& options);
 /// The options that change what the scenario says, one per line, for load_recorded().
 std::string to_text(const ScenarioOptions& options);
 
+/// Hash of these texts, without their names: 16 hexadecimal digits, FNV-1a.
+std::string hash_of(const std::vector<config::SourceText>& sources);
+
 /// The scenario from the files that a recording holds, and the text of its options; the disk is not
-/// touched. Throws SetupError.
+/// touched. The files have the values of --set already. Throws SetupError.
 config::Scenario load_recorded(std::vector<config::SourceText> sources, const std::string& options);
 
 }  // namespace hg::scenario

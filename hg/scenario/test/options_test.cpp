@@ -27,5 +27,52 @@ TEST(Options, AnUnknownNameIsRefusedWithItsOption) {
             std::string::npos);
 }
 
+TEST(Options, SetReplacesAndAddsValuesOfAnyFileAndARecordingHasThem) {
+  const ScenarioOptions options = {
+      .scenario = "door",
+      .changes = {"twin.joints.hinge.damping_Nms_per_rad=7.5", "scenario.title=Heavy door",
+                  "simulation.factors.friction=1.25", "simulation.seed=9", "twin.mass_scale=2"}};
+  const config::Scenario scenario = load(options);
+  EXPECT_EQ(scenario.twin.model.dofs[0].damping, 7.5);
+  EXPECT_EQ(scenario.twin.model.mass_scale, 2.0);
+  EXPECT_EQ(scenario.title, "Heavy door");
+  EXPECT_EQ(scenario.device.simulation.factors.friction, 1.25);
+  EXPECT_EQ(scenario.device.simulation.sensors.seed, 9U);
+  const config::Scenario recorded = load_recorded(scenario.sources, to_text(options));
+  EXPECT_EQ(recorded.twin.model.dofs[0].damping, 7.5);
+  EXPECT_EQ(hash_of(recorded.sources), hash_of(scenario.sources));
+  EXPECT_NE(hash_of(load({.scenario = "door"}).sources), hash_of(scenario.sources));
+}
+
+TEST(Options, SetChangesTheFileOfAnOption) {
+  const config::Scenario scenario =
+      load({.scenario = "door",
+            .twin = "light",
+            .simulation = "harder",
+            .changes = {"twin.mass_scale=1.5", "simulation.factors.friction=3"}});
+  EXPECT_EQ(scenario.twin.model.mass_scale, 1.5);
+  EXPECT_EQ(scenario.device.simulation.factors.friction, 3.0);
+}
+
+TEST(Options, AValueThatDoesNotFitIsRefusedAsTheOneThatWasSet) {
+  const auto message = [](const char* change) {
+    return message_of([&] { load({.scenario = "door", .changes = {change}}); });
+  };
+  EXPECT_EQ(message("twin.joints.hing.damping_Nms_per_rad=1"),
+            "--set twin.joints.hing: must be a joint of the twin, got 'hing', did you mean "
+            "'hinge'?");
+  EXPECT_EQ(message("simulation.factors.frictio=1"),
+            "--set simulation.factors.frictio: unknown key, did you mean 'friction'?");
+  EXPECT_EQ(message("twin.mass_scale=much"), "--set twin.mass_scale: must be a number, got 'much'");
+  EXPECT_EQ(message("twim.mass_scale=1"),
+            "--set twim.mass_scale=1: no such part, did you mean 'twin'?");
+  EXPECT_EQ(message("mass_scale"),
+            "--set mass_scale: expected PART.KEY=VALUE, as twin.mass_scale=2; a part is scenario, "
+            "device, simulation, twin, script");
+  EXPECT_EQ(message("scenario.events[99].name=x"),
+            "--set scenario.events[99].name: 'events' has 8 entries");
+  EXPECT_EQ(message("twin.mass_scale.x=1"), "--set twin.mass_scale: must be a number, got a map");
+}
+
 }  // namespace
 }  // namespace hg::scenario

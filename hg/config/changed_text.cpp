@@ -1,0 +1,74 @@
+#include "hg/config/changed_text.h"
+
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <charconv>
+#include <cstddef>
+#include <string_view>
+
+#include "hg/core/error.h"
+
+namespace hg::config {
+namespace {
+
+// Without aliases: a change of one node must not change another.
+YAML::Node copy_of(const YAML::Node& node) {
+  YAML::Node copy(node.Type());
+  if (node.IsScalar()) copy = node.Scalar();
+  if (node.IsMap()) {
+    for (const auto& pair : node) copy.force_insert(pair.first.Scalar(), copy_of(pair.second));
+  }
+  if (node.IsSequence()) {
+    for (const auto& entry : node) copy.push_back(copy_of(entry));
+  }
+  copy.SetStyle(node.Style());
+  return copy;
+}
+
+// Sets what `rest` of the item leads to from `node` on.
+void set(YAML::Node node, std::string_view rest, const ChangedValue& change) {
+  const auto refuse = [&](std::string_view what) {
+    const std::string_view item(change.item);
+    throw SetupError(
+        fmt::format("{}: {}", item,
+                    fmt::format(fmt::runtime(what), item.substr(0, item.size() - rest.size()))));
+  };
+  if (rest.empty()) {
+    node = YAML::Load(change.value);
+    return;
+  }
+  if (rest.front() == '[') {
+    const std::size_t end = rest.find(']');
+    std::size_t index = 0;
+    const char* last = rest.data() + (end == std::string_view::npos ? rest.size() : end);
+    const bool is_index = std::from_chars(rest.data() + 1, last, index).ptr == last;
+    if (end == std::string_view::npos || !is_index) refuse("expected [NUMBER] after '{}'");
+    if (!node.IsSequence() || index >= node.size()) {
+      refuse(fmt::format("'{{}}' has {} entries", node.IsSequence() ? node.size() : 0));
+    }
+    return set(node[index], rest.substr(end + 1), change);
+  }
+  if (rest.front() == '.') rest.remove_prefix(1);
+  const std::string_view key = rest.substr(0, rest.find_first_of(".["));
+  if (key.empty()) refuse("expected a key after '{}'");
+  if (node.IsScalar() || node.IsSequence()) refuse("'{}' is no map of keys");
+  set(node[std::string(key)], rest.substr(key.size()), change);
+}
+
+}  // namespace
+
+std::string changed_text(const std::string& text, std::span<const ChangedValue> changes) {
+  YAML::Node root = copy_of(YAML::Load(text));
+  for (const ChangedValue& change : changes) {
+    try {
+      set(root, change.item, change);
+    } catch (const YAML::Exception& error) {
+      throw SetupError(
+          fmt::format("{}: not valid YAML: {}, got '{}'", change.item, error.msg, change.value));
+    }
+  }
+  return YAML::Dump(root) + "\n";
+}
+
+}  // namespace hg::config

@@ -1,0 +1,16 @@
+"""Many runs over a table of parameters, on this machine, on Dask or on Slurm.
+
+A study is a YAML file (docs/start/sweep.md). Each of its runs is one `hapticgiant run --fast` in a
+process of its own, so that a run has the same bits wherever it is played, a crash costs one run,
+and the command that repeats a run is the one that has made it.
+
+    from hapticgiant import sweep
+
+    result = sweep.run("study.yaml", jobs=2)
+    print(result.file, [row["force.mean_N"] for row in result.rows])
+"""
+
+from hapticgiant.sweep.campaign import Result, SweepError, check, merge, run
+from hapticgiant.sweep.study import Study, StudyError, load_study
+
+__all__ = ["Result", "Study", "StudyError", "SweepError", "check", "load_study", "merge", "run"]

@@ -1,0 +1,75 @@
+"""The result of a sweep as one table: Parquet, or CSV where pyarrow is not installed.
+
+A row per run in the order of their numbers, a column per parameter and measure. It depends on the
+records only, not on who has played them when: the same sweep gives the same file, byte for byte.
+"""
+
+from __future__ import annotations
+
+import csv
+import fnmatch
+import pathlib
+
+from hapticgiant.sweep.study import Study, value_of
+
+
+def rows_of(study: Study, records: dict[int, dict]) -> list[dict]:
+    """One dict per run that has ended: run, parameters, exit_code, state_hash, fault, measures."""
+    chosen = {}  # name of a measure: is in the table
+
+    def is_chosen(name):
+        if name not in chosen:
+            chosen[name] = not study.measures or any(
+                name == wanted or fnmatch.fnmatchcase(name, wanted) for wanted in study.measures)
+        return chosen[name]
+
+    rows = []
+    for run in study.runs:
+        record = records.get(run.number)
+        if record is None:
+            continue
+        row = {"run": run.number}
+        row |= {key: value_of(words) for key, words in run.parameters.items()}
+        row |= {key: record[key] for key in ("exit_code", "state_hash", "fault")}
+        for name, value in (record["measures"] or {}).items():
+            if name not in row and is_chosen(name):
+                row[name] = value
+        rows.append(row)
+    return rows
+
+
+def columns_of(rows: list[dict]) -> dict[str, list]:
+    """The same by column, each of one type; None where a run has no value."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    columns = {}
+    for name in names:
+        values = [row.get(name) for row in rows]
+        kinds = {type(value) for value in values if value is not None}
+        if kinds == {int, float}:
+            values = [None if value is None else float(value) for value in values]
+        elif len(kinds) > 1:
+            values = [None if value is None else str(value) for value in values]
+        columns[name] = values
+    return columns
+
+
+def write_table(folder: pathlib.Path, rows: list[dict]) -> pathlib.Path:
+    """Writes results.parquet or results.csv, whole or not at all; returns the file."""
+    columns = columns_of(rows)
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        file = folder / "results.csv"
+        partial = file.with_suffix(".partial")
+        with open(partial, "w", newline="", encoding="utf-8") as out:
+            writer = csv.writer(out)
+            writer.writerow(columns)
+            writer.writerows(zip(*columns.values()))
+    else:
+        file = folder / "results.parquet"
+        partial = file.with_suffix(".partial")
+        arrays = {name: pyarrow.array(values) for name, values in columns.items()}
+        pyarrow.parquet.write_table(pyarrow.table(arrays), partial)
+    partial.rename(file)
+    return file

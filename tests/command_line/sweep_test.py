@@ -1,0 +1,202 @@
+"""`hapticgiant sweep`: tables of parameters, continued, sharded, merged and repeated.
+
+    sweep_test.py PROGRAM
+"""
+
+import json
+import os
+import pathlib
+import signal
+import stat
+import subprocess
+import sys
+import time
+import unittest
+
+from program import PROGRAM, TemporaryFolder, run
+
+SWEEP = pathlib.Path("python/hapticgiant/sweep").resolve()
+STUDY = """\
+fixed: {scenario: door, duration_s: 0.6}
+parameters:
+  seed: {from: 1, to: 2, count: 2}
+  twin.joints.hinge.damping_Nms_per_rad: [1, 4.5]
+measures: [force.*, limits_held]
+"""
+RUNS = 4
+
+
+class Sweep(TemporaryFolder):
+    def setUp(self):
+        super().setUp()
+        self.study = self.folder / "study.yaml"
+        self.study.write_text(STUDY)
+        self.out = self.folder / "study.sweep"
+
+    def sweep(self, *words, code=0):
+        """Standard output and standard error of a sweep that ends with this code."""
+        found, out, err = run("sweep", *words)
+        self.assertEqual(found, code, out + err)
+        return out, err
+
+    def manifest(self, out=None):
+        files = sorted((out or self.out).glob("manifest*.jsonl"))
+        return [json.loads(line) for file in files for line in file.read_text().splitlines()]
+
+    def table(self, out=None):
+        return next((out or self.out).glob("results.*")).read_bytes()
+
+    def test_plays_each_run_once_and_keeps_a_line_of_each(self):
+        out, _ = self.sweep(self.study, "--jobs", 2)
+        self.assertIn(f"{RUNS} runs of 'study'", out)
+        records = {record["run"]: record for record in self.manifest()}
+        self.assertEqual(sorted(records), list(range(1, RUNS + 1)))
+        self.assertEqual(records[4]["parameters"],
+                         {"seed": "2", "twin.joints.hinge.damping_Nms_per_rad": "4.5"})
+        self.assertEqual(records[4]["seed"], 2)
+        self.assertEqual(len({record["state_hash"] for record in records.values()}), RUNS)
+        before = self.table()
+        out, _ = self.sweep(self.study)
+        self.assertIn(f"{RUNS} of them from before", out)
+        self.assertEqual(len(self.manifest()), RUNS)
+        self.assertEqual(self.table(), before)
+
+    def test_the_command_of_a_run_gives_its_hash(self):
+        self.sweep(self.study)
+        command, _ = self.sweep("show", self.study, "--run", 4)
+        summary = self.folder / "summary.json"
+        subprocess.run([*command.split(), "--summary", summary], capture_output=True, check=False)
+        record = next(record for record in self.manifest() if record["run"] == 4)
+        self.assertEqual(json.loads(summary.read_text())["state_hash"], record["state_hash"])
+
+    def test_shards_and_one_worker_give_the_table_of_the_whole(self):
+        self.sweep(self.study, "--jobs", 2)
+        other = self.folder / "other"
+        self.sweep(self.study, "--out", other, "--jobs", 1, "--shard", "2/2")
+        self.sweep("merge", self.study, "--out", other, code=1)
+        self.assertNotEqual(self.table(other), self.table())
+        self.sweep(self.study, "--out", other, "--jobs", 1, "--shard", "1/2")
+        self.sweep("merge", self.study, "--out", other)
+        self.assertEqual(self.table(other), self.table())
+
+    def test_a_killed_sweep_continues(self):
+        self.study.write_text(STUDY.replace("to: 2, count: 2", "to: 6, count: 6"))
+        process = subprocess.Popen([PROGRAM, "sweep", self.study, "--jobs", "1"])
+        deadline = time.monotonic() + 60
+        lines = self.out / "manifest.jsonl"
+        while not (lines.exists() and lines.stat().st_size > 0) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        played = len(self.manifest())
+        self.assertGreater(played, 0)
+        self.assertLess(played, 12)
+        with open(lines, "a") as file:
+            file.write('{"run": 12, "half of a li')
+        out, _ = self.sweep(self.study)
+        self.assertIn(f"{played} of them from before", out)
+        self.assertEqual(sorted(record["run"] for record in self.manifest()), list(range(1, 13)))
+        self.sweep(self.study, "--out", self.folder / "whole")
+        self.assertEqual(self.table(self.folder / "whole"), self.table())
+
+    def test_wrong_keys_are_refused_before_the_first_run(self):
+        for wrong, place, message in (
+                ("seed: {", "3:3", "seeds: no such option, did you mean 'seed'?"),
+                ("twin.joints", "4:3", "twim.joints.hinge.damping_Nms_per_rad: no such part, did "
+                                       "you mean 'twin'?"),
+                ("hinge", "4:3", "twin.joints.hing: must be a joint of the twin, got 'hing', did "
+                                 "you mean 'hinge'?"),
+                ("damping", "4:3", "twin.joints.hinge.dampin_Nms_per_rad: unknown key, did you "
+                                   "mean 'damping_Nms_per_rad'?"),
+                ("4.5", "4:3", "twin.joints.hinge.damping_Nms_per_rad: must be a number in "
+                               "Nms/rad, got 'x'"),
+                ("force.*", "", "no measure 'forc.*', did you mean 'force'?"),
+                ("count: 2", "3:26", "seed: unknown key, did you mean 'count'?")):
+            right = {"seed: {": "seeds: {", "twin.joints": "twim.joints", "hinge": "hing",
+                     "damping": "dampin", "4.5": "x", "force.*": "forc.*", "count: 2": "cout: 2"}
+            self.study.write_text(STUDY.replace(wrong, right[wrong]))
+            _, err = self.sweep(self.study, code=2)
+            with self.subTest(wrong, said=err):
+                self.assertIn(message.split(": ")[-1], err)
+                self.assertIn(f"{self.study}:{place}" if place else str(self.study), err)
+        self.assertFalse(self.out.exists())
+
+    def test_an_option_that_the_program_refuses_is_named_with_its_place(self):
+        self.study.write_text(STUDY + "rows: [{hand: stif}]\n")
+        _, err = self.sweep(self.study, code=2)
+        self.assertIn(f"{self.study}:6:9: --hand", err)
+
+    def test_another_study_is_refused_until_again(self):
+        self.sweep(self.study)
+        self.study.write_text(STUDY.replace("4.5", "5"))
+        _, err = self.sweep(self.study, code=2)
+        self.assertIn("holds runs of another study", err)
+        self.sweep("merge", self.study, code=2)
+        out, _ = self.sweep(self.study, "--again")
+        self.assertNotIn("from before", out)
+
+    def test_another_program_and_another_file_are_told_apart(self):
+        self.sweep(self.study)
+        header = self.out / "study.json"
+        right = json.loads(header.read_text())
+        for key, message in (("program", "runs of another program"),
+                             ("files", "a scenario, device, twin, simulation or script has changed")):
+            header.write_text(json.dumps({**right, key: "0"}))
+            _, err = self.sweep(self.study, code=2)
+            self.assertIn(message, err)
+
+    def test_check_finds_a_run_that_is_not_the_same_again(self):
+        self.sweep(self.study)
+        out, _ = self.sweep("check", self.study, "--count", 2)
+        self.assertIn("2 runs played again: 2 the same, 0 not", out)
+        file = self.out / "manifest.jsonl"
+        records = self.manifest()
+        true = records[1]["state_hash"]
+        records[1]["state_hash"] = "0" * 16
+        file.write_text("".join(json.dumps(record) + "\n" for record in records))
+        out, _ = self.sweep("check", self.study, "--all", code=1)
+        self.assertIn(f"run {records[1]['run']}: state_hash {'0' * 16}, now {true}", out)
+
+    def test_samples_fill_their_ranges_and_are_the_same_again(self):
+        text = ("fixed: {scenario: door, duration_s: 0.6}\nparameters:\n"
+                "  twin.mass_scale: {from: 0.5, to: 2, spacing: log}\n"
+                "  simulation.factors.friction: {from: 0.8, to: 1.2}\n"
+                "samples: {method: METHOD, count: 8, seed: 3}\n")
+        for method in ("sobol", "latin_hypercube"):
+            self.study.write_text(text.replace("METHOD", method))
+            commands, _ = self.sweep("show", self.study)
+            self.assertEqual(commands, self.sweep("show", self.study)[0])
+            scales = sorted(float(line.split("mass_scale=")[1].split()[0])
+                            for line in commands.splitlines())
+            self.assertEqual(len(scales), 8)
+            for i, scale in enumerate(scales):  # one in each eighth
+                self.assertTrue(0.5 * 4 ** (i / 8) <= scale <= 0.5 * 4 ** ((i + 1) / 8), scales)
+
+    # with a program in the place of ours that sometimes dies
+    def sweep_with(self, script, *words):
+        fake = self.folder / "fake"
+        fake.write_text(f"#!/bin/sh\n{script}\nexec {PROGRAM} \"$@\"\n")
+        fake.chmod(fake.stat().st_mode | stat.S_IEXEC)
+        return subprocess.run([sys.executable, "-B", SWEEP, *map(str, words)], capture_output=True,
+                              text=True, env={**os.environ, "HAPTICGIANT_PROGRAM": str(fake)},
+                              timeout=120)
+
+    def test_a_run_that_was_killed_is_played_again(self):
+        once = f'case "$*" in *0.6*"--seed 2 "*) mkdir {self.folder}/once 2>/dev/null && kill -9 $$;; esac'
+        done = self.sweep_with(once, self.study, "--jobs", 2)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertTrue((self.folder / "once").exists())
+        self.sweep(self.study, "--out", self.folder / "whole")
+        self.assertEqual(self.table(), self.table(self.folder / "whole"))
+
+    def test_a_run_that_crashes_is_named_with_its_command_and_does_not_end_the_others(self):
+        crash = 'case "$*" in *0.6*"--seed 2 "*) echo "out of order" >&2; exit 1;; esac'
+        done = self.sweep_with(crash, self.study, "--jobs", 2)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        self.assertIn("2 without a result", done.stdout)
+        self.assertRegex(done.stdout, r"run 3: \S+fake run door .*--seed 2 .*\n    out of order")
+        self.assertEqual(len([record for record in self.manifest() if record["state_hash"]]), RUNS - 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
