@@ -194,6 +194,12 @@ def result_of(program, name, minutes, is_busy):
     return result
 
 
+def soak_one(results, program, name, options):
+    """Keeps and says the result of this machine as soon as there is one."""
+    results[name] = result = result_of(program, name, options.minutes, options.busy)
+    print(f"--- {time.strftime('%T')} {name}\n{result['said']}{result['machine']}", flush=True)
+
+
 def row(name, result):
     if "cycles" not in result:
         return [name, "-", str(result["exit code"])]
@@ -252,9 +258,8 @@ def main():
     machine_test.SEGMENT = options.segment.resolve()
 
     results, loads, begin = {}, [], time.time()
-    threads = [threading.Thread(target=lambda name=name: results.update(
-        {name: result_of(program, name, options.minutes, options.busy)}))
-        for name in options.machines if name not in skipped]
+    threads = [threading.Thread(target=soak_one, args=(results, program, name, options))
+               for name in options.machines if name not in skipped]
     for thread in threads:
         thread.start()
     while any(thread.is_alive() for thread in threads):
@@ -266,19 +271,18 @@ def main():
     options.out.write_text(json.dumps(
         {"begin": time.strftime("%F %T", time.gmtime(begin)), "processors": os.cpu_count(),
          "busy": options.busy, "load": load, "machines": results, "skipped": skipped}, indent=2) + "\n")
-    for name, result in results.items():
-        print(f"--- {name}\n{result['said']}{result['machine']}")
     print(f"\n{table(results)}\n")
     if load:
         print(f"{os.cpu_count()} processors, load {load['mean']:.1f} on average, {load['most']:.1f} at "
               f"most; {options.out}")
-    wrong = [name for name in options.machines if name not in skipped
-             and results.get(name, {"wrong": ["it has ended early"]})["wrong"]]
-    for name in wrong:
-        print(f"{name}: " + "; ".join(results.get(name, {"wrong": ["no result"]})["wrong"]))
+    wrong = {name: results.get(name, {"wrong": ["no result"]})["wrong"]
+             for name in options.machines if name not in skipped}
+    for name, what in wrong.items():
+        if what:
+            print(f"{name}: " + "; ".join(what))
     for name, why in skipped.items():
         print(f"{name}: skipped, {why}")
-    return 1 if wrong else SKIPPED if skipped else 0
+    return 1 if any(wrong.values()) else SKIPPED if skipped else 0
 
 
 if __name__ == "__main__":
