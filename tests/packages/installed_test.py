@@ -166,9 +166,10 @@ def test_wheel(program, wheel, work):
     (site,) = (work / "venv" / "lib").glob("python3*/site-packages")
     print(f"size: {wheel.stat().st_size / 1e6:.1f} MB, installed with all that it needs "
           f"{int(run('du', '--summarize', '--bytes', site).split()[0]) / 1e6:.0f} MB")
-    shown = run("auditwheel", "show", wheel)
-    tag = re.search(r"(manylinux_2_\d+)", wheel.name)
-    check(tag and f'"{tag[1]}' in shown, f"auditwheel says another tag:\n{shown}")
+    # it knows nothing of the other wheels' libraries, and says what the symbols of the system demand
+    shown = " ".join(run("auditwheel", "show", wheel).split())
+    tag = wheel.stem.rpartition("-")[2]
+    check(f'constrains the platform tag to "{tag}"' in shown, f"auditwheel says another tag: {shown}")
     (work / "empty").mkdir()
     Installed([work / "venv" / "bin" / "hapticgiant"], work / "empty", site / "hapticgiant", environment,
               list((site / "hapticgiant.libs").iterdir())).test(program, has_figures=True)
