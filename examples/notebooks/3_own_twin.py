@@ -40,6 +40,7 @@ PUSH = """frame: twin_joints
 hand: {stiffness_N_per_m: [80, 80, 80], damping_Ns_per_m: [11, 11, 11],
        angular_stiffness_Nm_per_rad: [0, 0, 0], angular_damping_Nms_per_rad: [0, 0, 0],
        force_max_N: 35}
+start: {grip: 0}
 segments:
   - {start_s: 1.0, duration_s: 0.3, fz_N: -12}
   - {start_s: 4.0, duration_s: 0.3, fz_N: 0}
@@ -57,7 +58,7 @@ def push(stiffness):
         scenario = folder / "gate.yaml"
         scenario.write_text(f"title: Gate\ndescription: A push.\n"
                             f"device: {hg.MODELS}/haptic_giant/device.yaml\n"
-                            f"twin: twin.yaml\nperson: push.yaml\n")
+                            f"twin: twin.yaml\nperson: push.yaml\nduration_s: 6\n")
         return hg.run(scenario)
 
 
