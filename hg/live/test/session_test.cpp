@@ -313,7 +313,7 @@ TEST_F(SessionTest, SurvivesRandomFrames) {
       message(1, messages::WrenchStamped{}),
       std::string("\x02\x01\0\0\0\x01\0\0\0\x03\0\0\0cdr\0\1\0\0\0", 21),
   };
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < 20'000; ++i) {
     std::string frame;
     if (random() % 8 == 0) {
       frame.resize(random() % 64);
@@ -327,11 +327,11 @@ TEST_F(SessionTest, SurvivesRandomFrames) {
     }
     const Reaction reaction = session_.take(frame, random() % 2 == 0);
     for (const Frame& answer : reaction.frames) {
-      if (answer.is_text) EXPECT_TRUE(Json::accept(answer.head));
+      EXPECT_TRUE(!answer.is_text || Json::accept(answer.head));
     }
-    if (reaction.hand)
-      EXPECT_TRUE(reaction.hand->p_B.allFinite() && reaction.hand->R_B.allFinite());
-    if (reaction.wrench) EXPECT_TRUE(reaction.wrench->allFinite());
+    EXPECT_TRUE(!reaction.hand || reaction.hand->p_B.allFinite());
+    EXPECT_TRUE(!reaction.hand || reaction.hand->R_B.allFinite());
+    EXPECT_TRUE(!reaction.wrench || reaction.wrench->allFinite());
     for (const Order& order : reaction.orders) session_.answer(order.id, i % 2 == 0 ? "" : "no");
   }
   EXPECT_EQ(only(take({{"op", "getParameters"}, {"id", "z"}}))["id"], "z");
