@@ -27,14 +27,14 @@
 #                it with pylibfranka, the maker's client, in an environment of their own (180 MB).
 #                FRANKY=1: against franky-sim, too (660 MB); MINUTES=10 measures its loop for so long
 #                instead
-<<<<<<< HEAD
 #   make ros1    builds the ROS 1 bridge against Debian's ROS 1 and tests it by rospy and rviz under a
 #                virtual screen, in real time; as root it installs what is missing (300 MB).
 #                PICTURE=FILE.png keeps the picture of rviz
-=======
 #   make foxglove  opens the live interface of a run in the last open Foxglove Studio, in a headless
 #                browser, and uses it (36 MB, once)
->>>>>>> 43965b6f6e7552fcaf578a2d52ee06b7350eb9c4
+#   make ros2    runs the bridge to ROS 2 against rclpy of Jazzy and Kilted, in environments of their own
+#                (240 MB each), and a robot of ROS 2 as a device. MINUTES=30 measures rates and losses for
+#                so long instead
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -71,11 +71,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-<<<<<<< HEAD
-.PHONY: demo franka ros1 arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
-=======
-.PHONY: demo franka foxglove arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
->>>>>>> 43965b6f6e7552fcaf578a2d52ee06b7350eb9c4
+.PHONY: demo franka foxglove ros1 ros2 arms audit build test experiments bench bench-instructions sanitize sanitizer-set-up rtsan rtsan-tests fuzz docs soak format check headers lint clean
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -114,15 +110,16 @@ franka: build
 	@.venv/bin/python tests/franka/franka_test.py $(BUILD)/hapticgiant $(if $(FRANKY),--franky) \
 	  $(if $(MINUTES),--minutes $(MINUTES))
 
-<<<<<<< HEAD
 ros1: build
 	@bridges/ros1/build.sh test
 	@/usr/bin/python3 tests/ros1/ros1_test.py $(BUILD)/hapticgiant \
 	  $(if $(PICTURE),--picture $(PICTURE)) $(ARGS)
-=======
+
 foxglove: build
 	@node viewer/test/foxglove/run.mjs $(BUILD)/hapticgiant build/foxglove $(PICTURE)
->>>>>>> 43965b6f6e7552fcaf578a2d52ee06b7350eb9c4
+
+ros2: build
+	@.venv/bin/python tests/ros2/ros2_test.py $(BUILD)/hapticgiant $(if $(MINUTES),--minutes $(MINUTES))
 
 bench-instructions:
 	@tools/setup.sh count

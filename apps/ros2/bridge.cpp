@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "apps/ros2/live_client.h"
-#include "apps/ros2/messages.h"
 #include "apps/ros2/parameters.h"
 #include "apps/ros2/type_hashes.h"
 #include "hg/core/error.h"
@@ -35,15 +34,6 @@ constexpr std::size_t kMostCalls = 64;
 constexpr std::string_view kTrigger = "std_srvs/srv/Trigger";
 constexpr std::string_view kEvent = "hapticgiant_msgs/msg/Event";
 constexpr std::string_view kText = "std_msgs/msg/String";
-
-struct Text {
-  std::string data;
-};
-
-template <typename Archive, Is<Text> T>
-void fields(Archive& a, T& text) {
-  a("data", text.data);
-}
 
 void say(const std::string& text) {
   std::fputs((visible(text) + "\n").c_str(), stdout);
@@ -217,8 +207,8 @@ void Bridge::received(const LiveChannel& channel, std::span<const std::byte> mes
   if (channel.type == kEvent) {
     messages::Event event;
     if (!messages::CdrReader(message).decode(event)) return;
-    message =
-        cdr_.encode(Text{fmt::format("{:.3f} s  {}  {}", event.time_s, event.name, event.text)});
+    message = cdr_.encode(messages::TextMessage{
+        fmt::format("{:.3f} s  {}  {}", event.time_s, event.name, event.text)});
   }
   ++(out.publisher->publish(message) ? out.sent : out.refused);
 }
@@ -298,7 +288,7 @@ void Bridge::failed(std::uint32_t call, const std::string& why) {
 }
 
 void Bridge::refuse(const std::string& service, const Request& request, const std::string& why) {
-  answer(service, request, cdr_.encode(TriggerResponse{false, why}));
+  answer(service, request, cdr_.encode(messages::TriggerResponse{false, why}));
 }
 
 void Bridge::answer(const std::string& service, const Request& request, Bytes message) {

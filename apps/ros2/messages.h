@@ -10,12 +10,6 @@
 
 namespace hg::ros2 {
 
-/// std_srvs/srv/Trigger, response
-struct TriggerResponse {
-  bool success = false;
-  std::string message;
-};
-
 /// rcl_interfaces/msg/ParameterValue; `type` says which value counts
 struct ParameterValue {
   enum Type : std::uint8_t { kNotSet, kBool, kInteger, kDouble, kString, kDoubles = 8 };
@@ -77,12 +71,6 @@ struct ListParametersRequest {
 struct ListParametersResponse {
   std::vector<std::string> names, prefixes;
 };
-
-template <typename Archive, Is<TriggerResponse> T>
-void fields(Archive& a, T& response) {
-  a("success", response.success);
-  a("message", response.message);
-}
 
 template <typename Archive, Is<ParameterValue> T>
 void fields(Archive& a, T& value) {

@@ -100,10 +100,12 @@ class Robot final : public device::Device {
     const std::int64_t now = now_ns();
     sensors.sequence = ++samples_;
     sensors.time_s = period_s_ * static_cast<double>(samples_);
-    sensors.q_m = q_;
+    // a state that is late is continued at its speed, as a lost datagram would be
+    const double age = std::clamp(seconds(now - state_ns_), 0.0, options_.silence_s);
+    sensors.q_m = q_ + age * dq_;
     sensors.dq_m = dq_;
     sensors.tau_m = tau_;
-    sensors.theta_m = q_;
+    sensors.theta_m = sensors.q_m;
     sensors.w_S = w_S_;
     sensors.answered_sequence = answered_;
     sensors.dead_man = !hands_ || (is_held_ && seconds(now - hand_ns_) < kHandSilence_s);
