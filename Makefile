@@ -88,10 +88,7 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build wheel deb docs format clean \
-  test test-wheel test-packages check headers lint audit sanitize sanitizer-set-up rtsan rtsan-tests fuzz \
-  franka foxglove ros2 ros1 notebooks sweep-engines soak soak-machines \
-  bench bench-instructions experiments arms
+.PHONY: demo build wheel deb docs format clean \ test test-wheel test-packages check headers lint audit sanitize sanitizer-set-up rtsan rtsan-tests fuzz \ franka foxglove ros2 ros1 notebooks sweep-engines soak soak-machines \ bench bench-instructions experiments arms
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)
@@ -171,6 +168,9 @@ notebooks: build
 	@cmake --build $(BUILD) --target hapticgiant _core _core_stubs
 	@.venv/bin/python tools/notebooks.py
 	@.venv/bin/python tests/connect/notebooks_test.py $(BUILD) $(BUILD)/hapticgiant
+
+foxglove: build
+	@node viewer/test/foxglove/run.mjs $(BUILD)/hapticgiant build/foxglove $(PICTURE)
 
 ros2: build
 	@.venv/bin/python tests/ros2/ros2_test.py $(BUILD)/hapticgiant $(if $(MINUTES),--minutes $(MINUTES))

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """What a bridge costs the control loop: cycle times beside a bridge and beside none, in one run.
 
-Usage, in the source folder, with the page built: bridge_timing.py PROGRAM [--seconds S] COMMAND...
+Usage, in the source folder, with the page built:
+       bridge_timing.py [--seconds S] [--rounds N] PROGRAM COMMAND...
 
 One run of the door at rest, so that all cycles have the same work; every S seconds (default 10) the
 bridge, started as COMMAND, comes or goes. `{link}` in a word of COMMAND is the link of the run. Cycle
@@ -20,7 +21,7 @@ import time
 
 from page_timing import Page, quantile, server_ticks
 
-PHASES = (0, 1, 1, 0) * 3
+PHASES = (0, 1, 1, 0)
 SETTLE_S = 3.0  # after the bridge has come or gone
 
 
@@ -35,6 +36,7 @@ def memory_MB(process):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("program")
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("command", nargs=argparse.REMAINDER)
@@ -52,7 +54,7 @@ def main():
         clock.next("frame", lambda frame: frame["mode"] == "running")
         offset = time.monotonic() - clock.next("frame")["time_s"]
         clock.close()
-        for count in PHASES:
+        for count in PHASES * given.rounds:
             if count == 0 and bridge is not None:
                 bridge.send_signal(signal.SIGINT)
                 bridge.wait()
