@@ -88,7 +88,10 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build wheel deb docs format clean \ test test-wheel test-packages check headers lint audit sanitize sanitizer-set-up rtsan rtsan-tests fuzz \ franka foxglove ros2 ros1 notebooks sweep-engines soak soak-machines \ bench bench-instructions experiments arms
+.PHONY: demo build wheel deb docs format clean \
+  test test-wheel test-packages check headers lint audit sanitize sanitizer-set-up rtsan rtsan-tests fuzz \
+  franka foxglove ros2 ros1 notebooks sweep-engines soak soak-machines \
+  bench bench-instructions experiments arms
 
 demo: build
 	@$(BUILD)/hapticgiant run $(ARGS)

@@ -1,6 +1,6 @@
 /// Client of the live interface of a running program: the Foxglove WebSocket protocol, version 1.
 ///
-/// Source: https://github.com/foxglove/ws-protocol, docs/spec.md. Messages are CDR bytes.
+/// Source: the specification of github.com/foxglove/ws-protocol. Messages are CDR bytes.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
