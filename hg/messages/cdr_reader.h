@@ -7,6 +7,7 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "hg/core/types.h"
 #include "hg/messages/cdr_writer.h"
@@ -61,6 +62,14 @@ class CdrReader {
   template <HasFields T>
   void get(T& message) {
     fields(*this, message);
+  }
+
+  // an item at a time, so that a length that is not true costs no memory
+  template <typename T>
+  void get(std::vector<T>& items) {
+    const std::size_t count = get_length(bytes_.size());
+    items.clear();
+    for (std::size_t i = 0; i < count && is_ok_; ++i) get(items.emplace_back());
   }
 
   template <int kRows, int kCols, int kOptions, int kMaxRows, int kMaxCols>
