@@ -26,6 +26,7 @@
 #include "hg/controller/safety/rules.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
+#include "hg/live/link_file.h"
 #include "hg/page/page_scene.h"
 #include "hg/page/run_page.h"
 #include "hg/recording/problem_dumps.h"
@@ -373,7 +374,13 @@ int run(const RunArguments& arguments) {
     changed.world = world;
     next = std::make_unique<PreparedRun>(changed);
   });
-  if (page) present_page(page->url(), arguments.address, arguments.opens_browser);
+  std::unique_ptr<live::LinkFile> link;  // by which bridges find this run
+  if (page) {
+    present_page(page->url(), arguments.address, arguments.opens_browser);
+    link = std::make_unique<live::LinkFile>(live::live_address(page->url()));
+    if (!link->problem().empty())
+      print_out("note        bridges need --live: {}\n", link->problem());
+  }
   while (true) {
     const int code = play(*present, interrupted, output, page.get());
     if (!page || interrupted.load() || !page->take_next()) return code;
