@@ -86,6 +86,11 @@ if ! rust_works; then
   fi
 fi
 
+# The bridge to ROS 2 is built where Fast DDS is.
+if [ "$purpose" = test ] || [ "$(id -u)" = 0 ]; then
+  need libfastrtps-dev
+fi
+
 if [ ${#missing[@]} -gt 0 ]; then
   if [ "$(id -u)" != 0 ]; then
     echo "setup: missing system packages; as root run:" >&2

@@ -33,6 +33,7 @@ SYSTEM = {
     "g++": ("GPL-3.0-only WITH GCC-exception-3.1", "libstdc++ and libgcc, linked dynamically"),
     "libc6": ("LGPL-2.1-or-later", "linked dynamically"),
     "libcli11-dev": ("BSD-3-Clause", "headers"),
+    "libfastrtps-dev": ("Apache-2.0", "linked dynamically by hapticgiant-ros2"),
     "libfmt-dev": ("MIT", "linked dynamically"),
     "libsodium-dev": ("ISC", "linked dynamically"),
     "libyaml-cpp-dev": ("MIT", "linked dynamically"),
@@ -54,7 +55,7 @@ PROTOCOLS = {
     ("libfranka-common", "d96c221"): ("Apache-2.0", "layout of messages: hg/device/franka/protocol.h"),
 }
 SPDX_TEXT = "that of this name in the SPDX list"
-IMPLIED = ["g++", "libc6"]  # not in the list of setup.sh that libraries are in
+IMPLIED = ["g++", "libc6", "libfastrtps-dev"]  # not in the list of setup.sh that libraries are in
 
 
 def system_names():

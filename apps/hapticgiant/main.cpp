@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/hapticgiant/bench_command.h"
+#include "apps/hapticgiant/bridge_command.h"
 #include "apps/hapticgiant/bus_command.h"
 #include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/commission_command.h"
@@ -102,6 +103,7 @@ int main(int argc, char** argv) {
   apps::add_run(app, argv[0], exit_code);
   apps::add_doctor(app, exit_code);
   apps::add_bus(app, exit_code);
+  apps::add_bridge(app, exit_code);
   apps::add_replay(app, exit_code);
   apps::add_explain(app, exit_code);
   apps::add_simulate(app, exit_code);

@@ -1,0 +1,308 @@
+#include "apps/ros2/live_client.h"
+
+#include <fmt/format.h>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/error.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <chrono>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "hg/core/error.h"
+
+namespace hg::ros2 {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+using nlohmann::json;
+
+constexpr std::size_t kMostWaiting = 256;         // messages to the run
+constexpr std::size_t kMostBytes = 64u << 20u;    // of one message from the run
+constexpr std::chrono::seconds kPatience(5);      // for a run that says nothing at all
+constexpr std::byte kMessage{1}, kResponse{3};    // from the server
+constexpr char kOwnMessage = 1, kOwnRequest = 2;  // from a client
+
+template <typename Number>
+Number number_at(std::span<const std::byte> bytes, std::size_t offset) {
+  Number number;
+  std::memcpy(&number, bytes.data() + offset, sizeof number);
+  return number;
+}
+
+void append(std::string& bytes, std::uint32_t number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+void append(std::string& bytes, std::span<const std::byte> more) {
+  bytes.append(reinterpret_cast<const char*>(more.data()), more.size());
+}
+
+class Connection final : public LiveClient, public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(asio::io_context& context, LiveListener& listener)
+      : listener_(&listener), resolver_(context), socket_(context) {}
+
+  void connect(const LiveAddress& address);
+  void abandon() override;
+  std::uint32_t offer(std::string_view topic, std::string_view type) override;
+  void withdraw(std::uint32_t topic) override;
+  void publish(std::uint32_t topic, std::span<const std::byte> message) override;
+  void call(std::uint32_t service, std::uint32_t call, std::span<const std::byte> request) override;
+  void send(const json& message) override;
+  std::uint64_t dropped() const override { return dropped_; }
+
+ private:
+  struct Waiting {
+    std::string bytes;
+    bool is_text;
+  };
+  void open();
+  void read();
+  void take_text(std::string_view text);
+  void take_channels(const json& channels);
+  void take_services(const json& services);
+  void take_bytes(std::span<const std::byte> bytes);
+  void push(Waiting waiting);
+  void write();
+  void end(const std::string& why);
+
+  LiveListener* listener_;  // null: abandoned, or closed
+  asio::ip::tcp::resolver resolver_;
+  websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer buffer_;
+  LiveAddress address_;
+  std::deque<Waiting> waiting_;
+  std::map<std::uint32_t, LiveChannel> channels_;  // by id, also the id of our subscription
+  std::map<std::uint32_t, LiveService> services_;
+  std::uint32_t offers_ = 0;
+  std::uint64_t dropped_ = 0;
+  bool is_writing_ = false;
+};
+
+void Connection::connect(const LiveAddress& address) {
+  address_ = address;
+  resolver_.async_resolve(address.host, address.port,
+                          [self = shared_from_this()](auto error, auto endpoints) {
+                            if (error) return self->end(error.message());
+                            beast::get_lowest_layer(self->socket_).expires_after(kPatience);
+                            beast::get_lowest_layer(self->socket_)
+                                .async_connect(endpoints, [self](auto refused, const auto&) {
+                                  if (refused) return self->end(refused.message());
+                                  self->open();
+                                });
+                          });
+}
+
+void Connection::open() {
+  beast::get_lowest_layer(socket_).expires_never();
+  beast::error_code ignored;
+  beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
+  socket_.set_option(websocket::stream_base::timeout{
+      .handshake_timeout = kPatience, .idle_timeout = kPatience, .keep_alive_pings = true});
+  socket_.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+    request.set(beast::http::field::sec_websocket_protocol, "foxglove.sdk.v1");
+  }));
+  socket_.read_message_max(kMostBytes);
+  const bool is_v6 = address_.host.find(':') != std::string::npos;
+  const std::string host = is_v6 ? "[" + address_.host + "]" : address_.host;
+  socket_.async_handshake(host + ":" + address_.port, address_.target,
+                          [self = shared_from_this()](auto error) {
+                            if (error == websocket::error::upgrade_declined) {
+                              return self->end("the token is that of another run, or wrong");
+                            }
+                            if (error) return self->end(error.message());
+                            self->read();
+                          });
+}
+
+void Connection::abandon() {
+  listener_ = nullptr;
+  beast::get_lowest_layer(socket_).close();
+}
+
+void Connection::end(const std::string& why) {
+  LiveListener* listener = std::exchange(listener_, nullptr);
+  beast::get_lowest_layer(socket_).close();
+  if (listener != nullptr) listener->closed(why);
+}
+
+void Connection::read() {
+  socket_.async_read(buffer_, [self = shared_from_this()](auto error, std::size_t) {
+    if (self->listener_ == nullptr) return;
+    if (error == websocket::error::closed || error == asio::error::eof) {
+      return self->end("the run has ended");
+    }
+    if (error == beast::error::timeout) return self->end("the run is silent");
+    if (error) return self->end(error.message());
+    const auto data = self->buffer_.data();
+    const std::string_view text(static_cast<const char*>(data.data()), data.size());
+    try {
+      if (self->socket_.got_text()) {
+        self->take_text(text);
+      } else {
+        self->take_bytes(std::as_bytes(std::span(text)));
+      }
+    } catch (const json::exception& broken) {
+      return self->end(fmt::format("a message that cannot be read: {}", broken.what()));
+    }
+    self->buffer_.consume(self->buffer_.size());
+    if (self->listener_ != nullptr) self->read();
+  });
+}
+
+void Connection::take_text(std::string_view text) {
+  const json message = json::parse(text);
+  const std::string op = message.at("op");
+  if (op == "serverInfo") {
+    listener_->opened(message.at("name"));
+  } else if (op == "advertise") {
+    take_channels(message.at("channels"));
+  } else if (op == "unadvertise") {
+    for (const auto& id : message.at("channelIds")) channels_.erase(id.get<std::uint32_t>());
+  } else if (op == "advertiseServices") {
+    take_services(message.at("services"));
+  } else if (op == "unadvertiseServices") {
+    for (const auto& id : message.at("serviceIds")) {
+      const auto found = services_.find(id.get<std::uint32_t>());
+      if (found == services_.end()) continue;
+      listener_->withdrawn(found->second);
+      services_.erase(found);
+    }
+  } else if (op == "parameterValues") {
+    listener_->parameters(message.at("parameters"), message.value("id", ""));
+  } else if (op == "serviceCallFailure") {
+    listener_->failed(message.at("callId"), message.value("message", ""));
+  } else if (op == "status") {
+    listener_->told(message.value("message", ""));
+  }
+}
+
+void Connection::take_channels(const json& channels) {
+  json subscriptions = json::array();
+  for (const json& one : channels) {
+    const LiveChannel channel = {one.at("id"), one.at("topic"), one.at("schemaName")};
+    if (one.at("encoding") != "cdr" || !listener_->offered(channel)) continue;
+    channels_[channel.id] = channel;
+    subscriptions.push_back({{"id", channel.id}, {"channelId", channel.id}});
+  }
+  if (!subscriptions.empty()) send({{"op", "subscribe"}, {"subscriptions", subscriptions}});
+}
+
+void Connection::take_services(const json& services) {
+  for (const json& one : services) {
+    const LiveService service = {one.at("id"), one.at("name"), one.at("type")};
+    services_[service.id] = service;
+    listener_->offered(service);
+  }
+}
+
+void Connection::take_bytes(std::span<const std::byte> bytes) {
+  constexpr std::size_t kHead =
+      1 + 4 + 8;  // kind, subscription, time; response: service, call, size
+  if (bytes.size() < kHead) return;
+  if (bytes[0] == kMessage) {
+    const auto found = channels_.find(number_at<std::uint32_t>(bytes, 1));
+    if (found != channels_.end()) listener_->received(found->second, bytes.subspan(kHead));
+  } else if (bytes[0] == kResponse) {
+    const std::size_t encoding = number_at<std::uint32_t>(bytes, 9);
+    if (encoding > bytes.size() - kHead) return;
+    listener_->answered(number_at<std::uint32_t>(bytes, 5), bytes.subspan(kHead + encoding));
+  }
+}
+
+std::uint32_t Connection::offer(std::string_view topic, std::string_view type) {
+  const std::uint32_t id = ++offers_;
+  send({{"op", "advertise"},
+        {"channels", {{{"id", id}, {"topic", topic}, {"encoding", "cdr"}, {"schemaName", type}}}}});
+  return id;
+}
+
+void Connection::withdraw(std::uint32_t topic) {
+  send({{"op", "unadvertise"}, {"channelIds", {topic}}});
+}
+
+void Connection::publish(std::uint32_t topic, std::span<const std::byte> message) {
+  std::string bytes(1, kOwnMessage);
+  append(bytes, topic);
+  append(bytes, message);
+  push({std::move(bytes), false});
+}
+
+void Connection::call(std::uint32_t service, std::uint32_t call,
+                      std::span<const std::byte> request) {
+  constexpr std::string_view kEncoding = "cdr";
+  std::string bytes(1, kOwnRequest);
+  append(bytes, service);
+  append(bytes, call);
+  append(bytes, static_cast<std::uint32_t>(kEncoding.size()));
+  bytes += kEncoding;
+  append(bytes, request);
+  push({std::move(bytes), false});
+}
+
+void Connection::send(const json& message) { push({message.dump(), true}); }
+
+void Connection::push(Waiting waiting) {
+  if (waiting_.size() >= kMostWaiting) {
+    ++dropped_;
+    return;
+  }
+  waiting_.push_back(std::move(waiting));
+  if (!is_writing_) write();
+}
+
+void Connection::write() {
+  if (waiting_.empty() || listener_ == nullptr) return;
+  is_writing_ = true;
+  socket_.text(waiting_.front().is_text);
+  socket_.async_write(asio::buffer(waiting_.front().bytes),
+                      [self = shared_from_this()](auto error, std::size_t) {
+                        self->is_writing_ = false;
+                        self->waiting_.pop_front();
+                        if (!error) self->write();  // else: reading ends, too, and says why
+                      });
+}
+
+}  // namespace
+
+LiveAddress parse_live_address(const std::string& text) {
+  const auto fail = [&] {
+    return SetupError(fmt::format(
+        "--live {}: expected the address that the run prints, ws://HOST:PORT/live?token=TOKEN",
+        text));
+  };
+  constexpr std::string_view kScheme = "ws://";
+  if (!text.starts_with(kScheme)) throw fail();
+  const std::size_t slash = text.find('/', kScheme.size());
+  const std::string authority = text.substr(kScheme.size(), slash - kScheme.size());
+  const std::size_t colon = authority.rfind(':');
+  if (slash == std::string::npos || colon == std::string::npos || colon == 0) throw fail();
+  LiveAddress address = {authority.substr(0, colon), authority.substr(colon + 1),
+                         text.substr(slash)};
+  if (address.host.starts_with('[') && address.host.ends_with(']')) {
+    address.host = address.host.substr(1, address.host.size() - 2);
+  }
+  if (address.port.empty() || address.port.find_first_not_of("0123456789") != std::string::npos) {
+    throw fail();
+  }
+  return address;
+}
+
+std::shared_ptr<LiveClient> connect_live(asio::io_context& context, const LiveAddress& address,
+                                         LiveListener& listener) {
+  const auto made = std::make_shared<Connection>(context, listener);
+  made->connect(address);
+  return made;
+}
+
+}  // namespace hg::ros2
