@@ -29,6 +29,9 @@
 #                instead
 #   make foxglove  opens the live interface of a run in the last open Foxglove Studio, in a headless
 #                browser, and uses it (36 MB, once)
+#   make ros2    runs the bridge to ROS 2 against rclpy of Jazzy and Kilted, in environments of their own
+#                (240 MB each), and a robot of ROS 2 as a device. MINUTES=30 measures rates and losses for
+#                so long instead
 #   make docs    writes the pages and tables that are generated from the code (tools/pages), and
 #                builds docs/ with API pages as a searchable site: build/site/index.html
 #   make soak    plays scenarios for SOAK_HOURS=30 of simulated time as fast as it goes, and looks at
@@ -106,6 +109,9 @@ franka: build
 
 foxglove: build
 	@node viewer/test/foxglove/run.mjs $(BUILD)/hapticgiant build/foxglove $(PICTURE)
+
+ros2: build
+	@.venv/bin/python tests/ros2/ros2_test.py $(BUILD)/hapticgiant $(if $(MINUTES),--minutes $(MINUTES))
 
 bench-instructions:
 	@tools/setup.sh count
