@@ -167,7 +167,7 @@ void Bridge::connect() {
 void Bridge::opened(const std::string& server) {
   is_open_ = true;
   said_.clear();
-  say(fmt::format("connected with the run of {}", server));
+  say(fmt::format("connected with a run of {}", server));
 }
 
 void Bridge::closed(const std::string& why) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/error.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -138,7 +139,9 @@ void Connection::end(const std::string& why) {
 void Connection::read() {
   socket_.async_read(buffer_, [self = shared_from_this()](auto error, std::size_t) {
     if (self->listener_ == nullptr) return;
-    if (error == websocket::error::closed) return self->end("the run has closed the connection");
+    if (error == websocket::error::closed || error == asio::error::eof) {
+      return self->end("the run has ended");
+    }
     if (error == beast::error::timeout) return self->end("the run is silent");
     if (error) return self->end(error.message());
     const auto data = self->buffer_.data();

@@ -1,13 +1,14 @@
 """A node of ROS 2 (rclpy) that looks at the bridge from the other side; prints what it saw as JSON.
 
-    peer.py watch SECONDS [--brief]     subscribes to all topics
-    peer.py call                        services, parameters and topics into the run
-    peer.py robot SECONDS               a robot: states at 250 Hz, does what velocities say
+    peer.py watch FILE [--brief]    subscribes to all topics, until FILE exists
+    peer.py call                    services, parameters and topics into the run
+    peer.py robot FILE              a robot: states at 250 Hz, does what velocities say, until FILE exists
 
 Run by the Python of an environment of ROS 2 wheels.
 """
 
 import json
+import pathlib
 import sys
 import time
 
@@ -45,7 +46,7 @@ class Spinner:
         self.executor.spin_once(timeout_sec=seconds)
 
 
-def watch(node, spinner, seconds, is_brief):
+def watch(node, spinner, end, is_brief):
     """`is_brief`: numbers only, for runs of many minutes."""
     seen = {topic: [] for topic in (*STREAMS, *DESCRIPTIONS)}
     brief = {topic: {"count": 0, "gaps": 0, "longest_gap_ms": 0.0, "last": None, "worst_age_ms": 0.0}
@@ -75,9 +76,9 @@ def watch(node, spinner, seconds, is_brief):
     node.create_subscription(JointState, "/joint_states", best_effort.append if not is_brief else lambda _: None,
                              qos_profile_sensor_data)
     print("ready", flush=True)
-    until = time.monotonic() + seconds
-    while time.monotonic() < until:
-        spinner.once(0.1)
+    while not end.exists():
+        for _ in range(100):
+            spinner.once(0.01)
     hashes = {}
     for topic in seen:
         for info in node.get_publishers_info_by_topic(topic):
@@ -177,7 +178,7 @@ def call(node, spinner):
     return saw
 
 
-def robot(node, spinner, seconds):
+def robot(node, spinner, end):
     """Six joints that move with the commanded speeds, and a hand that pushes."""
     joints = [f"joint_{i}" for i in range(6)]
     q, dq, heard = [0.0, 0.6, 1.2, 0.0, 0.8, 0.0], [0.0] * 6, []
@@ -194,7 +195,7 @@ def robot(node, spinner, seconds):
     begin = last = time.monotonic()
     print("ready", flush=True)
     moved = 0.0
-    while time.monotonic() < begin + seconds:
+    while not end.exists():
         spinner.once(0.0)
         now = time.monotonic()
         q = [a + (now - last) * v for a, v in zip(q, dq)]
@@ -220,11 +221,11 @@ def main():
     spinner = Spinner(node)
     what = sys.argv[1]
     if what == "watch":
-        result = watch(node, spinner, float(sys.argv[2]), "--brief" in sys.argv)
+        result = watch(node, spinner, pathlib.Path(sys.argv[2]), "--brief" in sys.argv)
     elif what == "call":
         result = call(node, spinner)
     else:
-        result = robot(node, spinner, float(sys.argv[2]))
+        result = robot(node, spinner, pathlib.Path(sys.argv[2]))
     print(json.dumps(result), flush=True)
     node.destroy_node()
     rclpy.shutdown()

@@ -94,7 +94,7 @@ class Program:
         return self.wait()
 
     def result(self):
-        """The JSON in the last line."""
+        """The JSON in the last line, once the process has ended."""
         said = self.wait()
         if self.process.returncode != 0:
             raise AssertionError(said)
@@ -126,7 +126,7 @@ def bridge(folder, domain, *arguments):
 
 def recorded(folder):
     """{topic: {stamp: values}} of the only recording in a folder."""
-    (file,) = pathlib.Path(folder).glob("*.mcap")
+    (file,) = (one for one in pathlib.Path(folder).glob("*.mcap") if not one.is_symlink())
     found = {topic: {} for topic in STREAMS}
     with file.open("rb") as stream:
         reader = mcap.reader.make_reader(stream, decoder_factories=[mcap_ros2.decoder.DecoderFactory()])
@@ -152,26 +152,38 @@ class Bridge:
         self.stack = contextlib.ExitStack()
         self.addCleanup(self.stack.close)
         self.folder = pathlib.Path(self.stack.enter_context(tempfile.TemporaryDirectory()))
+        self.peers = []
 
     def start(self, program):
         return self.stack.enter_context(program)
 
-    def peer(self, *arguments):
-        return self.start(self.distribution.peer(self.domain, *arguments))
+    def peer(self, what):
+        """A peer that is ready, and goes on until finish()."""
+        peer = self.start(self.distribution.peer(self.domain, what, self.folder / f"end of {len(self.peers)}"))
+        self.peers.append(peer)
+        if what != "call":
+            peer.wait_for("ready")
+        return peer
+
+    def finish(self, peer):
+        (self.folder / f"end of {self.peers.index(peer)}").touch()
+        return peer.result()
 
     def test_every_topic_says_what_the_recording_says(self):
         between = self.start(bridge(self.folder, self.domain))
-        peer = self.peer("watch", "28")
-        peer.wait_for("ready")
-        door = self.start(run(self.folder, "--duration", "12"))
+        peer = self.peer("watch")
+        door = self.start(run(self.folder, "--duration", "15"))
         between.wait_for("connected")
-        time.sleep(4)
-        late = self.peer("watch", "6")
+        time.sleep(1)
+        late = self.peer("watch")
         door.wait()
-        saw, late_saw = peer.result(), late.result()
+        time.sleep(2)
+        saw, late_saw = self.finish(peer), self.finish(late)
         said = between.interrupt()
 
         recording = recorded(self.folder)
+        union = {stamp for topic, kind in STREAMS.items() if "/diagnostics" != topic
+                 for stamp, _, _ in saw["seen"][topic] if stamp is not None}
         for topic, kind in STREAMS.items():
             messages = saw["seen"][topic]
             self.assertGreater(len(messages), 0, topic + "\n" + said)
@@ -181,15 +193,18 @@ class Bridge:
                 continue
             stamps = [stamp for stamp, _, _ in messages]
             self.assertEqual(stamps, sorted(set(stamps)), topic + ": out of order, or twice")
-            for stamp, said_values, _ in messages:
+            for stamp, said_values, _ in messages if topic != "/limits" else []:  # not recorded as such
                 self.assertIn(stamp, recording[topic], topic)
                 self.assertTrue(same(said_values, recording[topic][stamp]), (topic, stamp))
             rate = (len(stamps) - 1) / (1e-9 * (stamps[-1] - stamps[0]))
             self.assertGreater(rate, 60, topic)  # 100 Hz; the server drops on a busy computer
             self.assertLess(rate, 101, topic)
-            # nothing is lost between bridge and peer, which was there before the run
+            have = set(stamps)
+            # from its first message on the peer misses none that it has of any other topic
+            missed = [stamp for stamp in union if stamps[0] < stamp < stamps[-1] and stamp not in have]
+            self.assertEqual(missed, [], topic)
             out = int(next(line for line in said.splitlines() if line.endswith(" " + topic)).split()[0])
-            self.assertLessEqual(out - len(messages), 5, (topic, out, len(messages)))
+            self.assertLess(out - len(messages), 100, topic)  # while they found each other
         self.assertTrue(any("unlocked" in text for _, text, _ in saw["seen"]["/hapticgiant/events"]),
                         saw["seen"]["/hapticgiant/events"])
         self.assertGreater(saw["best_effort"], 0)  # who listens with the QoS of sensors gets it, too
@@ -204,8 +219,7 @@ class Bridge:
     def test_either_side_may_start_again(self):
         between = self.start(bridge(self.folder, self.domain))
         between.wait_for("waiting for a run")
-        peer = self.peer("watch", "40")
-        peer.wait_for("ready")
+        peer = self.peer("watch")
         for count in (1, 2):
             with run(self.folder, "--duration", "4", "--no-recording") as door:
                 between.wait_for("connected", count)
@@ -220,9 +234,9 @@ class Bridge:
             again.wait_for("connected")
             again_ns = time.time_ns()
             door.wait()
-        arrivals = [now for _, _, now in peer.result()["seen"]["/joint_states"]]
-        self.assertGreater(sum(now < killed_ns for now in arrivals), 500)  # of 10 s
-        self.assertGreater(sum(now > again_ns for now in arrivals), 200)
+        arrivals = [now for _, _, now in self.finish(peer)["seen"]["/joint_states"]]
+        self.assertGreater(sum(now < killed_ns for now in arrivals), 300)  # of 10 s, 100 Hz
+        self.assertGreater(sum(now > again_ns for now in arrivals), 100)
 
     def test_ros_changes_the_run(self):
         between = self.start(bridge(self.folder, self.domain))
@@ -247,14 +261,14 @@ class Bridge:
 
     def test_what_only_looks_cannot_change_anything(self):
         self.start(bridge(self.folder, self.domain, "--view")).wait_for("to look at only")
-        self.start(run(self.folder, "--duration", "10", "--no-recording"))
-        saw = self.peer("watch", "9").result()
+        peer = self.peer("watch")
+        self.start(run(self.folder, "--duration", "5", "--no-recording")).wait()
+        saw = self.finish(peer)
         self.assertGreater(len(saw["seen"]["/joint_states"]), 0)
         self.assertEqual([name for name in saw["services"] if "hapticgiant" in name], [])
 
     def test_a_robot_of_ros_is_a_device(self):
-        robot = self.peer("robot", "40")
-        robot.wait_for("ready")
+        robot = self.peer("robot")
         device = self.start(bridge(
             self.folder, self.domain, "device", "--joints", JOINTS, "--wrench", "/wrench", "--dead-man",
             "/dead_man", "--simulated", "--silence", "0.3", "--listen", "127.0.0.1:0"))
@@ -267,7 +281,8 @@ class Bridge:
             ran.wait_for("simulation")
             time.sleep(1.5)
             ran.process.kill()  # a controller that says nothing any more
-        saw = robot.result()
+        time.sleep(1)  # the device has noticed
+        saw = self.finish(robot)
         self.assertGreater(saw["commands"], 50)
         self.assertGreater(saw["fastest"], 0.05)
         self.assertEqual(saw["last"], [0.0] * 6)
@@ -287,7 +302,7 @@ def measure(distribution, minutes):
     with tempfile.TemporaryDirectory() as name:
         folder, domain = pathlib.Path(name), random.SystemRandom().randrange(100, 200)
         with bridge(folder, domain) as between, \
-                distribution.peer(domain, "watch", str(60 * minutes + 20), "--brief") as peer:
+                distribution.peer(domain, "watch", folder / "end", "--brief") as peer:
             peer.wait_for("ready")
             with run(folder, "--user", "mouse", "--no-recording", "--duration", str(60 * minutes)) as door:
                 between.wait_for("connected")
@@ -297,6 +312,7 @@ def measure(distribution, minutes):
                 grown_MB = between.memory_MB() - memory_MB
                 door.wait()
                 print(door.said()[-1500:])
+            (folder / "end").touch()
             saw = peer.result()["brief"]
             said = between.interrupt()
     print(f"{distribution.name}, {minutes:g} minutes; memory of the bridge {memory_MB:.1f} MB, {grown_MB:+.2f} MB")
