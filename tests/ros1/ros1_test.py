@@ -136,7 +136,7 @@ class Ros1(unittest.TestCase):
         events = Ear("/hapticgiant/events", String)
         answer = services["mark"]()
         self.assertTrue(answer.success, answer.message)
-        events.next(lambda m: "mark" in m.data, "the mark")
+        until(lambda: any("mark" in event.data for event in events.messages), "the mark")
         answer = services["arm"]()
         self.assertFalse(answer.success)  # it is running already
         self.assertTrue(answer.message)
@@ -193,6 +193,7 @@ class Ros1(unittest.TestCase):
 
     def test_settings_are_those_of_dynamic_reconfigure(self):
         self.run_door("--user", "mouse", "--duration", "1000")
+        Ear("/joint_states", JointState).next()  # of this run
         client = dynamic_reconfigure.client.Client("/hapticgiant_bridge", timeout=PATIENCE_S)
         self.addCleanup(client.close)
         name = "hinge.damping_Nms_per_rad"

@@ -174,7 +174,9 @@ LiveEvents Bridge::live_events() {
     clock.clock.fromNSec(time_ns);
     clock_.publish(clock);
   };
-  events.parameters = [this](const auto& parameters) { settings_.update(parameters); };
+  events.parameters = [this](const nlohmann::json& parameters, bool is_answer) {
+    settings_.update(parameters, is_answer);
+  };
   events.status = [](const std::string& text, bool is_error) {
     if (is_error) {
       ROS_ERROR_THROTTLE(1.0, "program: %s", text.c_str());

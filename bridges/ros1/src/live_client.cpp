@@ -28,6 +28,7 @@ constexpr auto kPatience = std::chrono::seconds(5);  // for an answer, and of a 
 constexpr auto kPause = std::chrono::milliseconds(500);    // between two attempts
 constexpr std::size_t kLargestMessage = 64 * 1024 * 1024;  // bytes; an asset
 constexpr std::size_t kMostWaiting = 64;                   // messages on their way out
+constexpr const char *kAll = "all", *kSet = "set";         // requests of parameters
 constexpr const char* kSubprotocol = "foxglove.sdk.v1";
 
 enum FromServer : std::uint8_t { kMessage = 1, kTime = 2, kServiceResponse = 3, kAsset = 4 };
@@ -172,7 +173,7 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
     client_->events_.opened();
     if (client_ == nullptr) return;
     if (!channels.empty()) send_json({{"op", "advertise"}, {"channels", channels}});
-    send_json({{"op", "getParameters"}, {"parameterNames", json::array()}, {"id", "all"}});
+    send_json({{"op", "getParameters"}, {"parameterNames", json::array()}, {"id", kAll}});
     read();
   }
 
@@ -233,8 +234,9 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
       }
     } else if (op == "parameterValues") {
       const json& parameters = message.at("parameters");
-      client_->events_.parameters(parameters);
-      if (client_ != nullptr && message.value("id", "") == "all") watch(parameters);
+      const std::string id = message.value("id", "");
+      client_->events_.parameters(parameters, id == kSet);
+      if (client_ != nullptr && id == kAll) watch(parameters);
     } else if (op == "serviceCallFailure") {
       answer(calls_, message.at("callId"), {false, message.at("message"), {}});
     } else if (op == "status") {
@@ -352,7 +354,7 @@ void LiveClient::set_parameter(const std::string& name, const json& value) {
   if (!session_) return;
   session_->send_json({{"op", "setParameters"},
                        {"parameters", json::array({{{"name", name}, {"value", value}}})},
-                       {"id", "set"}});
+                       {"id", kSet}});
 }
 
 std::string LiveClient::get(const std::string& path) const {

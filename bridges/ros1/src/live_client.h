@@ -1,6 +1,6 @@
 /// Client of the live interface of a running program: the Foxglove WebSocket protocol, version 1.
 ///
-/// Source: the specification of github.com/foxglove/ws-protocol. Messages are CDR bytes.
+/// Source: https://github.com/foxglove/ws-protocol (specification). Messages are CDR bytes.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -34,7 +34,8 @@ struct LiveEvents {
   std::function<void(const std::string& reason)> closed;
   std::function<void(const std::string& topic, Bytes message)> message;
   std::function<void(std::uint64_t time_ns)> time;  ///< the run's clock
-  std::function<void(const nlohmann::json& parameters)> parameters;
+  /// `is_answer`: to set_parameter()
+  std::function<void(const nlohmann::json& parameters, bool is_answer)> parameters;
   std::function<void(const std::string& text, bool is_error)> status;
 };
 

@@ -50,7 +50,7 @@ void Settings::set_scene(const Scene& scene) {
   describe();
 }
 
-void Settings::update(const nlohmann::json& parameters) {
+void Settings::update(const nlohmann::json& parameters, bool is_answer) {
   const std::lock_guard lock(mutex_);
   bool has_new = false;
   for (const nlohmann::json& parameter : parameters) {
@@ -66,8 +66,9 @@ void Settings::update(const nlohmann::json& parameters) {
   }
   if (has_new) describe();
   updates_.publish(config());
-  ++updates_seen_;
-  updated_.notify_all();
+  if (!is_answer) return;
+  ++answers_;
+  answered_.notify_all();
 }
 
 // Answers with what holds afterwards: what the program refuses stays as it was.
@@ -81,13 +82,13 @@ bool Settings::reconfigure(dynamic_reconfigure::Reconfigure::Request& request,
       return false;
     }
     if (setting->second.value == wanted.value) continue;  // rqt_reconfigure sends all
-    const std::uint64_t seen = updates_seen_;
+    const std::uint64_t before = answers_;
     if (std::isfinite(wanted.value)) {
       set_(wanted.name, wanted.value);
     } else {
       set_(wanted.name, kUnlimited);
     }
-    if (!updated_.wait_for(lock, kPatience, [&] { return updates_seen_ != seen; })) {
+    if (!answered_.wait_for(lock, kPatience, [&] { return answers_ != before; })) {
       ROS_ERROR("no answer of the program to the setting '%s'", wanted.name.c_str());
       return false;
     }

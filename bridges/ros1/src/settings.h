@@ -27,8 +27,8 @@ class Settings {
   /// New settings with their ranges.
   void set_scene(const Scene& scene);
 
-  /// Values reported by the program: [{name, value}, ...].
-  void update(const nlohmann::json& parameters);
+  /// Values reported by the program: [{name, value}, ...]; `is_answer`: because of `set`.
+  void update(const nlohmann::json& parameters, bool is_answer);
 
  private:
   bool reconfigure(dynamic_reconfigure::Reconfigure::Request& request,
@@ -40,8 +40,8 @@ class Settings {
   ros::Publisher descriptions_, updates_;
   ros::ServiceServer service_;
   std::mutex mutex_;
-  std::condition_variable updated_;
-  std::uint64_t updates_seen_ = 0;
+  std::condition_variable answered_;
+  std::uint64_t answers_ = 0;
   std::map<std::string, Setting> settings_;
 };
 
