@@ -172,9 +172,6 @@ notebooks: build
 	@.venv/bin/python tools/notebooks.py
 	@.venv/bin/python tests/connect/notebooks_test.py $(BUILD) $(BUILD)/hapticgiant
 
-foxglove: build
-	@node viewer/test/foxglove/run.mjs $(BUILD)/hapticgiant build/foxglove $(PICTURE)
-
 ros2: build
 	@.venv/bin/python tests/ros2/ros2_test.py $(BUILD)/hapticgiant $(if $(MINUTES),--minutes $(MINUTES))
 
