@@ -162,6 +162,7 @@ ros1: build
 	@bridges/ros1/build.sh test
 	@/usr/bin/python3 tests/ros1/ros1_test.py $(BUILD)/hapticgiant \
 	  $(if $(PICTURE),--picture $(PICTURE)) $(ARGS)
+
 foxglove: build
 	@node viewer/test/foxglove/run.mjs $(BUILD)/hapticgiant build/foxglove $(PICTURE)
 
