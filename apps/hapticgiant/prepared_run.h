@@ -24,7 +24,7 @@ struct PreparedRun {
   page::ShownRun shown() const;
 
   const RunArguments arguments;
-  const config::Scenario scenario;
+  config::Scenario scenario;
   controller::Cycle cycle;
   std::unique_ptr<device::Device> device;
   /// `device` as one at the other end of a connection; nullptr = simulated here
