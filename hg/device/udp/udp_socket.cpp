@@ -59,7 +59,8 @@ std::int64_t arrival_of(msghdr& message) noexcept {
   clock_gettime(CLOCK_REALTIME, &clock);
   const std::int64_t age =
       (clock.tv_sec - stamp.tv_sec) * kNanoseconds + clock.tv_nsec - stamp.tv_nsec;
-  return age < 0 || age > kNanoseconds ? now : now - age;
+  constexpr std::int64_t kLongest = 60 * kNanoseconds;  // more is a clock that was set
+  return age < 0 || age > kLongest ? now : now - age;
 }
 
 }  // namespace
