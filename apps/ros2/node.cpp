@@ -6,6 +6,7 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>

@@ -4,6 +4,7 @@
 /// Calls come from one thread; the functions that take what arrives, from threads of the DDS.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>

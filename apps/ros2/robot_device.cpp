@@ -8,7 +8,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <numbers>
 #include <ranges>
 #include <string_view>
 #include <thread>

@@ -135,7 +135,10 @@ def call(node, spinner):
     name, value = finite[0]
     saw["changed"], saw["old"] = name, value
     saw["set"] = caller.set(name, value * 1.25)
-    saw["after"] = caller.get([name])
+    until = time.monotonic() + PATIENCE
+    while (after := caller.get([name]))[0][1] == value and time.monotonic() < until:
+        pass  # the run takes it in its next cycles
+    saw["after"] = after
     saw["too_large"] = caller.set(name, -1e30)
     saw["unknown"] = caller.set("no_such_parameter", 1.0)
     saw["after_refusal"] = caller.get([name])
