@@ -143,9 +143,17 @@ class Ros1(unittest.TestCase):
         answer = services["stop"]()
         self.assertTrue(answer.success, answer.message)
         ear.next(lambda m: value_of(m, "mode") not in (None, "running"), "another mode")
-        for name in ("arm", "run"):  # it stands still first
-            until(lambda: services[name]().success, name)
-        until(lambda: value_of(ear.messages[-1], "mode") == "running", "it runs again")
+        answers = {}
+
+        def runs_again():  # once it stands still, with its drives on or off
+            for name in ("arm", "run"):
+                answers[name] = services[name]().message
+            return value_of(ear.messages[-1], "mode") == "running"
+
+        try:
+            until(runs_again, "it runs again")
+        except AssertionError as error:
+            self.fail(f"{error}: {answers}, {value_of(ear.messages[-1], 'mode')}")
 
     def pull(self, x, y, z):
         """A function that pulls the hand to a place beside the handle, m, for the next 0.5 s."""
