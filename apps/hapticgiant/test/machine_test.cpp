@@ -23,7 +23,6 @@
 #include "hg/commissioning/start_test/memory.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
-#include "hg/core/open_file.h"
 #include "hg/core/test/message_of.h"
 #include "hg/core/whole_file.h"
 #include "hg/device/udp/device_server.h"
