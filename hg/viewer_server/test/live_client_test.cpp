@@ -83,11 +83,13 @@ class LiveClientTest : public ::testing::Test {
     return client;
   }
 
-  void subscribe(RawClient& client, std::size_t channel) {
+  // Returns once the server has it: it answers in order.
+  static void subscribe(RawClient& client, std::size_t channel) {
     const Json json = {{"op", "subscribe"},
                        {"subscriptions", {{{"id", 7}, {"channelId", channel + 1}}}}};
     client.send_message(json.dump());
-    EXPECT_TRUE(eventually([&] { return server_.live_wanted().test(channel); }));
+    client.send_message(R"({"op":"getParameters","id":"subscribed"})");
+    EXPECT_EQ(next(client, "parameterValues")["id"], "subscribed");
   }
 
   static std::string call(std::size_t service) {

@@ -100,30 +100,39 @@ class RawClient {
     std::string text;
   };
 
+  /// With all its parts; a control frame between them is not expected.
   Message read_message() {
-    while (received_.size() < 4 && receive()) continue;
-    if (received_.size() < 2) return {};
-    const auto byte = [this](std::size_t i) { return static_cast<unsigned char>(received_[i]); };
-    std::size_t size = byte(1) & 127u;
-    std::size_t start = 2;
-    if (size == 126) {
-      size = 256u * byte(2) + byte(3);
-      start = 4;
-    } else if (size == 127) {
-      while (received_.size() < 10 && receive()) continue;
-      if (received_.size() < 10) return {};
-      size = 0;
-      for (std::size_t i = 2; i < 10; ++i) size = 256u * size + byte(i);
-      start = 10;
+    Message message;
+    for (bool is_last = false; !is_last;) {
+      Message part = read_frame(is_last);
+      if (part.opcode < 0) return {};
+      if (part.opcode != 0) message.opcode = part.opcode;
+      message.text += part.text;
     }
-    while (received_.size() < start + size && receive()) continue;
-    if (received_.size() < start + size) return {};
+    return message;
+  }
+
+ private:
+  bool has(std::size_t size) {
+    while (received_.size() < size && receive()) continue;
+    return received_.size() >= size;
+  }
+
+  Message read_frame(bool& is_last) {
+    const auto byte = [this](std::size_t i) { return static_cast<unsigned char>(received_[i]); };
+    if (!has(2)) return {};
+    is_last = (byte(0) & 128) != 0;
+    std::size_t size = byte(1) & 127u;
+    const std::size_t start = size == 127 ? 10 : size == 126 ? 4 : 2;
+    if (!has(start)) return {};
+    if (start > 2) size = 0;
+    for (std::size_t i = 2; i < start; ++i) size = 256u * size + byte(i);
+    if (!has(start + size)) return {};
     Message message = {byte(0) & 15, received_.substr(start, size)};
     received_.erase(0, start + size);
     return message;
   }
 
- private:
   bool receive() {
     std::array<char, 4096> bytes;
     const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), 0);
