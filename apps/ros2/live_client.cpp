@@ -92,7 +92,7 @@ class Connection final : public LiveClient, public std::enable_shared_from_this<
 void Connection::connect(const LiveAddress& address) {
   address_ = address;
   resolver_.async_resolve(address.host, address.port,
-                          [self = shared_from_this()](auto error, auto endpoints) {
+                          [self = shared_from_this()](auto error, const auto& endpoints) {
                             if (error) return self->end(error.message());
                             beast::get_lowest_layer(self->socket_).expires_after(kPatience);
                             beast::get_lowest_layer(self->socket_)

@@ -3,6 +3,7 @@
 /// Everything happens in the thread of the io_context.
 #pragma once
 
+#include <boost/asio/io_context.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,10 +11,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-
-namespace boost::asio {
-class io_context;
-}
 
 namespace hg::ros2 {
 

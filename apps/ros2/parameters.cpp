@@ -100,7 +100,7 @@ json to_json(const ParameterValue& value) {
   }
 }
 
-Parameters::Parameters(Node& node, const std::string& name, std::function<void()> arrived) {
+Parameters::Parameters(Node& node, const std::string& name, const std::function<void()>& arrived) {
   const std::pair<Kind, std::pair<std::string, std::string>> all[] = {
       {Kind::kGet, {"get_parameters", "GetParameters"}},
       {Kind::kTypes, {"get_parameter_types", "GetParameterTypes"}},

@@ -29,7 +29,7 @@ class Parameters {
   using Send = std::function<void(const nlohmann::json&)>;
 
   /// `name` is that of the node. `arrived` is called by a thread of the DDS.
-  Parameters(Node& node, const std::string& name, std::function<void()> arrived);
+  Parameters(Node& node, const std::string& name, const std::function<void()>& arrived);
 
   /// Passes waiting requests on by `send`; null: no run is connected, they are refused.
   void pass_on(const Send& send);
