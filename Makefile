@@ -68,9 +68,9 @@ BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
   head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering surfaces prepositioning tracking safety \
-  collision passivity controller person simulator faults udp franka identification analysis doctor recording \
-  fuzz_replay)
-TSAN_TESTS := $(addsuffix _test, core runtime recording viewer_server)
+  collision passivity controller person simulator faults udp franka identification analysis doctor messages \
+  recording live lab_streaming fuzz_replay)
+TSAN_TESTS := $(addsuffix _test, core runtime recording lab_streaming viewer_server)
 RTSAN_TESTS := $(addsuffix _test, controller runtime)
 FUZZ_SECONDS ?= 600
 FUZZ_TARGETS ?= hqp_reader hqp_solver config urdf protocol commands live recording
