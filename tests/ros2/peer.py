@@ -149,9 +149,9 @@ def call(node, spinner):
     node.create_subscription(TFMessage, "/tf", lambda m: handles.extend(
         xyz(one.transform.translation) for one in m.transforms if one.child_frame_id == "handle"), 10)
 
-    def spin(seconds, publish=lambda: None):
+    def spin(seconds, publish=lambda: None, is_enough=lambda: False):
         until = time.monotonic() + seconds
-        while time.monotonic() < until:
+        while time.monotonic() < until and not is_enough():
             publish()
             spinner.once(0.01)
 
@@ -163,7 +163,8 @@ def call(node, spinner):
     x, y, z = handles[-1] if handles else (0.0, 0.0, 0.0)
     pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = x + 0.1, y, z
     pose.pose.orientation.w = 0.0  # free to turn
-    spin(2.0, lambda: target.publish(pose))
+    spin(PATIENCE, lambda: target.publish(pose),
+         lambda: handles[-1] != [x, y, z] and max(map(abs, wrenches), default=0.0) > 1.0)
     saw["handle_pulled"] = handles[-1] if handles else None
     saw["force_pulled"] = max((abs(x) for x in wrenches), default=0.0)
     node.destroy_publisher(target)
