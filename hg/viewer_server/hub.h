@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -28,6 +29,7 @@
 #include "hg/viewer_server/access.h"
 #include "hg/viewer_server/commands.h"
 #include "hg/viewer_server/hand_target_box.h"
+#include "hg/viewer_server/message_rate.h"
 #include "hg/viewer_server/reference_wrench_box.h"
 
 namespace hg::viewer_server {
@@ -84,6 +86,10 @@ struct Hub {
   void put_wrench(std::uint64_t client, const Vector6& w);
   /// Queues a command for the program; false when too many are waiting.
   bool put_command(Command command);
+  /// Executes a command at the desk, or queues it for the program as far as `rate` allows; a stop
+  /// is never limited. Returns the answer: empty = executed, text = refused; no value: the program
+  /// answers.
+  std::optional<std::string> take(Command command, MessageRate& rate);
   void show(Text frame);
   void announce(const Text& event);
   /// Answers a command; `refusal` is empty when it was accepted.

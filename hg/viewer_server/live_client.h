@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "hg/live/session.h"
-#include "hg/viewer_server/desk_commands.h"
 #include "hg/viewer_server/hub.h"
 #include "hg/viewer_server/message_rate.h"
 
@@ -106,7 +105,10 @@ class LiveClient : public std::enable_shared_from_this<LiveClient> {
     live::Reaction reaction = session_.take(frame, socket_.got_text());
     buffer_.clear();
     hub_.note_wanted();
-    for (const live::Order& order : reaction.orders) obey(order);  // may be a stop: never limited
+    for (const live::Order& order : reaction.orders) {
+      if (const auto refusal = hub_.take(command_of(order), order_rate_))
+        answer(order.id, *refusal);
+    }
     if (reaction.is_refused) ++hub_.refused;
     if (!rate_.admit(now_s())) {
       ++hub_.refused;  // without an answer, which would only amplify a flood
@@ -115,24 +117,6 @@ class LiveClient : public std::enable_shared_from_this<LiveClient> {
     if (reaction.hand) hub_.put_hand(number, *reaction.hand);
     if (reaction.wrench) hub_.put_wrench(number, *reaction.wrench);
     answer(std::move(reaction.frames));
-  }
-
-  void obey(const live::Order& order) {
-    Command command = command_of(order);
-    if (hub_.desk != nullptr) {
-      const auto refusal = obey_at_desk(command, hub_.followed, now_ns(), *hub_.desk);
-      command.stops = hub_.desk->stops();
-      if (refusal) {
-        command.is_done = refusal->empty();
-        if (command.is_done) hub_.put_command(command);
-        return answer(order.id, *refusal);
-      }
-    }
-    if (!order_rate_.admit(now_s())) {
-      answer(order.id, "too many commands");
-    } else if (!hub_.put_command(command)) {
-      answer(order.id, "too many commands are waiting");
-    }
   }
 
   Command command_of(const live::Order& order) const {

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "hg/viewer_server/desk_commands.h"
 #include "hg/viewer_server/hub.h"
 #include "hg/viewer_server/message_rate.h"
 #include "hg/viewer_server/messages.h"
@@ -92,23 +91,9 @@ class Page : public std::enable_shared_from_this<Page> {
 
   void listen(Command& command) {
     command.page = number;
-    if (hub_.desk != nullptr) {
-      const auto refusal = obey_at_desk(command, hub_.followed, now_ns(), *hub_.desk);
-      command.stops = hub_.desk->stops();
-      if (refusal) return tell_done(command, *refusal);
-    }
-    if (!command_rate_.admit(now_s())) {
-      refuse(command.id, "too many commands");
-    } else if (!hub_.put_command(command)) {
-      refuse(command.id, "too many commands are waiting");
-    }
-  }
-
-  // an executed command is reported to the program if there is room
-  void tell_done(Command& command, const std::string& refusal) {
-    if (!refusal.empty()) return refuse(command.id, refusal);
-    command.is_done = true;
-    hub_.put_command(command);
+    const auto refusal = hub_.take(command, command_rate_);
+    if (!refusal) return;
+    if (!refusal->empty()) return refuse(command.id, *refusal);
     notify(to_text(encode_answer(command.id, {})));
   }
 

@@ -23,6 +23,7 @@
 #include "hg/core/open_file.h"
 #include "hg/live/session.h"
 #include "hg/viewer_server/access.h"
+#include "hg/viewer_server/desk_commands.h"
 #include "hg/viewer_server/hub.h"
 #include "hg/viewer_server/live_client.h"
 #include "hg/viewer_server/meshes.h"
@@ -157,6 +158,21 @@ bool Hub::put_command(Command command) {
   if (commands.size() >= (command.is_done ? kMaxDone : kMaxCommands)) return false;
   commands.push_back(std::move(command));
   return true;
+}
+
+std::optional<std::string> Hub::take(Command command, MessageRate& rate) {
+  if (desk != nullptr) {
+    const auto answer = obey_at_desk(command, followed, now_ns(), *desk);
+    command.stops = desk->stops();
+    if (answer) {
+      command.is_done = answer->empty();
+      if (command.is_done) put_command(command);  // reported to the program if there is room
+      return answer;
+    }
+  }
+  if (!rate.admit(now_s())) return "too many commands";
+  if (!put_command(std::move(command))) return "too many commands are waiting";
+  return std::nullopt;
 }
 
 void Hub::answer(std::uint64_t page, double id, std::string_view refusal) {
