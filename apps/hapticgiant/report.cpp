@@ -42,30 +42,34 @@ std::string read_all(int descriptor) {
   }
 }
 
-// It starts in the root folder: Python would take modules from the working directory.
-std::vector<char*> arguments_of(std::vector<std::string>& words) {
+// Starts a program with one end of a pipe as its standard input or output; returns its process, 0
+// where it does not start. Without input it reads nothing. It starts in the root folder: Python
+// would take modules from the working directory. Closes the end.
+pid_t start_program(std::vector<std::string>& words, int end, int stream) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  return arguments;
-}
-
-Ended run_program(std::vector<std::string> words) {
-  std::vector<char*> arguments = arguments_of(words);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return {};
-  const OpenFile output(ends[0]);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  if (stream != STDIN_FILENO) {
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  }
+  posix_spawn_file_actions_adddup2(&actions, end, stream);
   posix_spawn_file_actions_addchdir_np(&actions, "/");
   pid_t child = 0;
   const int error =
       posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  if (error != 0) return {};
+  close(end);
+  return error == 0 ? child : 0;
+}
+
+Ended run_program(std::vector<std::string> words) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return {};
+  const OpenFile output(ends[0]);
+  const pid_t child = start_program(words, ends[1], STDOUT_FILENO);
+  if (child == 0) return {};
   Ended ended = {.code = -1, .said = read_all(output.descriptor())};
   int status = 0;
   if (waitpid(child, &status, 0) == child && WIFEXITED(status)) ended.code = WEXITSTATUS(status);
@@ -148,17 +152,8 @@ void check_export_program(const std::string& format) {
 ExportProgram::ExportProgram(const std::string& format) : words_(export_program(format)) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw SetupError("export: no pipe can be made");
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-  posix_spawn_file_actions_addchdir_np(&actions, "/");
-  std::vector<char*> arguments = arguments_of(words_);
-  const int error =
-      posix_spawnp(&child_, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[0]);
+  child_ = start_program(words_, ends[0], STDIN_FILENO);
   input_ = ends[1];
-  if (error != 0) child_ = 0;
 }
 
 ExportProgram::~ExportProgram() {

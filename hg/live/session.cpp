@@ -477,15 +477,27 @@ void Session::take_message(std::string_view bytes, Reaction& reaction) {
   take_wrench(bytes, reaction);
 }
 
-void Session::take_hand(std::string_view payload, Reaction& reaction) {
-  messages::PoseStamped message;
+// Whether it is a message of this type in the frame base; refused otherwise.
+template <typename Stamped>
+bool Session::decode(std::string_view payload, std::string_view topic, std::string_view type,
+                     Stamped& message, Reaction& reaction) {
+  const std::string place = std::string(topic) + ": ";
   if (!messages::CdrReader(as_bytes(payload)).decode(message)) {
-    return refuse("/hand_target: must be a geometry_msgs/msg/PoseStamped", reaction);
+    refuse(place + "must be a " + std::string(type), reaction);
+    return false;
   }
   if (!is_base(message.header)) {
-    return refuse(
-        "/hand_target: frame_id must be 'base', got '" + shown(message.header.frame_id) + "'",
-        reaction);
+    refuse(place + "frame_id must be 'base', got '" + shown(message.header.frame_id) + "'",
+           reaction);
+    return false;
+  }
+  return true;
+}
+
+void Session::take_hand(std::string_view payload, Reaction& reaction) {
+  messages::PoseStamped message;
+  if (!decode(payload, kHandTargetTopic, "geometry_msgs/msg/PoseStamped", message, reaction)) {
+    return;
   }
   const messages::Point& p = message.pose.position;
   const messages::Quaternion& q = message.pose.orientation;
@@ -508,13 +520,9 @@ void Session::take_hand(std::string_view payload, Reaction& reaction) {
 
 void Session::take_wrench(std::string_view payload, Reaction& reaction) {
   messages::WrenchStamped message;
-  if (!messages::CdrReader(as_bytes(payload)).decode(message)) {
-    return refuse("/reference_wrench: must be a geometry_msgs/msg/WrenchStamped", reaction);
-  }
-  if (!is_base(message.header)) {
-    return refuse(
-        "/reference_wrench: frame_id must be 'base', got '" + shown(message.header.frame_id) + "'",
-        reaction);
+  if (!decode(payload, kReferenceWrenchTopic, "geometry_msgs/msg/WrenchStamped", message,
+              reaction)) {
+    return;
   }
   Vector6 w;
   w << vector(message.wrench.force), vector(message.wrench.torque);

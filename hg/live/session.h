@@ -110,6 +110,9 @@ class Session {
   void fetch_asset(const Json& json, Reaction& reaction) const;
   void call_service(std::string_view bytes, Reaction& reaction);
   void take_message(std::string_view bytes, Reaction& reaction);
+  template <typename Stamped>
+  static bool decode(std::string_view payload, std::string_view topic, std::string_view type,
+                     Stamped& message, Reaction& reaction);
   void take_hand(std::string_view payload, Reaction& reaction);
   void take_wrench(std::string_view payload, Reaction& reaction);
   void let_go(std::string_view topic, Reaction& reaction);
