@@ -73,12 +73,17 @@ def listen(page):
         pass
 
 
-def server_ticks(process):
-    """Processor time of the server's thread so far, s."""
+def processor_s(task):
+    """Processor time so far of a folder of a process or thread in /proc."""
+    fields = (task / "stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / 100
+
+
+def server_s(process):
+    """Processor time of the server's thread so far."""
     for task in pathlib.Path(f"/proc/{process.pid}/task").iterdir():
         if (task / "comm").read_text().strip() == "page server":
-            fields = (task / "stat").read_text().rpartition(")")[2].split()
-            return (int(fields[11]) + int(fields[12])) / 100
+            return processor_s(task)
     raise RuntimeError("there is no thread of the page server")
 
 
@@ -86,43 +91,63 @@ def quantile(times, share):
     return times[min(len(times) - 1, int(share * len(times)))]
 
 
-def main():
-    is_live = "--live" in sys.argv
-    program, seconds = ([*(word for word in sys.argv[1:] if word != "--live"), "10"])[:2]
-    seconds = float(seconds)
+class Timing:
+    """Cycle times of one run of the door at rest, by the number of visitors (pages, clients, bridges)."""
+
+    def __init__(self):
+        self.phases = []  # visitors, sorted cycle times in us
+        self.server = {}  # share of a core of the server's thread in each phase, by visitors
+
+    def times(self, count):
+        return sorted(time for visitors, times in self.phases if visitors == count for time in times)
+
+    def single(self, count, share):
+        """This quantile of each phase."""
+        return [quantile(times, share) for visitors, times in self.phases if visitors == count]
+
+    def print_table(self, name):
+        print(f"{name}  cycles  median us  99 % us  99.9 % us  server thread, % of a core")
+        for count, shares in self.server.items():
+            values = self.times(count)
+            print(f"{count:{len(name)}}  {len(values):6}  {quantile(values, .5):9.2f}  "
+                  f"{quantile(values, .99):7.1f}  {quantile(values, .999):9.1f}  "
+                  f"{100 * sum(shares) / len(shares):8.2f}")
+
+    def ratio(self, count, share):
+        return quantile(self.times(count), share) / quantile(self.times(0), share)
+
+
+def measure(program, counts, seconds, settle_s, visit):
+    """The Timing of a run. `visit(link, count)` brings that many visitors for a phase of `seconds`, after
+    `settle_s`, and is a generator: it goes on when the phase begins, when it ends (with its length in s),
+    and then takes them away."""
     folder = pathlib.Path(tempfile.mkdtemp())
-    process = subprocess.Popen([program, "run", "door", "--user", "mouse", "--no-browser", "--recordings", folder,
-                                "--duration", "100000"], stdout=subprocess.PIPE, text=True)
-    spans, cpu, rates = [], {}, []
+    run = subprocess.Popen([program, "run", "door", "--user", "mouse", "--no-browser", "--recordings", folder,
+                            "--duration", "100000"], stdout=subprocess.PIPE, text=True)
+    timing, spans = Timing(), []
     try:
-        while not (link := re.search(r"http://\S+", process.stdout.readline())):
+        while not (link := re.search(r"http://\S+", run.stdout.readline())):
             pass
         clock = Page(link[0])
-        offset = None
         clock.next("frame", lambda frame: frame["mode"] == "running")
         offset = time.monotonic() - clock.next("frame")["time_s"]
         clock.close()
-        for count in LIVE_PHASES if is_live else PHASES:
-            pages = [(LiveClient if is_live else Page)(link[0]) for _ in range(count)]
-            for page in pages:
-                page.frames = 0
-                target = page.listen if is_live else lambda page=page: listen(page)
-                threading.Thread(target=target, daemon=True).start()
-            time.sleep(SETTLE_S)
-            begin, ticks = time.monotonic(), server_ticks(process)
-            seen = sum(page.frames for page in pages)
+        for count in counts:
+            visitors = visit(link[0], count)
+            next(visitors)
+            time.sleep(settle_s)
+            next(visitors)
+            begin, spent = time.monotonic(), server_s(run)
             time.sleep(seconds)
             end = time.monotonic()
             spans.append((count, begin - offset, end - offset))
-            cpu.setdefault(count, []).append((server_ticks(process) - ticks) / (end - begin))
-            if pages:
-                seen = sum(page.frames for page in pages) - seen
-                rates.append(seen / count / (end - begin))
-            for page in pages:
-                page.socket.shutdown(2)
+            timing.server.setdefault(count, []).append((server_s(run) - spent) / (end - begin))
+            visitors.send(end - begin)
+            visitors.close()
     finally:
-        process.send_signal(signal.SIGINT)
-        process.communicate()
+        if run.poll() is None:
+            run.send_signal(signal.SIGINT)
+        run.communicate()
 
     from mcap_ros2.reader import read_ros2_messages
     phases = [[] for _ in spans]
@@ -131,25 +156,40 @@ def main():
             if begin <= message.ros_msg.record.time_s < end:
                 phase.append(message.ros_msg.cycle_time_us)
     shutil.rmtree(folder)
-    times = {0: [], 4: [], 1: []}
-    for phase, (count, _, _) in zip(phases, spans):
-        phase.sort()
-        times[count] += phase
-    print("count  cycles  median us  99 % us  99.9 % us  server thread, % of a core")
-    for count, values in times.items():
-        values.sort()
-        print(f"{count:5}  {len(values):6}  {quantile(values, .5):9.2f}  "
-              f"{quantile(values, .99):7.1f}  {quantile(values, .999):9.1f}  "
-              f"{100 * sum(cpu[count]) / len(cpu[count]):8.2f}")
+    timing.phases = [(count, sorted(phase)) for phase, (count, _, _) in zip(phases, spans)]
+    return timing
+
+
+def main():
+    is_live = "--live" in sys.argv
+    program, seconds = ([*(word for word in sys.argv[1:] if word != "--live"), "10"])[:2]
+    rates = []
+
+    def visit(link, count):
+        pages = [(LiveClient if is_live else Page)(link) for _ in range(count)]
+        for page in pages:
+            page.frames = 0
+            target = page.listen if is_live else lambda page=page: listen(page)
+            threading.Thread(target=target, daemon=True).start()
+        yield
+        seen = sum(page.frames for page in pages)
+        length_s = yield
+        if pages:
+            rates.append((sum(page.frames for page in pages) - seen) / count / length_s)
+        for page in pages:
+            page.socket.shutdown(2)
+        yield
+
+    timing = measure(program, LIVE_PHASES if is_live else PHASES, float(seconds), SETTLE_S, visit)
+    timing.print_table("count")
     if is_live:
         print(f"kB per second and client: {1e-3 * min(rates):.0f} .. {1e-3 * max(rates):.0f}")
     else:
         print(f"frames per second and page: {min(rates):.1f} .. {max(rates):.1f}")
-    alone = [quantile(phase, .5) for phase, span in zip(phases, spans) if span[0] == 0]
+    alone = timing.single(0, .5)
     print(f"median of single phases with none: {min(alone):.2f} .. {max(alone):.2f} us")
     for name, share in (("median", .5), ("99 %", .99), ("99.9 %", .999)):
-        ratio = quantile(times[4], share) / quantile(times[0], share)
-        print(f"four / none, {name}: {ratio:.3f}")
+        print(f"four / none, {name}: {timing.ratio(4, share):.3f}")
 
 
 if __name__ == "__main__":
