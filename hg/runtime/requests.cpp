@@ -13,10 +13,10 @@ ModeRequest arm_request(const CycleRecord& record) noexcept {
 }
 
 ModeRequest ready_request(const CycleRecord& record, bool is_held) noexcept {
+  if (record.tare == TareStatus::kUnderWay) return ModeRequest::kNone;
   if (record.is_tared) return arm_request(record);
-  const bool is_under_way = record.tare == TareStatus::kUnderWay;
   const bool is_hopeless = record.tare == TareStatus::kRefusedHeld && is_held;
-  return is_under_way || is_hopeless ? ModeRequest::kNone : ModeRequest::kTare;
+  return is_hopeless ? ModeRequest::kNone : ModeRequest::kTare;
 }
 
 }  // namespace

@@ -8,9 +8,12 @@
 namespace hg::runtime {
 
 /// Next request after the cycle of `record`: tares where the device needs it, arms once the latency
-/// is known, runs, and stops when `is_stopping`. Requests act on their edge: running is requested
-/// only while the handle is held; a tare refused because the handle was held is repeated only after
-/// its release.
+/// is known and no tare is under way, runs, and stops when `is_stopping`. Requests act on their
+/// edge: running is requested only while the handle is held; a tare refused because the handle was
+/// held is repeated only after its release.
 ModeRequest next_request(const CycleRecord& record, bool is_held, bool is_stopping) noexcept;
+
+/// Whether a request from outside ends the automatic ones: all but a tare, which changes no mode.
+inline bool takes_over(ModeRequest request) noexcept { return request != ModeRequest::kTare; }
 
 }  // namespace hg::runtime

@@ -11,6 +11,7 @@
 #include "hg/core/error.h"
 #include "hg/core/index.h"
 #include "hg/core/monotonic_clock.h"
+#include "hg/runtime/requests.h"
 
 namespace hg::runtime {
 namespace {
@@ -213,7 +214,7 @@ void Runtime::operate(bool is_stopping) noexcept {
   Request next;
   request_stops_.reset();
   if (requests_.pop(next)) {
-    is_operated_ = true;
+    is_operated_ = is_operated_ || takes_over(next.request);
     request_stops_ = next.stops;
   }
   if (const TimedPanel* due = timed_panels_.due(cycle_.time_s())) {
@@ -221,12 +222,12 @@ void Runtime::operate(bool is_stopping) noexcept {
     if (due->request != ModeRequest::kNone) {
       next.request = due->request;
       request_stops_.reset();
-      is_operated_ = true;
+      is_operated_ = is_operated_ || takes_over(due->request);
     }
   }
   const bool is_fault = session_.record().mode == Mode::kFault;
   is_operated_ = is_operated_ || (options_.stays_in_fault && is_fault);
-  if (is_operated_) session_.request(next.request);
+  if (is_operated_ || next.request != ModeRequest::kNone) session_.request(next.request);
   if (is_stopping) session_.stop();
 }
 

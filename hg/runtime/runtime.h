@@ -108,10 +108,10 @@ class Runtime {
   }
   /// Presses the reset button of a simulated safety controller for one cycle. Operator thread only.
   void press_reset() noexcept { is_reset_pressed_.store(true); }
-  /// Queues a mode request for one of the next cycles. From the first one on no request is made
-  /// automatically, except the stop at the end. `stops` is the desk's stop count at the time of the
-  /// request: a request older than the last stop is dropped. False if the queue is full. Operator
-  /// thread only.
+  /// Queues a mode request for one of the next cycles. From the first one that takes over
+  /// (takes_over()) no request is made automatically, except the stop at the end. `stops` is the
+  /// desk's stop count at the time of the request: a request older than the last stop is dropped.
+  /// False if the queue is full. Operator thread only.
   [[nodiscard]] bool request(ModeRequest request, std::uint32_t stops = 0) noexcept {
     return requests_.push({request, stops});
   }

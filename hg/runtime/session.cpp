@@ -24,7 +24,8 @@ void Session::read() noexcept HG_NONBLOCKING {
   const double time_s = cycle_.time_s();
   input = next_;
   // of the automatic operator: by what the last period showed
-  if (!is_operated_ || is_stopping_) {
+  const bool is_asked = is_operated_ || next_.request != ModeRequest::kNone;
+  if (!is_asked || is_stopping_) {
     input.request = next_request(now.record, cycle_.is_held(now.sensors), is_stopping_);
   }
   const ParameterChange due = changes_.due(time_s);
@@ -43,7 +44,7 @@ void Session::read() noexcept HG_NONBLOCKING {
 }
 
 void Session::request(ModeRequest request) noexcept {
-  is_operated_ = true;
+  is_operated_ = is_operated_ || takes_over(request);
   next_.request = request;
 }
 

@@ -44,8 +44,8 @@ class Session {
   /// Last part of a period: sends the command.
   void write() noexcept HG_NONBLOCKING { device_.write(sample_->command); }
 
-  /// Requests a mode in the next period only. From the first call on no request is made
-  /// automatically, except after stop().
+  /// Requests a mode in the next period only. From the first call on that takes over (takes_over())
+  /// no request is made automatically, except after stop().
   void request(ModeRequest request) noexcept;
   /// Requests a stop from the next period on, and no further run.
   void stop() noexcept { is_stopping_ = true; }

@@ -184,7 +184,7 @@ void describe(V& v, std::vector<TimedPanel>& panels) {
          "whether a person besides the user is in the scanner's field");
   v.flag("reset", now.panel.reset, "presses the reset button of the safety controller");
   v.choice("request", now.request, kRequests,
-           "requested mode; after the first request none is made automatically");
+           "requested mode; after the first request other than a tare none is made automatically");
   panels.push_back(now);
 }
 

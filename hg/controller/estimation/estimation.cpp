@@ -32,7 +32,7 @@ double Estimation::unwrapped(int joint, double measured, double last) const noex
 
 void Estimation::tare(bool is_asked_for, bool is_at_rest, EstimationState& state) const noexcept {
   TareState& tare = state.wrench.tare;
-  if (is_asked_for) begin(tare);
+  if (is_asked_for && tare.status != TareStatus::kUnderWay) begin(tare);
   if (tare.status == TareStatus::kUnderWay && !is_at_rest) {
     tare.status = TareStatus::kRefusedRunning;
   }

@@ -66,7 +66,8 @@ class Estimation {
   /// drives have power.
   void check_motion(const SensorFrame& sensors, bool is_on, EstimationState& state) const noexcept;
 
-  /// Starts a tare of the wrench when requested; ends a running one unless the device is at rest.
+  /// Starts a tare of the wrench when requested, unless one is under way; ends a running one unless
+  /// the device is at rest.
   void tare(bool is_asked_for, bool is_at_rest, EstimationState& state) const noexcept;
   /// Whether the wrench is tared, or the device needs no tare for running.
   bool is_tared(const EstimationState& state) const noexcept {

@@ -58,6 +58,14 @@ TEST(NextRequest, TaresFirstWhereTheDeviceNeedsIt) {
   EXPECT_EQ(next_request(ready(TareStatus::kRefusedMoving), false, false), ModeRequest::kTare);
 }
 
+TEST(NextRequest, ArmsAfterATareThatSomebodyElseHasBegun) {
+  CycleRecord record = ready(TareStatus::kUnderWay);
+  record.is_tared = record.is_latency_known = true;
+  EXPECT_EQ(next_request(record, false, false), ModeRequest::kNone);
+  record.tare = TareStatus::kRefusedHeld;  // the tare before it holds
+  EXPECT_EQ(next_request(record, true, false), ModeRequest::kArm);
+}
+
 TEST(NextRequest, RequestsATareOfAHeldHandleOnlyOnce) {
   EXPECT_EQ(next_request(ready(TareStatus::kRefusedHeld), true, false), ModeRequest::kNone);
   EXPECT_EQ(next_request(ready(TareStatus::kRefusedHeld), false, false), ModeRequest::kTare);

@@ -53,6 +53,18 @@ TEST(Session, ACallerWhoRequestsModesIsTheOnlyOneUntilTheStop) {
   }
 }
 
+TEST(Session, ATareFromOutsideEndsNothingThatIsAutomatic) {
+  for (const int at : {0, 100, 499, 500, 501, 600, 900}) {
+    Parts parts;
+    Session session(*parts.cycle, parts.device);
+    for (int k = 0; k < 2000; ++k) {
+      if (k == at) session.request(ModeRequest::kTare);
+      session.advance();
+    }
+    EXPECT_EQ(session.record().mode, Mode::kRunning) << at;
+  }
+}
+
 TEST(Session, AChangeWaitsWhileAPlannedOneIsDue) {
   Parts parts;
   const ParameterChange planned = {Parameter::kReferenceWrench, 0, 1.0};
