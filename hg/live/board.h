@@ -25,7 +25,7 @@ struct Board {
   std::vector<Parameter> parameters;
   std::array<std::optional<Message>, kTopicCount> latched;  ///< by channel
   /// Content of an asset; null = there is none of this name.
-  std::function<const std::string*(std::string_view name)> find_asset;
+  std::function<Bytes(std::string_view name)> find_asset;
 
   /// Null: there is none of this name.
   const Parameter* find_parameter(std::string_view name) const {

@@ -24,7 +24,9 @@ constexpr int kDeepest = 16;               // nested arrays and objects of a fra
 constexpr std::size_t kMostWaiting = 256;  // orders of a client without an answer
 constexpr std::size_t kMostWatched = 1000;
 constexpr std::size_t kMostPublished = 64;
+constexpr std::size_t kMostRefusals = 10;  // told for one frame
 constexpr std::size_t kLongestName = 200;  // bytes, of names that are repeated in answers
+constexpr std::size_t kLongestKnown = 64;  // bytes; a longer name is like none of ours
 constexpr double kFarthest = 100.0;        // m; beyond any device
 constexpr std::string_view kTrigger = "std_srvs/srv/Trigger";
 constexpr std::string_view kUnlimited = "unlimited";
@@ -120,7 +122,7 @@ Eigen::Vector3d vector(const messages::Vector3& v) { return {v.x, v.y, v.z}; }
 std::string no_such(std::string_view what, std::string_view name,
                     const std::vector<std::string>& names) {
   std::string text = "there is no " + std::string(what) + " '" + shown(name) + "'";
-  const std::string nearest = nearest_name(name.substr(0, kLongestName), names);
+  const std::string nearest = name.size() > kLongestKnown ? "" : nearest_name(name, names);
   return nearest.empty() ? text : text + "; the nearest name is '" + nearest + "'";
 }
 
@@ -313,6 +315,10 @@ void Session::set_parameters(const Json& json, Reaction& reaction) {
       continue;
     }
     const Parameter* parameter = board_.find_parameter(*name);
+    if (parameter == nullptr && reaction.refusals >= kMostRefusals) {
+      refuse({}, reaction);
+      continue;
+    }
     if (parameter == nullptr) {
       std::vector<std::string> names;
       for (const Parameter& known : board_.parameters) names.push_back(known.name);
@@ -324,7 +330,8 @@ void Session::set_parameters(const Json& json, Reaction& reaction) {
     setting.values.push_back(kNan);
     if (!(number_in >= parameter->min && number_in <= parameter->max)) {
       refuse(*name + ": must be a number of " + hg::to_text(parameter->min) + " .. " +
-                 hg::to_text(parameter->max) + " " + parameter->unit + ", got " +
+                 hg::to_text(parameter->max) + (parameter->unit.empty() ? "" : " ") +
+                 parameter->unit + ", got " +
                  (value == nullptr
                       ? "none"
                       : shown(value->dump(-1, ' ', true, Json::error_handler_t::replace))),
@@ -397,15 +404,15 @@ void Session::fetch_asset(const Json& json, Reaction& reaction) const {
   if (!request || uri == nullptr) {
     return refuse("fetchAsset must have requestId and uri", reaction);
   }
-  const std::string* content = board_.find_asset ? board_.find_asset(*uri) : nullptr;
+  Bytes content = board_.find_asset ? board_.find_asset(*uri) : nullptr;
   const std::string error = content != nullptr ? "" : "there is no asset " + shown(*uri);
   Frame frame{.is_text = false, .head = begin_frame(ServerOp::kAssetResponse)};
   append(frame.head, *request);
   append(frame.head, static_cast<std::uint8_t>(content == nullptr));
   append(frame.head, static_cast<std::uint32_t>(error.size()));
   frame.head += error;
-  if (content != nullptr) frame.payload = to_bytes(*content);
   reaction.is_refused = content == nullptr;
+  frame.payload = std::move(content);
   reaction.frames.push_back(std::move(frame));
 }
 
@@ -415,12 +422,14 @@ void Session::call_service(std::string_view bytes, Reaction& reaction) {
   const bool is_whole = live::take(bytes, call.service) && live::take(bytes, call.call) &&
                         live::take(bytes, length) && length <= bytes.size();
   if (!is_whole) return refuse("a service request is too short", reaction);
+  const bool is_known = call.service >= 1 && call.service <= kServices.size();
+  const bool is_stop = is_known && kServices[call.service - 1] == "stop";
   std::string why_not;
-  if (call.service < 1 || call.service > kServices.size()) {
+  if (!is_known) {
     why_not = "there is no service of this id";
   } else if (bytes.substr(0, length) != "cdr") {
     why_not = "the encoding of the request must be cdr";
-  } else if (calls_.size() >= kMostWaiting) {
+  } else if (!is_stop && calls_.size() >= kMostWaiting) {
     why_not = "too many requests are waiting";
   }
   if (!why_not.empty()) {
@@ -552,7 +561,9 @@ Frame Session::status(int level, std::string_view text, std::string_view id) {
 
 void Session::refuse(std::string_view why, Reaction& reaction) {
   reaction.is_refused = true;
-  reaction.frames.push_back(status(kWarning, why));
+  if (++reaction.refusals > kMostRefusals + 1) return;
+  const bool is_told = reaction.refusals <= kMostRefusals;
+  reaction.frames.push_back(status(kWarning, is_told ? why : "and more that was refused"));
 }
 
 }  // namespace hg::live

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "hg/core/error.h"
@@ -32,6 +33,7 @@ std::vector<double> values_of(const std::vector<config::FormField>& form) {
 constexpr std::string_view kRunIsOver = "the run is over: start it again";
 constexpr std::string_view kStopped = "a stop came after it";
 constexpr std::uint32_t kMostSamples = 10'000;  // in which a request must be seen
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // equal to no wrench
 
 struct NamedRequest {
   std::string_view name;
@@ -167,6 +169,8 @@ void RunPage::begin_live(std::chrono::system_clock::time_point start) {
                 scenario.device.model.rate_Hz, start);
   marks_ = 0;
   wrench_client_ = 0;
+  next_wrench_.reset();
+  sent_wrench_.setConstant(kUnknown);
   server_.latch_live(
       live_->description(live::Topic::kDeviceDescription, scenario::device_description(scenario)));
   server_.latch_live(
@@ -221,6 +225,7 @@ void RunPage::observe(const Sample& sample, const Note& note) {
   const int field = config::field_of(form_, sample.operator_input.change);
   if (field < 0) return;
   if (sample.record.change == ChangeStatus::kRefused) {
+    forget_sent(form_[field]);
     note("refused", form_[field].name + " stays as it is");
   } else {
     values_[field] = sample.operator_input.change.value;
@@ -250,8 +255,11 @@ void RunPage::publish() {
 
 void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
   HandTarget target;
-  if (server_.take_hand_target(target) && runtime != nullptr) runtime->set_hand_target(target);
-  follow_reference_wrench(runtime, note);
+  if (server_.take_hand_target(target)) next_target_ = target;
+  if (next_target_ && (runtime == nullptr || runtime->set_hand_target(*next_target_))) {
+    next_target_.reset();
+  }
+  take_reference_wrench(runtime, note);
   for (const Command& command : server_.take_commands()) take(command, runtime, note);
   while (!asked_.empty() && asked_.front().command.stops != desk_->stops()) {
     server_.answer(asked_.front().command, kStopped);
@@ -271,6 +279,13 @@ void RunPage::follow(runtime::Runtime* runtime, const Note& note) {
   if (has_news_ && server_.is_due()) publish();
 }
 
+// The next reference wrench is sent whatever was sent before.
+void RunPage::forget_sent(const config::FormField& field) {
+  for (const ParameterChange& change : field.changes) {
+    if (change.parameter == Parameter::kReferenceWrench) sent_wrench_[change.index] = kUnknown;
+  }
+}
+
 // A stream of changes, as of a reference wrench, is not sent to the pages value by value.
 void RunPage::send_values() {
   constexpr std::chrono::milliseconds kPeriod(30);
@@ -283,7 +298,7 @@ void RunPage::send_values() {
 
 void RunPage::take(const Command& command, runtime::Runtime* runtime, const Note& note) {
   has_news_ = true;
-  if (command.is_done) return note(name_of_done(command), text_of_done(command));
+  if (command.is_done) return note_done(command, note);
   const auto order = std::ranges::find(orders(), command.name, &Order::name);
   const bool is_known = order != orders().end();
   std::string why_not;
@@ -300,6 +315,19 @@ void RunPage::take(const Command& command, runtime::Runtime* runtime, const Note
     if (is_under_way && why_not.empty()) return;
   }
   server_.answer(command, why_not);
+}
+
+// A command that is repeated many times a second is told twice a second.
+void RunPage::note_done(const Command& command, const Note& note) {
+  constexpr std::chrono::milliseconds kPeriod(500);
+  std::string text = text_of_done(command);
+  const std::string_view name = name_of_done(command);
+  const auto now = std::chrono::steady_clock::now();
+  const bool is_same = name == done_.first && text == done_.second;
+  if (is_same && now - done_at_ < kPeriod) return;
+  done_ = {std::string(name), text};
+  done_at_ = now;
+  note(name, text);
 }
 
 void RunPage::note_lost(const Note& note) {
@@ -339,33 +367,52 @@ std::string RunPage::mark(const Command& command, runtime::Runtime*, const Note&
 }
 
 // Like the settings of the same names, but without a line of text for each message.
-void RunPage::follow_reference_wrench(runtime::Runtime* runtime, const Note& note) {
+void RunPage::take_reference_wrench(runtime::Runtime* runtime, const Note& note) {
   Vector6 w;
   std::uint64_t client = 0;
-  if (!server_.take_reference_wrench(w, client) || runtime == nullptr) return;
-  if (client != wrench_client_) {
+  const bool is_new = server_.take_reference_wrench(w, client);
+  if (runtime == nullptr) return next_wrench_.reset();
+  if (is_new && client != wrench_client_) {
     note("reference_wrench",
          client == 0 ? std::string("ended: zero") : fmt::format("given by page {}", client));
     wrench_client_ = client;
   }
+  if (is_new && accepts(w, client)) next_wrench_ = w;
+  if (next_wrench_ && send_wrench(*runtime, *next_wrench_)) next_wrench_.reset();
+}
+
+// All components or none: a part would have a direction that nobody asked for.
+bool RunPage::accepts(const Vector6& w, std::uint64_t client) {
   for (int i = 0; i < 6; ++i) {
-    const int number =
-        config::field_of(form_, {Parameter::kReferenceWrench, static_cast<std::int16_t>(i), 0.0});
-    if (number < 0 || form_[number].changes.empty()) continue;
-    const std::string why_not = config::refusal(form_, number, w[i], values_);
-    if (!why_not.empty()) {
-      server_.warn(client, form_[number].name + ": " + why_not);
-      continue;
-    }
-    if (w[i] == values_[number]) continue;
+    const int number = field_of_wrench(i);
+    const std::string why_not =
+        number < 0 ? std::string() : config::refusal(form_, number, w[i], values_);
+    if (why_not.empty()) continue;
+    server_.warn(client, "/reference_wrench: " + why_not);
+    return false;
+  }
+  return true;
+}
+
+// Field of the form; -1 = this run has none that can be changed.
+int RunPage::field_of_wrench(int i) const {
+  const int number =
+      config::field_of(form_, {Parameter::kReferenceWrench, static_cast<std::int16_t>(i), 0.0});
+  return number < 0 || form_[number].changes.empty() ? -1 : number;
+}
+
+// Sends the components that differ from those sent last; false when some have no place yet.
+bool RunPage::send_wrench(runtime::Runtime& runtime, const Vector6& w) {
+  for (int i = 0; i < 6; ++i) {
+    const int number = field_of_wrench(i);
+    if (number < 0 || w[i] == sent_wrench_[i]) continue;
     for (ParameterChange change : form_[number].changes) {
       change.value = w[i];
-      if (!runtime->change(change)) {
-        server_.warn(client, "/reference_wrench: too many changes are waiting");
-        return;
-      }
+      if (!runtime.change(change)) return false;
     }
+    sent_wrench_[i] = w[i];
   }
+  return true;
 }
 
 std::string RunPage::set_pace(const Command& command, runtime::Runtime* runtime, const Note& note) {
@@ -451,6 +498,7 @@ std::string RunPage::set(const Command& command, runtime::Runtime* runtime, cons
   const auto number = static_cast<int>(field - form_.begin());
   std::string why_not = config::refusal(form_, number, command.value, values_);
   if (!why_not.empty()) return why_not;
+  forget_sent(*field);
   for (ParameterChange change : field->changes) {
     change.value = command.value;
     if (!runtime->change(change)) return "too many changes are waiting";

@@ -14,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hg/analysis/fault_figures.h"
@@ -97,7 +98,12 @@ class RunPage {
   void drop_overtaken(const Note& note);
   void note_lost(const Note& note);
   void send_values();
-  void follow_reference_wrench(runtime::Runtime* runtime, const Note& note);
+  void take_reference_wrench(runtime::Runtime* runtime, const Note& note);
+  bool accepts(const Vector6& w, std::uint64_t client);
+  int field_of_wrench(int i) const;
+  bool send_wrench(runtime::Runtime& runtime, const Vector6& w);
+  void forget_sent(const config::FormField& field);
+  void note_done(const viewer_server::Command& command, const Note& note);
   void begin_live(std::chrono::system_clock::time_point start);
   void publish_live(const Sample& sample);
 
@@ -131,12 +137,18 @@ class RunPage {
   std::optional<HandAnalysis> analysis_;
   std::optional<live::Publisher> live_;  ///< messages of this run for live clients
   std::uint64_t wrench_client_ = 0;      ///< live client that gives the reference wrench; 0 = none
-  int marks_ = 0;                        ///< marks in this run
+  std::optional<Vector6> next_wrench_;   ///< accepted, and not yet sent as a whole
+  Vector6 sent_wrench_ = Vector6::Zero();  ///< components sent last; NaN: unknown
+  std::optional<HandTarget> next_target_;  ///< not yet sent
+  int marks_ = 0;                          ///< marks in this run
   viewer_server::View view_;
   std::unique_ptr<Sample> newest_;
   bool has_news_ = false;  ///< there is news not yet shown on any page
   bool stop_was_asked_ = false;
   bool has_next_ = false;
+  std::pair<std::string, std::string>
+      done_;  ///< name and text of the last report of a command that the desk has executed
+  std::chrono::steady_clock::time_point done_at_;
   std::deque<Asked> asked_;        ///< requested modes, in order
   viewer_server::Command chosen_;  ///< command from which `prepared_` results
   std::future<std::string>

@@ -13,7 +13,9 @@ namespace hg::runtime {
 /// held is repeated only after its release.
 ModeRequest next_request(const CycleRecord& record, bool is_held, bool is_stopping) noexcept;
 
-/// Whether a request from outside ends the automatic ones: all but a tare, which changes no mode.
-inline bool takes_over(ModeRequest request) noexcept { return request != ModeRequest::kTare; }
+/// Whether a request from outside ends the automatic ones: one that changes the mode does.
+inline bool takes_over(ModeRequest request) noexcept {
+  return request != ModeRequest::kTare && request != ModeRequest::kNone;
+}
 
 }  // namespace hg::runtime

@@ -213,7 +213,8 @@ void Runtime::operate(bool is_stopping) noexcept {
   script_panel_.reset = false;
   Request next;
   request_stops_.reset();
-  if (requests_.pop(next)) {
+  bool is_asked = requests_.pop(next);
+  if (is_asked) {
     is_operated_ = is_operated_ || takes_over(next.request);
     request_stops_ = next.stops;
   }
@@ -222,12 +223,13 @@ void Runtime::operate(bool is_stopping) noexcept {
     if (due->request != ModeRequest::kNone) {
       next.request = due->request;
       request_stops_.reset();
+      is_asked = true;
       is_operated_ = is_operated_ || takes_over(due->request);
     }
   }
   const bool is_fault = session_.record().mode == Mode::kFault;
   is_operated_ = is_operated_ || (options_.stays_in_fault && is_fault);
-  if (is_operated_ || next.request != ModeRequest::kNone) session_.request(next.request);
+  if (is_operated_ || is_asked) session_.request(next.request);
   if (is_stopping) session_.stop();
 }
 

@@ -99,8 +99,11 @@ class Runtime {
   bool pop(Sample& sample) noexcept { return samples_.pop(sample); }
   /// Problems of failed or slow solves. One observer thread only.
   const hqp::ProblemCapture& kept_problems() const noexcept { return cycle_.kept_problems(); }
-  /// Sets the target of a simulated hand from the next cycle on. One operator thread only.
-  void set_hand_target(const HandTarget& target) noexcept { hand_targets_.push(target); }
+  /// Sets the target of a simulated hand from the next cycle on. False if it has no place, as in a
+  /// long pause: to be repeated. One operator thread only.
+  [[nodiscard]] bool set_hand_target(const HandTarget& target) noexcept {
+    return hand_targets_.push(target);
+  }
   /// Queues a parameter change of the twin for one of the next cycles, after due changes of
   /// RuntimeOptions. False if the queue is full. Operator thread only.
   [[nodiscard]] bool change(const ParameterChange& change) noexcept {

@@ -1,5 +1,7 @@
 #include "hg/runtime/session.h"
 
+#include <utility>
+
 #include "hg/runtime/requests.h"
 
 namespace hg::runtime {
@@ -24,8 +26,7 @@ void Session::read() noexcept HG_NONBLOCKING {
   const double time_s = cycle_.time_s();
   input = next_;
   // of the automatic operator: by what the last period showed
-  const bool is_asked = is_operated_ || next_.request != ModeRequest::kNone;
-  if (!is_asked || is_stopping_) {
+  if (!std::exchange(is_asked_, is_operated_) || is_stopping_) {
     input.request = next_request(now.record, cycle_.is_held(now.sensors), is_stopping_);
   }
   const ParameterChange due = changes_.due(time_s);
@@ -45,6 +46,7 @@ void Session::read() noexcept HG_NONBLOCKING {
 
 void Session::request(ModeRequest request) noexcept {
   is_operated_ = is_operated_ || takes_over(request);
+  is_asked_ = true;
   next_.request = request;
 }
 

@@ -44,8 +44,8 @@ class Session {
   /// Last part of a period: sends the command.
   void write() noexcept HG_NONBLOCKING { device_.write(sample_->command); }
 
-  /// Requests a mode in the next period only. From the first call on that takes over (takes_over())
-  /// no request is made automatically, except after stop().
+  /// Requests a mode, or nothing, in the next period only. From the first request on that takes
+  /// over (takes_over()) none is made automatically, except after stop().
   void request(ModeRequest request) noexcept;
   /// Requests a stop from the next period on, and no further run.
   void stop() noexcept { is_stopping_ = true; }
@@ -74,6 +74,7 @@ class Session {
   TimedLoads loads_;
   OperatorFrame next_;
   bool is_operated_ = false;  ///< Requests come from the caller
+  bool is_asked_ = false;     ///< The next period has a request from outside, or none on purpose
   bool is_stopping_ = false;
   std::unique_ptr<Sample> sample_ = std::make_unique<Sample>();
 };

@@ -138,7 +138,8 @@ AssetTable load_page(const std::filesystem::path& page) {
       throw SetupError("viewer: page folder must hold at most 64 MB, got more in " + page.string());
     }
     const auto path = std::filesystem::path("/") / entry.path().lexically_relative(page);
-    assets[path.generic_string()] = {content_type(entry.path()), read_file(entry.path()), true};
+    assets[path.generic_string()] = {content_type(entry.path()),
+                                     live::to_bytes(read_file(entry.path())), true};
   }
   assets["/"] = assets["/index.html"];
   return assets;

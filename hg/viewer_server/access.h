@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "hg/live/frame.h"
+
 namespace hg::viewer_server {
 
 /// Random token: 128 random bits of the operating system as 32 hexadecimal digits.
@@ -55,7 +57,7 @@ std::string_view protocol_token(std::string_view protocols) noexcept;
 /// File or document that can be requested.
 struct Asset {
   std::string content_type;
-  std::string content;
+  live::Bytes content;     ///< shared with what is being sent
   bool is_public = false;  ///< served without a token, too
 };
 

@@ -47,7 +47,7 @@ constexpr auto kRequestTimeout = std::chrono::seconds(15);
 constexpr auto kStrangerTimeout = std::chrono::seconds(5);  // time limit for a complete request
 constexpr std::size_t kMostStrangers = 32;  // connections that have not shown the token
 constexpr long kMostKnown = 64;             // connections that have shown the token
-constexpr std::size_t kMostLive = 16;       // clients of the live interface
+constexpr long kMostLive = 16;              // clients of the live interface
 constexpr std::size_t kMaxEvents = 200;     // kept for pages that connect later, and per page
 constexpr std::size_t kMaxCommands = 64;    // waiting for the program
 constexpr std::size_t kMaxDone = 256;       // including those for information only
@@ -117,8 +117,9 @@ struct Hub {
   Text newest_frame;
   Text values;  ///< encoded values of the settings
   std::uint64_t next_page = 1;
-  std::deque<std::weak_ptr<Visitor>> strangers;          ///< oldest first
-  std::shared_ptr<int> known = std::make_shared<int>();  ///< one more owner per connection
+  std::deque<std::weak_ptr<Visitor>> strangers;                ///< oldest first
+  std::shared_ptr<int> known = std::make_shared<int>();        ///< one more owner per connection
+  std::shared_ptr<int> live_places = std::make_shared<int>();  ///< likewise, of live clients
 
   std::atomic<std::uint64_t> clients{0};
   std::atomic<std::uint64_t> live_count{0};

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -19,18 +21,23 @@
 
 namespace hg::viewer_server {
 
-constexpr std::size_t kMostData = 1u << 20;       // bytes of messages that wait for a slow client
-constexpr std::size_t kMostAnswers = 256u << 20;  // bytes of other frames; more: it is gone
-constexpr double kFrameRate_Hz = 500.0;           // accepted frames
-constexpr double kOrderRate_Hz = 200.0;           // a file of parameters comes at once
+constexpr std::size_t kMostData = 1u << 20;     // bytes of messages that wait for a slow client
+constexpr std::size_t kMostAnswers = 8u << 20;  // bytes of other frames; more: it is gone
+constexpr double kFrameRate_Hz = 500.0;         // accepted frames
+constexpr double kOrderRate_Hz = 200.0;         // a file of parameters comes at once
+constexpr double kBytesPerSecond = 1 << 20;     // of frames that are read
 
 /// Connection of one client; destroyed when it closes.
 class LiveClient : public std::enable_shared_from_this<LiveClient> {
  public:
-  LiveClient(Hub& hub, beast::tcp_stream&& stream, std::shared_ptr<int> connection)
+  /// `connection` and `place` are its shares of what the hub has, until it closes.
+  LiveClient(Hub& hub, beast::tcp_stream&& stream, std::shared_ptr<int> connection,
+             std::shared_ptr<int> place)
       : hub_(hub),
         socket_(std::move(stream)),
+        pause_(socket_.get_executor()),
         connection_(std::move(connection)),
+        place_(std::move(place)),
         session_(hub.board) {}
 
   void start(const Request& request, std::string_view protocol) {
@@ -70,7 +77,7 @@ class LiveClient : public std::enable_shared_from_this<LiveClient> {
 
   void answer(std::vector<live::Frame> frames) {
     for (live::Frame& frame : frames) {
-      answer_bytes_ += frame.size();
+      answer_bytes_ += own_bytes(frame);
       answers_.push_back(std::move(frame));
     }
     if (answer_bytes_ > kMostAnswers) return beast::get_lowest_layer(socket_).close();
@@ -87,16 +94,29 @@ class LiveClient : public std::enable_shared_from_this<LiveClient> {
   std::uint64_t number = 0;
 
  private:
+  /// Memory of an answer: its payload is shared with all who get it.
+  static std::size_t own_bytes(const live::Frame& frame) {
+    return sizeof frame + frame.head.size();
+  }
+
   void read() {
-    socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+    socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t size) {
       if (error) {
         if (error == websocket::error::message_too_big) ++self->hub_.refused;
         self->hub_.leave(self);
         return;
       }
+      const double pause_s = self->byte_rate_.charge(static_cast<double>(size), now_s());
       self->listen();
-      self->read();
+      self->read_after(pause_s);
     });
+  }
+
+  /// Reading costs the server time that all share: who sends too much is read later.
+  void read_after(double pause_s) {
+    if (pause_s <= 0.0) return read();
+    pause_.expires_after(std::chrono::microseconds(static_cast<std::int64_t>(1e6 * pause_s)));
+    pause_.async_wait([self = shared_from_this()](error_code) { self->read(); });
   }
 
   void listen() {
@@ -137,7 +157,7 @@ class LiveClient : public std::enable_shared_from_this<LiveClient> {
     if (!answers_.empty()) {
       current_ = std::move(answers_.front());
       answers_.pop_front();
-      answer_bytes_ -= current_.size();
+      answer_bytes_ -= own_bytes(current_);
     } else if (!data_.empty()) {
       current_ = std::move(data_.front());
       data_.pop_front();
@@ -163,11 +183,13 @@ class LiveClient : public std::enable_shared_from_this<LiveClient> {
 
   Hub& hub_;
   websocket::stream<beast::tcp_stream> socket_;
-  std::shared_ptr<int> connection_;
+  asio::steady_timer pause_;
+  std::shared_ptr<int> connection_, place_;
   beast::flat_buffer buffer_;
   live::Session session_;
   MessageRate rate_{kFrameRate_Hz};
   MessageRate order_rate_{kOrderRate_Hz};
+  MessageRate byte_rate_{kBytesPerSecond};
   std::deque<live::Frame> answers_, data_;  // waiting
   std::size_t answer_bytes_ = 0, data_bytes_ = 0;
   std::uint64_t lost_ = 0;  // messages dropped since the last status

@@ -56,7 +56,7 @@ std::string with_meshes(const fs::path& urdf, const std::string& text, std::stri
     if (!file.empty()) {
       const std::string extension = file.extension() == ".dae" ? ".dae" : ".stl";
       known->second = std::string(folder) + std::to_string(addresses.size()) + extension;
-      assets[known->second] = {"application/octet-stream", read_file(file)};
+      assets[known->second] = {"application/octet-stream", live::to_bytes(read_file(file))};
     }
     served.append(text, copied, begin - copied).append(known->second);
     copied = end;

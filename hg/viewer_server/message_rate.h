@@ -12,14 +12,25 @@ class MessageRate {
 
   /// Whether to accept this message; false when it exceeds the rate.
   bool admit(double now_s) noexcept {
-    credit_ = std::min(rate_Hz_, credit_ + rate_Hz_ * (now_s - last_s_));
-    last_s_ = now_s;
+    earn(now_s);
     if (credit_ < 1.0) return false;
     credit_ -= 1.0;
     return true;
   }
 
+  /// Counts `amount` in any case; returns for how long, s, nothing more is to be taken.
+  double charge(double amount, double now_s) noexcept {
+    earn(now_s);
+    credit_ -= amount;
+    return std::max(0.0, -credit_ / rate_Hz_);
+  }
+
  private:
+  void earn(double now_s) noexcept {
+    credit_ = std::min(rate_Hz_, credit_ + rate_Hz_ * (now_s - last_s_));
+    last_s_ = now_s;
+  }
+
   double rate_Hz_;
   double credit_ = rate_Hz_;
   double last_s_ = 0.0;

@@ -45,18 +45,26 @@ class Page : public std::enable_shared_from_this<Page> {
     write();
   }
 
-  void notify(Text event) {
-    if (events_.size() == kMaxEvents) {
-      events_.pop_front();
-      ++hub_.dropped;
-    }
-    events_.push_back(std::move(event));
-    write();
+  void notify(Text event) { queue(std::move(event), events_); }
+
+  /// Answers go before events, which may be many.
+  void answer(double id, std::string_view refusal) {
+    queue(to_text(encode_answer(id, refusal)), answers_);
   }
 
   std::uint64_t number = 0;
 
  private:
+  // The oldest are dropped when they are too many.
+  void queue(Text text, std::deque<Text>& waiting) {
+    if (waiting.size() == kMaxEvents) {
+      waiting.pop_front();
+      ++hub_.dropped;
+    }
+    waiting.push_back(std::move(text));
+    write();
+  }
+
   void read() {
     socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error) {
@@ -94,7 +102,7 @@ class Page : public std::enable_shared_from_this<Page> {
     const auto refusal = hub_.take(command, command_rate_);
     if (!refusal) return;
     if (!refusal->empty()) return refuse(command.id, *refusal);
-    notify(to_text(encode_answer(command.id, {})));
+    answer(command.id, {});
   }
 
   void hold(double sequence) {
@@ -107,12 +115,15 @@ class Page : public std::enable_shared_from_this<Page> {
 
   void refuse(double id, std::string_view reason) {
     ++hub_.refused;
-    notify(to_text(encode_answer(id, reason)));
+    answer(id, reason);
   }
 
   void write() {
     if (current_) return;  // one at a time; its completion calls again
-    if (!events_.empty()) {
+    if (!answers_.empty()) {
+      current_ = std::move(answers_.front());
+      answers_.pop_front();
+    } else if (!events_.empty()) {
       current_ = std::move(events_.front());
       events_.pop_front();
     } else if (frame_) {
@@ -134,10 +145,10 @@ class Page : public std::enable_shared_from_this<Page> {
   beast::flat_buffer buffer_;
   MessageRate rate_{kMessageRate_Hz};
   MessageRate command_rate_{kCommandRate_Hz};
-  double last_hold_ = -1.0;  // sequence number
-  std::deque<Text> events_;  // waiting
-  Text frame_;               // waiting
-  Text current_;             // being sent
+  double last_hold_ = -1.0;            // sequence number
+  std::deque<Text> answers_, events_;  // waiting
+  Text frame_;                         // waiting
+  Text current_;                       // being sent
 };
 
 }  // namespace hg::viewer_server

@@ -35,11 +35,11 @@ namespace hg::viewer_server {
 
 Hub::Hub(const Eigen::AlignedBox3d& limits) : hand(limits) {
   board.session = random_token().substr(0, 8);
-  board.find_asset = [this](std::string_view name) -> const std::string* {
+  board.find_asset = [this](std::string_view name) -> live::Bytes {
     const auto address = live_assets.find(name);
     if (address == live_assets.end()) return nullptr;
     const auto asset = assets.find(address->second);
-    return asset == assets.end() ? nullptr : &asset->second.content;
+    return asset == assets.end() ? nullptr : asset->second.content;
   };
 }
 
@@ -177,7 +177,7 @@ std::optional<std::string> Hub::take(Command command, MessageRate& rate) {
 
 void Hub::answer(std::uint64_t page, double id, std::string_view refusal) {
   for (const auto& candidate : pages) {
-    if (candidate->number == page) candidate->notify(to_text(encode_answer(id, refusal)));
+    if (candidate->number == page) candidate->answer(id, refusal);
   }
   for (const auto& candidate : live_clients) {
     if (candidate->number == page) candidate->answer(id, refusal);
@@ -231,12 +231,13 @@ void add_urdf(const SceneChain& chain, std::string_view address, std::string_vie
   if (chain.urdf.empty()) return;
   const std::string text = chain.urdf_text.empty() ? read_file(chain.urdf) : chain.urdf_text;
   MeshAddresses meshes;
-  assets[std::string(address)] = {"application/xml",
-                                  with_meshes(chain.urdf, text, folder, assets, meshes)};
+  assets[std::string(address)] = {
+      "application/xml", live::to_bytes(with_meshes(chain.urdf, text, folder, assets, meshes))};
   live_assets.merge(meshes);
   // live clients fetch meshes by their names
   const std::string original = std::string(folder) + "original.urdf";
-  assets[original] = {"application/xml", chain.live_text.empty() ? text : chain.live_text};
+  assets[original] = {"application/xml",
+                      live::to_bytes(chain.live_text.empty() ? text : chain.live_text)};
   live_assets[std::string(kLiveAssets) + std::string(address.substr(address.rfind('/')))] =
       original;
 }
@@ -244,7 +245,7 @@ void add_urdf(const SceneChain& chain, std::string_view address, std::string_vie
 // Assets of a scene, those of the live interface by the names of the meshes in the URDFs.
 AssetTable assets_of(const Scene& scene, double update_rate_hz, MeshAddresses& live_assets) {
   AssetTable assets;
-  assets["/scene.json"] = {"application/json", encode_scene(scene, update_rate_hz)};
+  assets["/scene.json"] = {"application/json", live::to_bytes(encode_scene(scene, update_rate_hz))};
   add_urdf(scene.device, kDeviceAddress, "/models/device/", assets, live_assets);
   add_urdf(scene.twin, kTwinAddress, "/models/twin/", assets, live_assets);
   return assets;

@@ -87,10 +87,10 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     if (protocol.empty()) {
       refuse(http::status::bad_request,
              "the subprotocol must be foxglove.sdk.v1 or foxglove.websocket.v1");
-    } else if (hub_.live_clients.size() >= kMostLive) {
+    } else if (hub_.live_places.use_count() > kMostLive) {
       refuse(http::status::service_unavailable, "too many live clients");
     } else {
-      std::make_shared<LiveClient>(hub_, std::move(stream_), std::move(known_))
+      std::make_shared<LiveClient>(hub_, std::move(stream_), std::move(known_), hub_.live_places)
           ->start(request, protocol);
     }
   }
@@ -101,7 +101,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     return asset == hub_.assets.end() ? nullptr : &asset->second;
   }
 
-  void serve(const Asset& asset) { respond(http::status::ok, asset.content_type, asset.content); }
+  void serve(const Asset& asset) { respond(http::status::ok, asset.content_type, *asset.content); }
 
   void refuse(http::status status, std::string_view reason) {
     ++hub_.refused;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -37,7 +38,7 @@ class SessionTest : public ::testing::Test {
     board_.parameters = {{"hinge.damping", "Nms/rad", 2.0, 0.0, 50.0},
                          {"hinge.lower", "rad", -INFINITY, -1.0, 1.0}};
     board_.find_asset = [this](std::string_view name) {
-      return name == "package://hapticgiant/device.urdf" ? &urdf_ : nullptr;
+      return name == "package://hapticgiant/device.urdf" ? urdf_ : nullptr;
     };
   }
 
@@ -73,7 +74,7 @@ class SessionTest : public ::testing::Test {
     EXPECT_FALSE(reaction.is_refused);
   }
 
-  const std::string urdf_ = "<robot/>";
+  const Bytes urdf_ = to_bytes("<robot/>");
   Board board_;
   Session session_{board_};
 };
@@ -212,6 +213,35 @@ TEST_F(SessionTest, CallsAServiceAndAnswersIt) {
   EXPECT_EQ(response.message, "the sensor needs a tare");
 }
 
+TEST_F(SessionTest, TakesAStopHoweverManyRequestsWait) {
+  const auto call = [&](std::size_t service) {
+    std::string frame(1, '\x02');
+    append(frame, static_cast<std::uint32_t>(service + 1));
+    append(frame, std::uint32_t{7});
+    append(frame, std::uint32_t{3});
+    return session_.take(frame + "cdr", false);
+  };
+  const auto number = [](std::string_view name) {
+    return static_cast<std::size_t>(std::ranges::find(kServices, name) - kServices.begin());
+  };
+  int taken = 0;
+  while (!call(number("tare")).orders.empty()) ASSERT_LT(++taken, 1000);
+  const Reaction stop = call(number("stop"));
+  ASSERT_EQ(stop.orders.size(), 1u);
+  EXPECT_EQ(stop.orders.front().name, "stop");
+}
+
+TEST_F(SessionTest, TellsTheFirstRefusalsOfAFrameOnly) {
+  Json parameters = Json::array();
+  for (int i = 0; i < 1000; ++i) {
+    parameters.push_back({{"name", "unknown" + std::to_string(i)}, {"value", 1.0}});
+  }
+  const Reaction reaction = take({{"op", "setParameters"}, {"parameters", parameters}});
+  EXPECT_TRUE(reaction.is_refused);
+  EXPECT_EQ(reaction.refusals, 1000u);
+  EXPECT_EQ(reaction.frames.size(), 11u);
+}
+
 TEST_F(SessionTest, AnswersAServiceThatDoesNotExist) {
   std::string request("\x02", 1);
   for (const std::uint32_t number : {99u, 5u, 3u}) append(request, number);
@@ -276,7 +306,7 @@ TEST_F(SessionTest, SendsAssetsOfTheTableOnly) {
   const Reaction found = fetch("package://hapticgiant/device.urdf");
   ASSERT_EQ(found.frames.size(), 1u);
   EXPECT_EQ(found.frames[0].head, std::string("\x04\x09\0\0\0\0\0\0\0\0", 10));
-  EXPECT_EQ(*found.frames[0].payload, urdf_);
+  EXPECT_EQ(*found.frames[0].payload, *urdf_);
   const Reaction none = fetch("/etc/passwd");
   EXPECT_EQ(none.frames[0].head[5], '\x01');
   EXPECT_EQ(none.frames[0].payload, nullptr);

@@ -282,6 +282,14 @@ TEST_F(PagesAtWork, ARequestBeforeAStopStartsNothingAfterIt) {
   EXPECT_EQ(after(3), Mode::kRunning);
 }
 
+TEST_F(PagesAtWork, ATareOfAPageBeforeTheRunDoesNotPreventIt) {
+  begin();
+  for (const ModeRequest request : {ModeRequest::kNone, ModeRequest::kNone, ModeRequest::kTare}) {
+    EXPECT_TRUE(runtime_->request(request, desk_.stops()));
+  }
+  EXPECT_EQ(after(1000), Mode::kRunning);
+}
+
 TEST_F(PagesAtWork, TheRunEndsOnRequestOfAPage) {
   begin();
   ASSERT_EQ(after(100), Mode::kRunning);
@@ -364,7 +372,7 @@ TEST(Runtime, HandsTheHandTargetThrough) {
   HandTarget target;
   target.active = true;
   target.p_B.x() = 0.25;
-  runtime.set_hand_target(target);
+  ASSERT_TRUE(runtime.set_hand_target(target));
   runtime.start();
   auto sample = std::make_unique<Sample>();
   while (!runtime.is_finished()) runtime.pop(*sample);

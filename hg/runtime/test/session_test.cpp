@@ -38,7 +38,8 @@ TEST(Session, EndsWithItsPlan) {
 TEST(Session, ACallerWhoRequestsModesIsTheOnlyOneUntilTheStop) {
   Parts parts;
   Session session(*parts.cycle, parts.device);
-  session.request(ModeRequest::kNone);
+  session.request(ModeRequest::kStop);
+  session.advance();
   for (int k = 0; k < 2000; ++k) {
     session.advance();
     ASSERT_EQ(session.sample().operator_input.request, ModeRequest::kNone);
@@ -58,8 +59,14 @@ TEST(Session, ATareFromOutsideEndsNothingThatIsAutomatic) {
     Parts parts;
     Session session(*parts.cycle, parts.device);
     for (int k = 0; k < 2000; ++k) {
-      if (k == at) session.request(ModeRequest::kTare);
+      // as a page does, so that the request is an edge
+      if (k == at || k == at + 1) session.request(ModeRequest::kNone);
+      if (k == at + 2) session.request(ModeRequest::kTare);
       session.advance();
+      if (k >= at && k < at + 3) {
+        EXPECT_EQ(session.sample().operator_input.request,
+                  k == at + 2 ? ModeRequest::kTare : ModeRequest::kNone);
+      }
     }
     EXPECT_EQ(session.record().mode, Mode::kRunning) << at;
   }

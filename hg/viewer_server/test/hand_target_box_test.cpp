@@ -86,5 +86,13 @@ TEST(MessageRate, AdmitsTheBurstAndThenTheRate) {
   EXPECT_NEAR(admitted, 200.0 + 10.0 * 200.0, 2.0);
 }
 
+TEST(MessageRate, SaysHowLongToPauseAfterTooMuch) {
+  MessageRate rate(1000.0);
+  EXPECT_EQ(rate.charge(1000.0, 5.0), 0.0);
+  EXPECT_DOUBLE_EQ(rate.charge(500.0, 5.0), 0.5);
+  EXPECT_DOUBLE_EQ(rate.charge(0.0, 5.25), 0.25);
+  EXPECT_EQ(rate.charge(0.0, 5.5), 0.0);
+}
+
 }  // namespace
 }  // namespace hg::viewer_server

@@ -35,14 +35,14 @@ TEST_F(Meshes, OfAPackageAboveTheUrdfGetAddresses) {
   EXPECT_EQ(text, "<mesh filename=\"" + assets_.begin()->first + "\" scale=\"1 1 1\"/>");
   EXPECT_TRUE(assets_.begin()->first.starts_with("/models/device/"));
   EXPECT_TRUE(assets_.begin()->first.ends_with(".stl"));
-  EXPECT_EQ(assets_.begin()->second.content, "base");
+  EXPECT_EQ(*assets_.begin()->second.content, "base");
 }
 
 TEST_F(Meshes, BesideTheUrdfAndTwiceAreServedOnce) {
   const std::string mesh = "<mesh filename='../meshes/link.dae'/>";
   const std::string text = serve(mesh + mesh);
   ASSERT_EQ(assets_.size(), 1u);
-  EXPECT_EQ(assets_.begin()->second.content, "link");
+  EXPECT_EQ(*assets_.begin()->second.content, "link");
   const std::string served = "<mesh filename='" + assets_.begin()->first + "'/>";
   EXPECT_EQ(text, served + served);
 }
