@@ -77,6 +77,7 @@ def parser():
     add("--grid", type=count_from(1), default=2, metavar="N",
         help="points along each edge of a link's box; default: 2")
     add("--link", action="append", metavar="LINK", help="only on this link; may be given several times")
+    add("--one-per-link", action="store_true", help="no link carries two sensors")
     add("--at", type=place_of, action="append", metavar="LINK:X,Y,Z",
         help="a place of your own, m in the link's frame, instead of the grid; several times")
     add("--no-gravity", action="store_true", help="accelerometers do not feel gravity")
@@ -182,13 +183,20 @@ def table(chain, errors, labels):
             print(f"  {joint.name:<{width}} {joint.unit + '/' + power:<8}{cells}")
 
 
+def random_placement(problem, count, random):
+    found = ()
+    for i in random.permutation(len(problem.places)):
+        if len(found) < count and problem.fits((*found, i)):
+            found = (*found, int(i))
+    return found
+
+
 def report(chain, problem, choices, options):
     import numpy as np
 
     best, n = choices[-1], chain.n
     random = np.random.default_rng(options.seed)
-    some = [tuple(int(i) for i in random.choice(len(problem.places), options.count, replace=False))
-            for _ in range(RANDOM)]
+    some = [random_placement(problem, options.count, random) for _ in range(RANDOM)]
     scores = problem.scores(some)
     order = np.argsort(scores, kind="stable")
     typical, worst = some[order[RANDOM // 2]], some[order[-1]]
@@ -212,7 +220,7 @@ def report(chain, problem, choices, options):
     for number, index in enumerate(best.placement, 1):
         print(f"  {number}  {describe(problem.places[index])}")
     links = {problem.places[index].link for index in best.placement}
-    if options.robot.endswith((".yaml", ".yml")):
+    if options.robot.endswith((".yaml", ".yml")) and len(links) == len(best.placement):
         named = ", ".join(link for link in chain.moving_links() if link in links)
         print(f"in device.yaml\n  estimation: {{inertial_units: [{named}]}}")
     table(chain, errors, [*labels, "median", "worst"])
@@ -263,10 +271,8 @@ def main(words):
                                 options.encoder_slide, options.jerk, options.jerk_slide,
                                 not options.no_encoders)
         places = places_of(chain, options)
-        if options.count > len(places):
-            raise InputError(f"--count: {options.count} sensors for {len(places)} candidates")
         problem = placement.Problem(chain, moved, places, noise, not options.no_gravity,
-                                    options.measure, options.criterion)
+                                    options.measure, options.criterion, options.one_per_link)
         report(chain, problem, placement.place(problem, options.count, options.exhaustive), options)
         return 0
     except InputError as error:

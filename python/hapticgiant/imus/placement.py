@@ -87,7 +87,8 @@ class Problem:
     """
 
     def __init__(self, chain, motion, places, noise, gravity=True, measure="covariance",
-                 criterion="logdet"):
+                 criterion="logdet", one_per_link=False):
+        self.one_per_link = one_per_link
         self.chain, self.motion, self.places, self.noise = chain, motion, places, noise
         self.measure, self.criterion = measure, criterion
         n, h = chain.n, 1 / motion.rate_hz
@@ -155,6 +156,15 @@ class Problem:
                 rest = np.eye(size) - gain @ here
                 P = rest @ P @ np.swapaxes(rest, 1, 2) + gain @ np.swapaxes(gain, 1, 2)
             visit(k, P)
+
+    def fits(self, placement):
+        """Whether no place, and with one_per_link no link, is taken twice."""
+        taken = [self.places[i].link if self.one_per_link else i for i in placement]
+        return len(set(taken)) == len(taken)
+
+    def most(self):
+        """How many sensors there is room for."""
+        return len({place.link for place in self.places} if self.one_per_link else self.places)
 
     def scores(self, placements):
         """(placements) what is left of the motion's size as error, less is better.
@@ -252,7 +262,8 @@ def _first_best(scores):
 
 def exhaustive(problem, count):
     """The best of all placements."""
-    every = list(itertools.combinations(range(len(problem.places)), count))
+    every = [each for each in itertools.combinations(range(len(problem.places)), count)
+             if problem.fits(each)]
     scores = problem.scores(every)
     best = _first_best(scores)
     return Choice(every[best], float(scores[best]), "exhaustive", len(every), float(scores[best]))
@@ -262,7 +273,7 @@ def greedy(problem, count, start=()):
     """Adds the sensor that helps most, one after the other."""
     chosen, evaluated, score = tuple(start), 0, math.inf
     while len(chosen) < count:
-        rest = [i for i in range(len(problem.places)) if i not in chosen]
+        rest = [i for i in range(len(problem.places)) if problem.fits((*chosen, i))]
         scores = problem.scores([(*chosen, i) for i in rest])
         best = _first_best(scores)
         chosen, score = (*chosen, rest[best]), float(scores[best])
@@ -276,13 +287,13 @@ def exchange(problem, choice):
     still = 0
     for turn in range(SWEEPS * len(chosen)):
         slot = turn % len(chosen)
-        rest = [i for i in range(len(problem.places)) if i not in chosen]
-        if not rest or still == len(chosen):
+        options = [(*chosen[:slot], i, *chosen[slot + 1:]) for i in range(len(problem.places))]
+        options = [each for each in options if each != tuple(chosen) and problem.fits(each)]
+        if not options or still == len(chosen):
             break
-        options = [(*chosen[:slot], i, *chosen[slot + 1:]) for i in rest]
         scores = problem.scores(options)
         best = _first_best(scores)
-        evaluated += len(rest)
+        evaluated += len(options)
         if scores[best] < score * (1 - SAME):
             chosen, score, still = list(options[best]), float(scores[best]), 0
         else:
@@ -293,7 +304,7 @@ def exchange(problem, choice):
 def submodular_bound(problem, placement):
     """A score that no placement of as many sensors is below (gramian, logdet).
 
-    f is monotone and submodular: f(best) <= f(S) + sum of the largest gains at S, and
+    f is monotone and submodular (also where a link carries one only): f(best) <= f(S) + sum of the largest gains at S, and
     f(best) <= f(empty) + (f(greedy) - f(empty)) / (1 - 1/e) for a greedy S.
     """
     if (problem.measure, problem.criterion) != ("gramian", "logdet"):
@@ -308,8 +319,8 @@ def submodular_bound(problem, placement):
 def place(problem, count, limit=600):
     """The best placement of `count` sensors: of all where there are at most `limit`, else greedy
     with exchange, for each number up to count: a list of Choice."""
-    if count > len(problem.places):
-        raise InputError(f"--count: {count} sensors for {len(problem.places)} candidates")
+    if count > problem.most():
+        raise InputError(f"--count: {count} sensors, there is room for {problem.most()}")
     found, start = [], ()
     for size in range(1, count + 1):
         if math.comb(len(problem.places), size) <= limit:
