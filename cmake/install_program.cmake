@@ -34,6 +34,7 @@ install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
 install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
   DESTINATION ${share}/python/hapticgiant COMPONENT debian)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/hapticgiant/report
+  ${PROJECT_SOURCE_DIR}/python/hapticgiant/imus
   DESTINATION ${share}/python/hapticgiant COMPONENT debian PATTERN __pycache__ EXCLUDE)
 
 set(CPACK_GENERATOR DEB)

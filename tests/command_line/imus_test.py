@@ -195,6 +195,8 @@ class Command(TemporaryFolder):
         device = self.folder / "device.yaml"
         device.write_text(f"urdf: {UR5E}\nposture: {{elbow_jiont: 1}}\n")
         self.refused(device, message="did you mean 'elbow_joint'?")
+        device.write_text(f"urdf: {UR5E}\njoints: {{elbow_joint: {{q_min_rad: low}}}}\n")
+        self.refused(device, message="elbow_joint: q_min_rad: expected a number, got 'low'")
         device.write_text("urdf: [\n")
         self.refused(device, message="device.yaml:2: no YAML")
         self.refused(self.folder / "none.urdf", message="none.urdf: No such file")

@@ -139,16 +139,24 @@ def robot(file):
                 raise InputError(f"{file}: {key}: no joint '{name}'{nearest(str(name), names)}")
         return values
 
+    def number(value, where):
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            raise InputError(f"{file}: {where}: expected a number, got '{value}'")
+        return float(value)
+
     middle = np.array([(joint.q_min + joint.q_max) / 2 for joint in chain.moving])
     for name, value in each("posture").items():
-        if not isinstance(value, int | float):
-            raise InputError(f"{file}: posture: {name}: expected a number, got '{value}'")
-        middle[names.index(name)] = value
+        middle[names.index(name)] = number(value, f"posture: {name}")
     for name, keys in each("joints").items():
         joint = chain.moving[names.index(name)]
-        for unit in ("rad", "m"):
-            joint.q_min = float((keys or {}).get(f"q_min_{unit}", joint.q_min))
-            joint.q_max = float((keys or {}).get(f"q_max_{unit}", joint.q_max))
+        for key, value in (keys if isinstance(keys, dict) else {}).items():
+            if key in ("q_min_rad", "q_min_m"):
+                joint.q_min = number(value, f"joints: {name}: {key}")
+            elif key in ("q_max_rad", "q_max_m"):
+                joint.q_max = number(value, f"joints: {name}: {key}")
+        if not joint.q_min < joint.q_max:
+            raise InputError(f"{file}: joints: {name}: expected q_min < q_max, "
+                             f"got {joint.q_min:g} and {joint.q_max:g}")
     columns = {}
     for key, column in (("gantry", "robot.q_p"), ("manipulator", "robot.q_m")):
         for index, name in enumerate(device.get(key) or []):
