@@ -261,6 +261,8 @@ def main(words):
     try:
         from hapticgiant.imus import motion, placement
         from hapticgiant.imus.chain import InputError
+        if options.robot.endswith((".yaml", ".yml")):
+            import yaml  # noqa: F401
         if options.picture:
             import matplotlib  # noqa: F401
     except ImportError as error:
