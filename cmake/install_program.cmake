@@ -34,6 +34,7 @@ install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
 install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
   DESTINATION ${share}/python/hapticgiant COMPONENT debian)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/hapticgiant/report
+  ${PROJECT_SOURCE_DIR}/python/hapticgiant/imus
   DESTINATION ${share}/python/hapticgiant COMPONENT debian PATTERN __pycache__ EXCLUDE)
 
 set(CPACK_GENERATOR DEB)
@@ -54,5 +55,5 @@ serial chain: a door, an excavator, a free tool, any URDF. This package has the
 program, a page for the browser, models, a simulated machine and reports.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${wheel_prefix}/lib)
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-scipy, python3-matplotlib, python3-jinja2")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-scipy, python3-matplotlib, python3-jinja2, python3-yaml")
 include(CPack)

@@ -23,6 +23,7 @@
 #include "apps/hapticgiant/haptify_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/identify_command.h"
+#include "apps/hapticgiant/imus_command.h"
 #include "apps/hapticgiant/new_command.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
@@ -123,6 +124,7 @@ int main(int argc, char** argv) {
   apps::add_haptify(app, exit_code);
   apps::add_tune(app, exit_code);
   apps::add_sweep(app);
+  apps::add_imus(app);
   apps::refuse_empty_values(app);
 
   return apps::code_after_output(parse(app, argc, argv, exit_code));
