@@ -288,6 +288,17 @@ class Sweep(TemporaryFolder):
         self.assertEqual(code, 2)
         self.assertIn("another study", err)
 
+    def test_a_command_whose_runs_need_what_is_missing_says_so_in_a_line(self):
+        bare = self.folder / "bare"
+        bare.write_text(f"#!/bin/sh\nexec {sys.executable} -S -I \"$@\"\n")
+        bare.chmod(0o755)
+        for python in (bare, "/bin/false-no-such-python"):
+            done = subprocess.run([PROGRAM, "faults", "--cases", "2", "--json", self.folder / "x"],
+                                  capture_output=True, text=True, timeout=60,
+                                  env={**os.environ, "HAPTICGIANT_PYTHON": str(python)})
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertRegex(done.stderr, r"^.* needs PyYAML; .*\n$")
+
     def wait_for(self, what):
         deadline = time.monotonic() + 60
         while not what():

@@ -158,12 +158,13 @@ def end_with_parent():
 
 
 def main(words):
-    if importlib.util.find_spec("yaml") is None:
+    has_yaml = importlib.util.find_spec("yaml") is not None
+    if words == ["--check"]:  # who asks says what is missing
+        return 0 if has_yaml else 2
+    if not has_yaml:
         print(f"sweep: {sys.executable} needs PyYAML: tools/setup.sh build, or pip install pyyaml "
               "scipy pyarrow", file=sys.stderr)
         return 2
-    if words == ["--check"]:
-        return 0
     from hapticgiant.sweep import campaign, slurm, study
 
     command = words[0] if words and words[0] in COMMANDS else ""
