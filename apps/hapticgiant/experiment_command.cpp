@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/hapticgiant/campaign.h"
 #include "apps/hapticgiant/experiments/paper_experiment_command.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
@@ -48,6 +49,7 @@ struct ExperimentArguments {
   std::string svg;   ///< file for the drawing; empty = none
   /// Files that replace those of the scenario; empty = those of the scenario
   std::string device, twin, simulation;
+  CampaignOptions played;  ///< of the stability map
 };
 
 struct ContactArguments {
@@ -196,14 +198,29 @@ int experiment_free_space(const ExperimentArguments& arguments) {
 
 int experiment_stability_map(const ExperimentArguments& arguments) {
   const studies::StabilityConfig config;
-  check_output(arguments.json);
-  begin(arguments,
-        fmt::format("Stability: a kick of {:g} N for {:g} ms on a free body held by a hand\n\n",
-                    config.kick.force, 1e3 * config.kick.duration));
+  const bool is_part = !arguments.played.part.empty();
+  if (!is_part) {
+    check_output(arguments.json);
+    check_sweep_program();
+    begin(arguments,
+          fmt::format("Stability: a kick of {:g} N for {:g} ms on a free body held by a hand\n\n",
+                      config.kick.force, 1e3 * config.kick.duration));
+  }
   const config::Scenario scenario = walk_scenario(arguments);
-  tell_place(scenario);
-  const studies::StabilityMap map =
-      studies::make_stability_map(scenario, config, progress_of("kicks"));
+  if (!is_part) tell_place(scenario);
+  std::vector<std::string> words = {"experiment", "stability-map"};
+  const auto hand_on = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, file_or_name(value)});
+  };
+  hand_on("--device", arguments.device);
+  hand_on("--twin", arguments.twin);
+  hand_on("--simulation", arguments.simulation);
+  studies::StabilityMap map;
+  const auto play = [&](studies::Runs& runs) {
+    map = studies::make_stability_map(scenario, config, runs);
+  };
+  const std::size_t rows = studies::rows_of(config);
+  if (play_campaign({words, rows, {scenario}, play}, arguments.played)) return 0;
   return report(studies::to_json(map), "stability-map", arguments.json, "", "map.svg",
                 arguments.svg);
 }
@@ -393,6 +410,7 @@ void add_experiment(CLI::App& app, int& exit_code) {
   CLI::App* map = add("stability-map",
                       "how stiff a hand may be for how light a body, before contact is unstable",
                       experiment_stability_map);
+  add_campaign_options(*map, arguments->played);
   map->add_option("--svg", arguments->svg, "draw the map to this file");
   add("impedance", "how far the handle gives way, by frequency and under a constant push",
       experiment_impedance);

@@ -11,7 +11,6 @@
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
@@ -71,6 +70,20 @@ void check_script(const config::Scenario& scenario, const std::string& name) {
                    "after the grasp");
 }
 
+constexpr int kCasesOfAPart = 12;  // a process needs as long to begin as half a case takes
+
+std::vector<std::string> command_of(const FaultsArguments& arguments) {
+  std::vector<std::string> words = {"faults", "--cases", std::to_string(arguments.campaign.cases),
+                                    "--seed", std::to_string(arguments.campaign.seed)};
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, file_or_name(value)});
+  };
+  for (const std::string& scenario : arguments.scenarios) add("--scenario", scenario);
+  add("--device", arguments.device);
+  add("--twin", arguments.twin);
+  return words;
+}
+
 }  // namespace
 
 int faults(FaultsArguments arguments) {
@@ -84,8 +97,10 @@ int faults(FaultsArguments arguments) {
   }
   check_writable(arguments.json, kJson);
   check_writable(arguments.markdown, kMarkdown);
-  if (arguments.json.empty()) check_report_program();  // before minutes of runs
+  const bool is_part = !arguments.played.part.empty();
+  if (arguments.json.empty() && !is_part) check_report_program();  // before minutes of runs
   if (arguments.plays_processes) return process_faults(arguments);
+  if (!is_part) check_sweep_program();
   const ScratchFolder scratch;
   std::vector<recording::RecordingInfo> recordings;
   if (recording::recording_available()) {
@@ -96,10 +111,16 @@ int faults(FaultsArguments arguments) {
       recordings.push_back(recording_info(scenarios[i], run));
     }
   }
-  print_out(fmt::format("HapticGiant {}  {} injected faults, seed {}\n\n", kVersion,
-                        arguments.campaign.cases, arguments.campaign.seed));
-  const studies::Campaign campaign =
-      studies::run_campaign(scenarios, arguments.campaign, recordings, progress_of("faults"));
+  if (!is_part) {
+    print_out(fmt::format("HapticGiant {}  {} injected faults, seed {}\n\n", kVersion,
+                          arguments.campaign.cases, arguments.campaign.seed));
+  }
+  studies::Campaign campaign;
+  const auto play = [&, &scenarios = scenarios](studies::Runs& runs) {
+    campaign = studies::run_campaign(scenarios, arguments.campaign, recordings, runs);
+  };
+  const std::size_t parts = 1 + (arguments.campaign.cases - 1) / kCasesOfAPart;
+  if (play_campaign({command_of(arguments), parts, scenarios, play}, arguments.played)) return 0;
   report(arguments, to_json(campaign));
   return studies::is_passed(campaign) ? 0 : 1;
 }
@@ -134,6 +155,7 @@ void add_faults(CLI::App& app, int& exit_code) {
       ->check(whole_number(1.0, 1e6))
       ->needs(processes);
   processes->excludes(device)->excludes(twin);
+  add_campaign_options(*command, arguments->played);
   command->add_option("--json", arguments->json, "write all cases as JSON to this file");
   command->add_option("--markdown", arguments->markdown, "write the table as a page to this file")
       ->excludes(processes);

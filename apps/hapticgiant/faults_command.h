@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/hapticgiant/campaign.h"
 #include "hg/studies/fault_campaign.h"
 
 namespace CLI {
@@ -18,6 +19,7 @@ struct FaultsArguments {
   std::vector<std::string> scenarios;
   std::string device, twin;  ///< files that replace those of the scenarios; empty = their own
   studies::CampaignConfig campaign;
+  CampaignOptions played;
   bool plays_processes = false;  ///< plays faults of the controller's process instead, in real time
   int repetitions = 1;           ///< repetitions of the process faults
   std::string json;              ///< file for all cases; empty = none

@@ -1,7 +1,6 @@
 #include "apps/hapticgiant/haptify_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -24,59 +23,54 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// on a terminal in place; elsewhere one line per measurement
-void show_progress(const std::string& what, std::size_t done, std::size_t total) {
-  const bool is_terminal = isatty(STDERR_FILENO) != 0;
-  if (is_terminal) {
-    draw_error(done < total ? fmt::format("{}: {} of {}", what, done, total) : "");
-  } else if (done == total) {
-    print_error("{}: {} runs\n", what, total);
-  }
-}
+constexpr std::size_t kParts = 40;  // the measurements differ in length: each part has some of all
 
-std::string command_of(const HaptifyArguments& arguments) {
+// The command that gives the same results, in words.
+std::vector<std::string> command_of(const HaptifyArguments& arguments) {
   const haptify::HaptifyOptions& options = arguments.options;
-  std::string command = fmt::format("hapticgiant haptify --seed {}", options.seed);
+  std::vector<std::string> words = {"haptify", "--seed", std::to_string(options.seed)};
   if (options.repetitions != haptify::HaptifyOptions{}.repetitions) {
-    command += fmt::format(" --repetitions {}", options.repetitions);
+    words.insert(words.end(), {"--repetitions", std::to_string(options.repetitions)});
   }
-  if (!arguments.device.empty()) command += " --device " + arguments.device;
-  if (!arguments.simulation.empty()) command += " --simulation " + arguments.simulation;
-  if (!arguments.twin.empty()) command += " --twin " + arguments.twin;
-  if (arguments.only_goals) command += " --goals";
-  return command + (options.is_quick ? " --quick" : "");
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  };
+  add("--device", arguments.device);
+  add("--simulation", arguments.simulation);
+  add("--twin", arguments.twin);
+  if (arguments.only_goals) words.emplace_back("--goals");
+  if (options.is_quick) words.emplace_back("--quick");
+  return words;
 }
 
-haptify::Benchmark measure_goals(const HaptifyArguments& arguments) {
-  const config::Scenario scenario = scenario::load(
-      {.scenario = "walk", .device = arguments.device, .simulation = arguments.simulation});
-  const config::Scenario light =
-      scenario::load({.scenario = "walk",
-                      .device = arguments.device,
-                      .twin = arguments.twin.empty() ? "light" : arguments.twin,
-                      .simulation = arguments.simulation});
-  return haptify::measure_goals(scenario, light, arguments.options, show_progress);
+// The same for another working directory.
+std::vector<std::string> part_command(const HaptifyArguments& arguments) {
+  HaptifyArguments handed = arguments;
+  for (std::string* file : {&handed.device, &handed.simulation, &handed.twin}) {
+    *file = file_or_name(*file);
+  }
+  return command_of(handed);
 }
 
-haptify::Benchmark measure_all(const HaptifyArguments& arguments) {
-  const config::Scenario scenario = scenario::load({.scenario = "walk",
-                                                    .device = arguments.device,
-                                                    .twin = arguments.twin,
-                                                    .simulation = arguments.simulation});
-  return haptify::measure(scenario, arguments.options, show_progress);
+config::Scenario walk_with(const HaptifyArguments& arguments, const std::string& twin) {
+  return scenario::load({.scenario = "walk",
+                         .device = arguments.device,
+                         .twin = twin,
+                         .simulation = arguments.simulation});
 }
 
 nlohmann::ordered_json results_json(const HaptifyArguments& arguments,
                                     const haptify::Benchmark& measured) {
   const haptify::HaptifyOptions& options = arguments.options;
-  nlohmann::ordered_json json = {{"kind", arguments.only_goals ? "goals" : "haptify"},
-                                 {"version", kVersion},
-                                 {"command", command_of(arguments)},
-                                 {"device", measured.device},
-                                 {"seed", options.seed},
-                                 {"repetitions", options.repetitions},
-                                 {"is_quick", options.is_quick},
-                                 {"measurements", measured.measurements}};
+  nlohmann::ordered_json json = {
+      {"kind", arguments.only_goals ? "goals" : "haptify"},
+      {"version", kVersion},
+      {"command", fmt::format("hapticgiant {}", fmt::join(command_of(arguments), " "))},
+      {"device", measured.device},
+      {"seed", options.seed},
+      {"repetitions", options.repetitions},
+      {"is_quick", options.is_quick},
+      {"measurements", measured.measurements}};
   if (!measured.place.empty()) json["place"] = measured.place;
   return json;
 }
@@ -84,16 +78,34 @@ nlohmann::ordered_json results_json(const HaptifyArguments& arguments,
 }  // namespace
 
 int run_haptify(const HaptifyArguments& arguments) {
+  const bool is_part = !arguments.played.part.empty();
   const fs::path folder = arguments.out;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
-  check_report_program();  // before minutes of measurements
-  print_out(fmt::format(
-      "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
-      kVersion));
-  const haptify::Benchmark measured =
-      arguments.only_goals ? measure_goals(arguments) : measure_all(arguments);
+  if (!is_part) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
+    check_report_program();  // before minutes of measurements
+    check_sweep_program();
+    print_out(fmt::format(
+        "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
+        kVersion));
+  }
+  Campaign campaign = {.command = part_command(arguments), .parts = kParts};
+  haptify::Benchmark measured;
+  if (arguments.only_goals) {
+    const std::string light = arguments.twin.empty() ? "light" : arguments.twin;
+    campaign.scenarios = {walk_with(arguments, ""), walk_with(arguments, light)};
+    campaign.play = [&](studies::Runs& runs) {
+      measured = haptify::measure_goals(campaign.scenarios[0], campaign.scenarios[1],
+                                        arguments.options, runs);
+    };
+  } else {
+    campaign.scenarios = {walk_with(arguments, arguments.twin)};
+    campaign.play = [&](studies::Runs& runs) {
+      measured = haptify::measure(campaign.scenarios[0], arguments.options, runs);
+    };
+  }
+  if (play_campaign(campaign, arguments.played)) return 0;
   print_out(report_text(folder, results_json(arguments, measured), "report.txt", arguments.docs));
   print_out(fmt::format("\nreport      {}\n",
                         (folder / (arguments.only_goals ? "goals.md" : "report.html")).string()));
@@ -129,6 +141,7 @@ void add_haptify(CLI::App& app, int& exit_code) {
   command->add_option("--device", arguments->device,
                       "device.yaml instead of the reference device's");
   command->add_option("--simulation", arguments->simulation, kSimulationHelp);
+  add_campaign_options(*command, arguments->played);
   command->add_option("--docs", arguments->docs,
                       "refresh the page haptify.md of this folder (make experiments)");
   command->callback([arguments, &exit_code] { exit_code = run_haptify(*arguments); });

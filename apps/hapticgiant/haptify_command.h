@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "apps/hapticgiant/campaign.h"
 #include "hg/studies/haptify/benchmark.h"
 
 namespace CLI {
@@ -20,6 +21,7 @@ struct HaptifyArguments {
   std::string twin;             ///< twin.yaml of a free body instead of the shipped one
   bool only_goals = false;      ///< measures only the design goals, over seeds, heights and hands
   haptify::HaptifyOptions options;
+  CampaignOptions played;
 };
 
 /// Exit code: 0 all measured, 1 a measurement failed: fault, limit exceeded. A missed goal is no

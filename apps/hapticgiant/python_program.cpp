@@ -1,18 +1,39 @@
 #include "apps/hapticgiant/python_program.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 
 namespace hg::apps {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// Everything that comes from a descriptor until it closes.
+std::string read_all(int descriptor) {
+  std::string text;
+  char part[4096];
+  for (;;) {
+    const ssize_t count = read(descriptor, part, sizeof part);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return text;
+    text.append(part, count);
+  }
+}
+
+}  // namespace
 
 std::string python_interpreter() {
   if (const char* chosen = std::getenv("HAPTICGIANT_PYTHON")) {
@@ -49,6 +70,37 @@ void become_python_program(const std::string& part, const std::vector<std::strin
   pointers.push_back(nullptr);
   execvp(pointers[0], pointers.data());
   throw SetupError(fmt::format("{}: {} cannot be started", part, words[0]));
+}
+
+pid_t start_program(std::vector<std::string>& words, int end, int stream) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  if (stream != STDIN_FILENO) {
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  }
+  posix_spawn_file_actions_adddup2(&actions, end, stream);
+  posix_spawn_file_actions_addchdir_np(&actions, "/");
+  pid_t child = 0;
+  const int error =
+      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(end);
+  return error == 0 ? child : 0;
+}
+
+Ended run_program(std::vector<std::string> words) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return {};
+  const OpenFile output(ends[0]);
+  const pid_t child = start_program(words, ends[1], STDOUT_FILENO);
+  if (child == 0) return {};
+  Ended ended = {.code = -1, .said = read_all(output.descriptor())};
+  int status = 0;
+  if (waitpid(child, &status, 0) == child && WIFEXITED(status)) ended.code = WEXITSTATUS(status);
+  return ended;
 }
 
 }  // namespace hg::apps

@@ -1,6 +1,8 @@
 /// The parts of the program that are written in Python.
 #pragma once
 
+#include <sys/types.h>
+
 #include <string>
 #include <vector>
 
@@ -9,6 +11,21 @@ namespace hg::apps {
 /// The environment variable HAPTICGIANT_PYTHON, else .venv/bin/python of the installation
 /// (shipped_files.h), else python3.
 std::string python_interpreter();
+
+/// How a program has ended.
+struct Ended {
+  static constexpr int kNotStarted = 127;
+  int code = kNotStarted;  ///< exit code; -1: a signal
+  std::string said;        ///< its standard output
+};
+
+/// Runs a program to its end, in the root folder: Python would take modules from the working
+/// directory. It has no input, and the error output of this process.
+Ended run_program(std::vector<std::string> words);
+
+/// Starts a program with one end of a pipe as its standard input or output (`stream`), which is
+/// closed here; returns its process, 0 where it does not start. Without input it reads nothing.
+pid_t start_program(std::vector<std::string>& words, int end, int stream);
 
 /// Words that start python/hapticgiant/`part`, or its module where the package is installed.
 std::vector<std::string> python_program(const std::string& part);

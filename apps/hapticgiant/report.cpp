@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,59 +22,6 @@ namespace fs = std::filesystem;
 
 // exit codes of the report program: a library is missing; its verdict is this plus 1 or 3
 constexpr int kMissing = 69, kVerdict = 100, kLargestVerdict = 3;
-constexpr int kNotStarted = 127;
-
-struct Ended {
-  int code = kNotStarted;  ///< exit code; -1: a signal
-  std::string said;
-};
-
-// Everything that comes from a descriptor until it closes.
-std::string read_all(int descriptor) {
-  std::string text;
-  char part[4096];
-  for (;;) {
-    const ssize_t count = read(descriptor, part, sizeof part);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return text;
-    text.append(part, count);
-  }
-}
-
-// Starts a program with one end of a pipe as its standard input or output; returns its process, 0
-// where it does not start. Without input it reads nothing. It starts in the root folder: Python
-// would take modules from the working directory. Closes the end.
-pid_t start_program(std::vector<std::string>& words, int end, int stream) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  if (stream != STDIN_FILENO) {
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  }
-  posix_spawn_file_actions_adddup2(&actions, end, stream);
-  posix_spawn_file_actions_addchdir_np(&actions, "/");
-  pid_t child = 0;
-  const int error =
-      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(end);
-  return error == 0 ? child : 0;
-}
-
-Ended run_program(std::vector<std::string> words) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return {};
-  const OpenFile output(ends[0]);
-  const pid_t child = start_program(words, ends[1], STDOUT_FILENO);
-  if (child == 0) return {};
-  Ended ended = {.code = -1, .said = read_all(output.descriptor())};
-  int status = 0;
-  if (waitpid(child, &status, 0) == child && WIFEXITED(status)) ended.code = WEXITSTATUS(status);
-  return ended;
-}
-
 std::vector<std::string> export_program(const std::string& format) {
   std::vector<std::string> words = python_program("report");
   words.insert(words.end(), {"--export", format});
@@ -105,7 +51,7 @@ int write_report(const fs::path& folder, const std::string& docs,
   for (const fs::path& run : runs) words.push_back(fs::absolute(run).string());
   if (!docs.empty()) words.insert(words.end(), {"--docs", fs::absolute(docs).string()});
   const auto [code, said] = run_program(words);
-  if (code == kNotStarted || code == kMissing) refuse(words[0]);
+  if (code == Ended::kNotStarted || code == kMissing) refuse(words[0]);
   print_out(said);
   if (code == 0) return 0;
   if (code > kVerdict && code <= kVerdict + kLargestVerdict) return code - kVerdict;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
 
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/error.h"
@@ -11,9 +13,12 @@
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
 #include "hg/studies/player.h"
+#include "hg/studies/runs.h"
 
 namespace hg::studies {
 namespace {
+
+using nlohmann::json;
 
 constexpr double kSettling = 1.0;  // s after the grasp: no fault before
 constexpr double kLatest = 8.0;    // s: later faults add no information
@@ -112,20 +117,40 @@ class Travel {
 
 using Kinds = std::vector<const faults::Kind*>;
 
-// Peaks of the person's force in a run without faults, one per tenth of a second, and what such a
-// device can suffer.
-class CleanRun {
+constexpr double kSlot = 0.1;  // s
+
+// Peaks of the person's force in a run without faults, one per slot.
+std::vector<double> clean_peaks(config::Scenario scenario) {
+  scenario.faults.clear();
+  Player player(scenario);
+  std::vector<double> peaks;
+  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    player.begin();
+    player.run();
+    const auto slot = static_cast<std::size_t>(player.record().time_s / kSlot);
+    peaks.resize(std::max(peaks.size(), slot + 1), 0.0);
+    peaks[slot] = std::max(peaks[slot], player.truth().w_H.head<3>().norm());
+  }
+  return peaks;
+}
+
+double peak_within(const std::vector<double>& peaks, double from_s, double to_s) {
+  double peak = 0.0;
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    const double time_s = static_cast<double>(i) * kSlot;
+    if (time_s >= from_s - kSlot && time_s < to_s) peak = std::max(peak, peaks[i]);
+  }
+  return peak;
+}
+
+// What the device of a scenario can suffer, from its first cycle.
+class Suffering {
  public:
-  explicit CleanRun(config::Scenario scenario) {
+  explicit Suffering(config::Scenario scenario) {
     scenario.faults.clear();
     Player player(scenario);
-    for (bool goes_on = true; goes_on; goes_on = player.end()) {
-      player.begin();
-      player.run();
-      const auto slot = static_cast<std::size_t>(player.record().time_s / kSlot);
-      peaks_.resize(std::max(peaks_.size(), slot + 1), 0.0);
-      peaks_[slot] = std::max(peaks_[slot], player.truth().w_H.head<3>().norm());
-    }
+    player.begin();
+    player.run();
     sensors_ = player.sensors();
     command_ = player.command();
     for (const faults::Kind& kind : faults::kinds()) {
@@ -139,22 +164,16 @@ class CleanRun {
     return why_impossible(kind, sensors_, command_);
   }
 
-  double peak(double from_s, double to_s) const {
-    double peak = 0.0;
-    for (std::size_t i = 0; i < peaks_.size(); ++i) {
-      const double time_s = static_cast<double>(i) * kSlot;
-      if (time_s >= from_s - kSlot && time_s < to_s) peak = std::max(peak, peaks_[i]);
-    }
-    return peak;
-  }
-
  private:
-  static constexpr double kSlot = 0.1;
-  std::vector<double> peaks_;
-  SensorFrame sensors_;   // the last ones
-  CommandFrame command_;  // the last one
+  SensorFrame sensors_;
+  CommandFrame command_;
   Kinds kinds_;
 };
+
+bool have_same_device(const config::Scenario& one, const config::Scenario& other) {
+  return std::ranges::equal(one.device.sources, other.device.sources, {},
+                            &config::SourceText::content, &config::SourceText::content);
+}
 
 // One of `count` indices.
 std::size_t draw_index(std::size_t count, Random& random) {
@@ -232,6 +251,40 @@ bool has_all_cycles(const std::filesystem::path& file, std::uint64_t cycles) {
   }
 }
 
+// What a run says about its case: with which fault and when is drawn again from the seed.
+json json_of(const FaultCase& result) {
+  return {{"fault", result.injection.kind->name},
+          {"outcome", static_cast<int>(result.outcome)},
+          {"code", static_cast<int>(result.fault)},
+          {"stop", static_cast<int>(result.stop)},
+          {"noticed_s", result.noticed_s},
+          {"stopped_s", result.stopped_s},
+          {"peak_force_N", result.peak_force},
+          {"worst_excess", result.worst_excess},
+          {"worst_distance_m", result.worst_distance},
+          {"travel_share", result.travel_share},
+          {"energy_J", result.energy},
+          {"has_reported_slip", result.has_reported_slip},
+          {"has_run", result.has_run},
+          {"is_complete", result.is_complete}};
+}
+
+void take(const json& played, FaultCase& result) {
+  result.outcome = static_cast<Outcome>(played["outcome"].get<int>());
+  result.fault = static_cast<FaultCode>(played["code"].get<int>());
+  result.stop = static_cast<Stop>(played["stop"].get<int>());
+  result.noticed_s = number_of(played["noticed_s"]);
+  result.stopped_s = number_of(played["stopped_s"]);
+  result.peak_force = number_of(played["peak_force_N"]);
+  result.worst_excess = number_of(played["worst_excess"]);
+  result.worst_distance = number_of(played["worst_distance_m"]);
+  result.travel_share = number_of(played["travel_share"]);
+  result.energy = number_of(played["energy_J"]);
+  result.has_reported_slip = played["has_reported_slip"];
+  result.has_run = played["has_run"];
+  result.is_complete = played["is_complete"];
+}
+
 }  // namespace
 
 std::string why_impossible(const faults::Kind& kind, const SensorFrame& sensors,
@@ -272,8 +325,7 @@ Interval fault_times(const config::Scenario& scenario) {
 }
 
 FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
-                     const CampaignConfig& config, double clean_force,
-                     const recording::RecordingInfo* recording) {
+                     const CampaignConfig& config, const recording::RecordingInfo* recording) {
   FaultCase result = drawn;
   config::Scenario played = scenario;
   played.faults = {result.injection};
@@ -337,49 +389,62 @@ FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
   }
   result.travel_share = travel.share();
   result.energy = travel.energy();
-  // a device that did not run held still, however the person pulled
-  const bool is_worse = has_run && (result.worst_excess > config.harmless_excess ||
-                                    result.peak_force > clean_force + config.harmless_force ||
-                                    result.worst_distance > config.harmless_distance);
-  if (result.outcome != Outcome::kNoticed && is_worse) result.outcome = Outcome::kUnnoticed;
+  result.has_run = has_run;
   return result;
 }
 
+void judge(const CampaignConfig& config, double clean_force, FaultCase& result) {
+  // a device that did not run held still, however the person pulled
+  const bool is_worse =
+      result.has_run && (result.worst_excess > config.harmless_excess ||
+                         result.peak_force > clean_force + config.harmless_force ||
+                         result.worst_distance > config.harmless_distance);
+  if (result.outcome != Outcome::kNoticed && is_worse) result.outcome = Outcome::kUnnoticed;
+}
+
 Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,
-                      const std::vector<recording::RecordingInfo>& recordings,
-                      const Progress& progress) {
+                      const std::vector<recording::RecordingInfo>& recordings, Runs& runs) {
   Campaign campaign = {.config = config};
   for (const config::Scenario& scenario : scenarios) campaign.scenarios.push_back(scenario.title);
-  std::vector<std::unique_ptr<CleanRun>> clean(scenarios.size());
-  do_all(scenarios.size(),
-         [&](std::size_t i) { clean[i] = std::make_unique<CleanRun>(scenarios[i]); }, {});
-
-  for (const faults::Kind& kind : faults::kinds()) {
-    const bool is_possible =
-        std::ranges::any_of(clean, [&](const auto& run) { return run->why_not(kind).empty(); });
-    if (!is_possible) campaign.impossible.emplace_back(&kind, clean.front()->why_not(kind));
+  std::vector<std::shared_ptr<const Suffering>> devices;
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    const bool is_the_same = i > 0 && have_same_device(scenarios[i], scenarios[i - 1]);
+    devices.push_back(is_the_same ? devices.back() : std::make_shared<Suffering>(scenarios[i]));
   }
-  campaign.cases.resize(config.cases);
-  do_all(
-      campaign.cases.size(),
-      [&](std::size_t i) {
-        Random random(config.seed * 1'000'003 + i);
-        const std::size_t which = draw_index(scenarios.size(), random);
-        FaultCase drawn = draw_case(i, scenarios[which], clean[which]->kinds(), random);
-        drawn.scenario = which;
-        const double from_s = drawn.injection.from_s;
-        const double until_s =
-            from_s + config.watched_s + (drawn.phase == Phase::kStarting ? kStartingWatch : 0.0);
-        const double clean_force = clean[which]->peak(from_s, until_s);
-        recording::RecordingInfo recording;
-        if (!recordings.empty()) {
-          recording = recordings[which];
-          recording.folder /= fmt::format("case_{}", i);
-        }
-        campaign.cases[i] = play_fault(scenarios[which], drawn, config, clean_force,
-                                       recordings.empty() ? nullptr : &recording);
-      },
-      progress);
+  for (const faults::Kind& kind : faults::kinds()) {
+    const bool is_possible = std::ranges::any_of(
+        devices, [&](const auto& device) { return device->why_not(kind).empty(); });
+    if (!is_possible) campaign.impossible.emplace_back(&kind, devices.front()->why_not(kind));
+  }
+  for (int i = 0; i < config.cases; ++i) {
+    Random random(config.seed * 1'000'003 + i);
+    const std::size_t which = draw_index(scenarios.size(), random);
+    campaign.cases.push_back(draw_case(i, scenarios[which], devices[which]->kinds(), random));
+    campaign.cases.back().scenario = which;
+  }
+
+  const std::vector<json> clean = runs.next(scenarios.size(), [&](std::size_t i) {
+    return json{{"peaks_N", clean_peaks(scenarios[i])}};
+  });
+  const std::vector<json> played = runs.next(campaign.cases.size(), [&](std::size_t i) {
+    const FaultCase& drawn = campaign.cases[i];
+    recording::RecordingInfo recording;
+    if (!recordings.empty()) {
+      recording = recordings[drawn.scenario];
+      recording.folder /= fmt::format("case_{}", i);
+    }
+    return json_of(play_fault(scenarios[drawn.scenario], drawn, config,
+                              recordings.empty() ? nullptr : &recording));
+  });
+  for (std::size_t i = 0; i < played.size(); ++i) {
+    FaultCase& result = campaign.cases[i];
+    if (played[i].is_null() || clean[result.scenario].is_null()) continue;  // of another part
+    take(played[i], result);
+    const double from_s = result.injection.from_s;
+    const double until_s =
+        from_s + config.watched_s + (result.phase == Phase::kStarting ? kStartingWatch : 0.0);
+    judge(config, peak_within(clean[result.scenario]["peaks_N"], from_s, until_s), result);
+  }
   return campaign;
 }
 

@@ -13,9 +13,10 @@
 #include "hg/recording/recorder.h"
 #include "hg/signals/truth.h"
 #include "hg/simulator/faults/injection.h"
-#include "hg/studies/workers.h"
 
 namespace hg::studies {
+
+class Runs;
 
 struct CampaignConfig {
   int cases = 560;
@@ -68,6 +69,7 @@ struct FaultCase {
   double travel_share = 0.0;
   double energy = 0.0;             ///< energy given to the person from the stop on, J
   bool has_reported_slip = false;  ///< rule 323 has reported that a brake does not hold
+  bool has_run = false;            ///< the device was running with the fault
   bool is_complete = true;         ///< the recording has every cycle exactly once, in order
 };
 
@@ -90,20 +92,23 @@ bool stands_still(const Truth& truth);
 /// while. Empty (lb > ub) if the script is too short or missing.
 Interval fault_times(const config::Scenario& scenario);
 
-/// Plays one run with the faults of `drawn` and returns it with its result filled in. `scenario`
-/// has a script; `clean_force` is the person's peak without the fault. The run is recorded as
-/// `recording` says, read back and deleted; null = not recorded.
+/// Plays one run with the faults of `drawn` and returns it with its result filled in, not yet
+/// judged. `scenario` has a script. The run is recorded as `recording` says, read back and deleted;
+/// null = not recorded.
 FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
-                     const CampaignConfig& config, double clean_force,
+                     const CampaignConfig& config,
                      const recording::RecordingInfo* recording = nullptr);
 
+/// Whether a run without a reaction was harmless. `clean_force` is the person's peak without the
+/// fault, N.
+void judge(const CampaignConfig& config, double clean_force, FaultCase& result);
+
 /// Plays all kinds in turn, each in all phases in turn, in random scenarios, at random times, of
-/// random sizes; on all cores. The scenarios are played on their own simulated machines.
+/// random sizes. The scenarios are played on their own simulated machines.
 /// `recordings` holds the recording information of each scenario, with a folder that is deleted
 /// afterwards; empty = no recording.
 Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,
-                      const std::vector<recording::RecordingInfo>& recordings,
-                      const Progress& progress);
+                      const std::vector<recording::RecordingInfo>& recordings, Runs& runs);
 
 /// Whether every harmful fault was noticed and no bound exceeded.
 bool is_passed(const Campaign& campaign);

@@ -10,9 +10,12 @@
 #include "hg/studies/changes.h"
 #include "hg/studies/place.h"
 #include "hg/studies/player.h"
+#include "hg/studies/runs.h"
 
 namespace hg::studies {
 namespace {
+
+using nlohmann::json;
 
 struct NamedHand {
   std::string name;
@@ -100,6 +103,29 @@ std::string control_in_words(tracking::Method method) {
   return "";
 }
 
+json json_of(const StabilityRow& row) {
+  json result = {{"hand", row.hand}, {"damping", row.damping}, {"stable_from", row.stable_from}};
+  for (const KickOutcome& outcome : row.outcomes) {
+    result["outcomes"].push_back({{"verdict", static_cast<int>(outcome.verdict)},
+                                  {"last_speed", outcome.last_speed},
+                                  {"was_lost", outcome.was_lost},
+                                  {"fault", static_cast<int>(outcome.fault)}});
+  }
+  return result;
+}
+
+void take(const json& played, StabilityRow& row) {
+  const json& limit = played["stable_from"];
+  row.stable_from = limit.is_null() ? kInfinity : limit.get<double>();
+  for (std::size_t k = 0; k < row.outcomes.size(); ++k) {
+    const json& outcome = played["outcomes"][k];
+    row.outcomes[k] = {.verdict = static_cast<DecayClass>(outcome["verdict"].get<int>()),
+                       .last_speed = number_of(outcome["last_speed"]),
+                       .was_lost = outcome["was_lost"],
+                       .fault = static_cast<FaultCode>(outcome["fault"].get<int>())};
+  }
+}
+
 }  // namespace
 
 void add_kick(const Kick& kick, double at_s, person::Script& script) {
@@ -153,8 +179,12 @@ KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config
   return outcome;
 }
 
+std::size_t rows_of(const StabilityConfig& config) {
+  return config.damping.size() * hands_of(config).size();
+}
+
 StabilityMap make_stability_map(const config::Scenario& given, const StabilityConfig& how,
-                                const Progress& progress) {
+                                Runs& runs) {
   const Place place = place_of(given.device);
   const config::Scenario scenario = at_place(given, place);
   StabilityConfig config = how;
@@ -170,33 +200,20 @@ StabilityMap make_stability_map(const config::Scenario& given, const StabilityCo
                           .outcomes = std::vector<KickOutcome>(config.mass.size())});
     }
   }
-  const std::size_t columns = config.mass.size(), cells = map.rows.size() * columns;
-  const std::size_t total = cells + map.rows.size();
-  const auto hand_of = [&](std::size_t row) -> const person::HandImpedance& {
-    return hands[row % hands.size()].hand;
-  };
-  const auto progress_from = [&](std::size_t before) {
-    return [&progress, before, total](std::size_t done, std::size_t) {
-      if (progress) progress(before + done, total);
-    };
-  };
-  do_all(
-      cells,
-      [&](std::size_t i) {
-        StabilityRow& row = map.rows[i / columns];
-        row.outcomes[i % columns] =
-            kick(scenario, config, hand_of(i / columns), config.mass[i % columns], row.damping);
-      },
-      progress_from(0));
-  do_all(
-      map.rows.size(),
-      [&](std::size_t i) {
-        StabilityRow& row = map.rows[i];
-        row.stable_from = stable_from(config, row, [&](double mass) {
-          return kick(scenario, config, hand_of(i), mass, row.damping).verdict;
-        });
-      },
-      progress_from(cells));
+  const std::vector<json> played = runs.next(map.rows.size(), [&](std::size_t i) {
+    StabilityRow& row = map.rows[i];
+    const person::HandImpedance& hand = hands[i % hands.size()].hand;
+    for (std::size_t k = 0; k < config.mass.size(); ++k) {
+      row.outcomes[k] = kick(scenario, config, hand, config.mass[k], row.damping);
+    }
+    row.stable_from = stable_from(config, row, [&](double mass) {
+      return kick(scenario, config, hand, mass, row.damping).verdict;
+    });
+    return json_of(row);
+  });
+  for (std::size_t i = 0; i < played.size(); ++i) {
+    if (!played[i].is_null()) take(played[i], map.rows[i]);
+  }
   return map;
 }
 

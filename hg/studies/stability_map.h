@@ -11,9 +11,10 @@
 #include "hg/controller/safety/passivity/passivity.h"
 #include "hg/simulator/person/hand.h"
 #include "hg/studies/decay.h"
-#include "hg/studies/workers.h"
 
 namespace hg::studies {
+
+class Runs;
 
 /// An arm that is a mass on a spring, without muscle limits and tremor. Its rotations are those of
 /// the normal hand.
@@ -83,10 +84,13 @@ config::Scenario kicked(const config::Scenario& scenario, const StabilityConfig&
 KickOutcome kick(const config::Scenario& scenario, const StabilityConfig& config,
                  const person::HandImpedance& hand, double mass, double damping);
 
-/// Computes the map on all cores, at place_of() the device, see place.h. Throws SetupError when the
-/// twin of the scenario is not a free body.
+/// Number of rows of the map.
+std::size_t rows_of(const StabilityConfig& config);
+
+/// Computes the map, a row per run, at place_of() the device, see place.h. Throws SetupError when
+/// the twin of the scenario is not a free body.
 StabilityMap make_stability_map(const config::Scenario& scenario, const StabilityConfig& config,
-                                const Progress& progress);
+                                Runs& runs);
 
 /// Results for python/hapticgiant/report/studies.py.
 nlohmann::ordered_json to_json(const StabilityMap& map);

@@ -172,14 +172,152 @@ class Sweep(TemporaryFolder):
             for i, scale in enumerate(scales):  # one in each eighth
                 self.assertTrue(0.5 * 4 ** (i / 8) <= scale <= 0.5 * 4 ** ((i + 1) / 8), scales)
 
+    def test_lines_that_are_damaged_are_played_again(self):
+        self.sweep(self.study)
+        before = self.table()
+        file = self.out / "manifest.jsonl"
+        lines = file.read_bytes().splitlines(keepends=True)
+        lines[1] = lines[1][:40] + b"\n"  # cut in its middle
+        lines[2] = b"\0\xff\0\n"  # what a power cut leaves
+        file.write_bytes(b"".join(lines))
+        out, err = self.sweep(self.study)
+        self.assertIn("manifest.jsonl:2: is damaged", err)
+        self.assertIn("manifest.jsonl:3: is damaged", err)
+        self.assertIn("2 of them from before", out)
+        self.assertEqual(self.table(), before)
+
+    def test_a_folder_whose_header_is_lost_or_damaged_is_refused_until_again(self):
+        self.sweep(self.study)
+        header = self.out / "study.json"
+        for text in ("", "[]", '{"format": 1}', None):
+            header.unlink() if text is None else header.write_text(text)
+            for words in ([], ["merge"], ["check"]):
+                _, err = self.sweep(*words, self.study, code=2)
+                self.assertIn("--again", err)
+                self.assertEqual(len(err.splitlines()), 1, err)
+        self.sweep(self.study, "--again")
+
+    def test_a_second_sweep_in_the_folder_is_refused_and_forgets_nothing(self):
+        slow = 'case "$*" in *0.6*) sleep 1;; esac'
+        first = self.start_with(slow, self.study, "--jobs", 1)
+        lines = self.out / "manifest.jsonl"
+        self.wait_for(lines.exists)
+        for words in ([], ["--again"]):
+            second = self.sweep_with("", self.study, *words)
+            self.assertEqual(second.returncode, 2)
+            self.assertIn("another", second.stderr)
+        out, err = first.communicate(timeout=120)
+        self.assertEqual(first.returncode, 0, out + err)
+        self.assertEqual(len(self.manifest()), RUNS)
+
+    def test_ctrl_c_ends_all_processes_and_the_sweep_continues(self):
+        slow = (f'case "$*" in *0.6*) echo $$ >> {self.folder}/pids; '
+                f'[ -e {self.folder}/go ] || sleep 60;; esac')
+        process = self.start_with(slow, self.study, "--jobs", 2)
+        pids = self.folder / "pids"
+        self.wait_for(lambda: pids.exists() and len(pids.read_text().split()) == 2)
+        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)  # while it cleans up
+        _, err = process.communicate(timeout=30)
+        self.assertEqual(process.returncode, 130, err)
+        self.assertIn("the same command continues", err)
+        self.assertNotIn("Traceback", err)
+        for pid in pids.read_text().split():
+            self.assertFalse(pathlib.Path("/proc", pid).exists(), "still runs")
+        (self.folder / "go").touch()
+        done = self.sweep_with(slow, self.study)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(len(self.manifest()), RUNS)
+
+    def test_a_full_disk_is_named_and_costs_only_what_it_could_not_keep(self):
+        code = ("import resource, sys, runpy; resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000));"
+                "import signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+                f"sys.argv[0] = '{SWEEP}'; runpy.run_path('{SWEEP}', run_name='__main__')")
+        done = subprocess.run([sys.executable, "-B", "-c", code, self.study, "--jobs", "1"],
+                              capture_output=True, text=True, timeout=120,
+                              env={**os.environ, "HAPTICGIANT_PROGRAM": str(PROGRAM)})
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertRegex(done.stderr, r"(?m)^sweep: .*: '.*manifest\.jsonl'$")
+        kept = (self.out / "manifest.jsonl").read_text().count("\n")
+        self.assertGreater(kept, 0)
+        self.assertLess(kept, RUNS)
+        out, _ = self.sweep(self.study)
+        self.assertIn(f"{kept} of them from before", out)
+        self.assertEqual(len(self.manifest()), RUNS)
+
+    def test_numbers_that_are_none_and_names_that_are_not_ascii(self):
+        for key, values in (("twin.mass_scale", "[1, nan, 2]"), ("twin.mass_scale", "[1, .inf]"),
+                            ("duration_s", "[inf]"), ("twin.joints.tür.damping_Nms_per_rad", "[1]")):
+            self.study.write_text(f"fixed: {{scenario: door}}\nparameters:\n  {key}: {values}\n",
+                                  encoding="utf-8")
+            _, err = self.sweep(self.study, code=2)
+            with self.subTest(key, said=err):
+                self.assertIn(f"{self.study}:3:3: ", err)
+        self.assertIn("tür", err)
+        self.assertFalse(self.out.exists())
+
+    def test_a_study_of_a_command_that_is_wrong_is_refused(self):
+        for text, message in (("parts: 2", "1:8: parts: only beside 'command'"),
+                              ("command: [faults]", "key 'parts' is missing"),
+                              ("command: []\nparts: 2", "expected a list of words"),
+                              ("command: [faults]\nparts: 2\nmeasures: [x]", "not beside 'command'")):
+            self.study.write_text(text)
+            _, err = self.sweep(self.study, code=2)
+            self.assertIn(message, err)
+        self.study.write_text("command: [version]\nparts: 2\n")
+        out, _ = self.sweep(self.study, code=1)
+        self.assertIn("2 without a result", out)
+
+    def test_a_command_plays_its_parts_as_runs_and_continues(self):
+        folder, json_file = self.folder / "kept", self.folder / "faults.json"
+        words = ["faults", "--cases", 14, "--scenario", "door", "--json", json_file]
+        code, out, err = run(*words)
+        self.assertIn(code, (0, 1), out + err)
+        whole = json.loads(json_file.read_text())
+        self.assertEqual(len(whole["cases"]), 14)
+        json_file.unlink()
+        code, out, err = run(*words, "--sweep", folder)
+        self.assertIn(code, (0, 1), out + err)
+        self.assertEqual(json.loads(json_file.read_text()), whole)
+        out, _ = self.sweep(folder / "study.yaml")
+        self.assertIn("2 runs of 'faults', 2 of them from before", out)
+        out, _ = self.sweep("check", folder / "study.yaml", "--count", 1)
+        self.assertIn("1 run played again: 1 the same", out)
+        code, _, err = run("faults", "--cases", 15, "--scenario", "door", "--json", json_file,
+                           "--sweep", folder)
+        self.assertEqual(code, 2)
+        self.assertIn("another study", err)
+
+    def test_a_command_whose_runs_need_what_is_missing_says_so_in_a_line(self):
+        bare = self.folder / "bare"
+        bare.write_text(f"#!/bin/sh\nexec {sys.executable} -S -I \"$@\"\n")
+        bare.chmod(0o755)
+        for python in (bare, "/bin/false-no-such-python"):
+            done = subprocess.run([PROGRAM, "faults", "--cases", "2", "--json", self.folder / "x"],
+                                  capture_output=True, text=True, timeout=60,
+                                  env={**os.environ, "HAPTICGIANT_PYTHON": str(python)})
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertRegex(done.stderr, r"^.* needs PyYAML; .*\n$")
+
+    def wait_for(self, what):
+        deadline = time.monotonic() + 60
+        while not what():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+
     # with a program in the place of ours that sometimes dies
-    def sweep_with(self, script, *words):
-        fake = self.folder / "fake"
+    def start_with(self, script, *words):
+        fake = self.folder / ("fake" if script else "plain")
         fake.write_text(f"#!/bin/sh\n{script}\nexec {PROGRAM} \"$@\"\n")
         fake.chmod(fake.stat().st_mode | stat.S_IEXEC)
-        return subprocess.run([sys.executable, "-B", SWEEP, *map(str, words)], capture_output=True,
-                              text=True, env={**os.environ, "HAPTICGIANT_PROGRAM": str(fake)},
-                              timeout=120)
+        return subprocess.Popen([sys.executable, "-B", SWEEP, *map(str, words)], text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                env={**os.environ, "HAPTICGIANT_PROGRAM": str(fake)})
+
+    def sweep_with(self, script, *words):
+        process = self.start_with(script, *words)
+        out, err = process.communicate(timeout=120)
+        return subprocess.CompletedProcess(words, process.returncode, out, err)
 
     def test_a_run_that_was_killed_is_played_again(self):
         once = f'case "$*" in *0.6*"--seed 2 "*) mkdir {self.folder}/once 2>/dev/null && kill -9 $$;; esac'

@@ -3,7 +3,6 @@
 #include "hg/core/error.h"
 #include "hg/studies/changes.h"
 #include "hg/studies/haptify/groups.h"
-#include "hg/studies/workers.h"
 
 namespace hg::haptify {
 
@@ -15,30 +14,23 @@ std::vector<std::uint64_t> Group::seeds() const {
   return all;
 }
 
-void Group::do_all(const std::string& what, std::size_t count,
-                   const std::function<void(std::size_t)>& work) const {
-  studies::do_all(count, work, [&](std::size_t done, std::size_t total) {
-    if (progress) progress(what, done, total);
-  });
-}
-
 void Group::add(const std::string& name, const nlohmann::json& settings,
-                const std::vector<Play>& plays) const {
-  std::vector<nlohmann::json> runs(plays.size());
-  do_all(name, plays.size(), [&](std::size_t i) {
+                const std::vector<Play>& plays, std::size_t together) const {
+  const auto play = [&](std::size_t i) {
     try {
-      runs[i] = plays[i].measure();
+      return plays[i].measure();
     } catch (const SetupError& error) {
-      runs[i] = impossible(std::string(studies::kNotPossible) + error.what());
+      return impossible(std::string(studies::kNotPossible) + error.what());
     }
-    runs[i].update(plays[i].condition);
-  });
-  for (const nlohmann::json& run : runs) {
+  };
+  std::vector<nlohmann::json> played = runs.next(plays.size(), play, together);
+  for (std::size_t i = 0; i < plays.size(); ++i) played[i].update(plays[i].condition);
+  for (const nlohmann::json& run : played) {
     const std::string failure = run.value("failure", "");
     const bool is_possible = !failure.starts_with(studies::kNotPossible);
     out.has_failures = out.has_failures || (!failure.empty() && is_possible);
   }
-  out.measurements[name] = {{"settings", settings}, {"runs", runs}};
+  out.measurements[name] = {{"settings", settings}, {"runs", played}};
 }
 
 std::vector<std::pair<std::string, person::HandPreset>> hands(bool is_quick) {
@@ -72,11 +64,11 @@ SurfaceConfig surface_at(const studies::Place& place) {
 }
 
 Benchmark measure(const config::Scenario& scenario, const HaptifyOptions& options,
-                  const Progress& progress) {
+                  studies::Runs& runs) {
   const studies::Place place = studies::place_of(scenario.device);
   const config::Scenario held = studies::at_place(scenario, place);
   Benchmark result = {.device = scenario.device.name, .place = studies::to_text(place)};
-  const Group group = {held, options, progress, result, place};
+  const Group group = {held, options, runs, result, place};
   add_workspace(group);
   add_free_space(group);
   add_sources(group);

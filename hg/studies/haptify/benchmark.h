@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "hg/config/simulation/scenario.h"
+#include "hg/studies/runs.h"
 
 namespace hg::haptify {
 
@@ -16,10 +16,6 @@ struct HaptifyOptions {
   int repetitions = 5;
   bool is_quick = false;  ///< quick run: few samples, short runs
 };
-
-/// Callback that reports the current measurement and how many of its runs are done; called by one
-/// thread at a time.
-using Progress = std::function<void(const std::string& what, std::size_t done, std::size_t total)>;
 
 struct Benchmark {
   std::string device;  ///< name of the device
@@ -37,13 +33,13 @@ struct Benchmark {
 /// same scenario and options give the same numbers. Throws SetupError when the twin is not a free
 /// body.
 Benchmark measure(const config::Scenario& scenario, const HaptifyOptions& options,
-                  const Progress& progress);
+                  studies::Runs& runs);
 
 /// Measures what has a design goal with `options.repetitions` seeds, at three heights of the handle
 /// and, where a person holds it, in three hands: Table III is for the middle of the workspace, this
 /// for the worst case. `light` is `scenario` with the lightest body that the device can render: it
 /// is used for the forces of free space and of a surface without friction. Errors as measure().
 Benchmark measure_goals(const config::Scenario& scenario, const config::Scenario& light,
-                        const HaptifyOptions& options, const Progress& progress);
+                        const HaptifyOptions& options, studies::Runs& runs);
 
 }  // namespace hg::haptify

@@ -170,13 +170,13 @@ void add_presses(const Group& group) {
 }  // namespace
 
 Benchmark measure_goals(const config::Scenario& scenario, const config::Scenario& light,
-                        const HaptifyOptions& options, const Progress& progress) {
+                        const HaptifyOptions& options, studies::Runs& runs) {
   const studies::Place place = studies::place_of(scenario.device);
   const config::Scenario held = studies::at_place(scenario, place);
   const config::Scenario light_held = studies::at_place(light, place);
   Benchmark result = {.device = scenario.device.name, .place = studies::to_text(place)};
-  const Group group = {held, options, progress, result, place};
-  const Group with_light_body = {light_held, options, progress, result, place};
+  const Group group = {held, options, runs, result, place};
+  const Group with_light_body = {light_held, options, runs, result, place};
   add_transparency(group, 10.0);
   add_transparency(group, 40.0);
   add_latencies(group);

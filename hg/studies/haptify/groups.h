@@ -29,18 +29,15 @@ struct Play {
 struct Group {
   const config::Scenario& scenario;
   const HaptifyOptions& options;
-  const Progress& progress;
+  studies::Runs& runs;
   Benchmark& out;
   const studies::Place& place;  ///< where the handle is held and moved
 
   /// Seeds of the repetitions.
   std::vector<std::uint64_t> seeds() const;
-  /// Calls work(i) for every i < count, on all cores, and reports the progress of `what`.
-  void do_all(const std::string& what, std::size_t count,
-              const std::function<void(std::size_t)>& work) const;
-  /// Plays all runs of the measurement `name`, on all cores, and adds them to `out`.
-  void add(const std::string& name, const nlohmann::json& settings,
-           const std::vector<Play>& plays) const;
+  /// Plays the runs of the measurement `name` and adds them to `out`; `together`: see Runs::next().
+  void add(const std::string& name, const nlohmann::json& settings, const std::vector<Play>& plays,
+           std::size_t together = 1) const;
 };
 
 /// Names and presets of the hands that are compared; of a quick run the normal one.

@@ -1,5 +1,6 @@
 // Frictionless surface, stiffness, peak force, Z-width and impacts.
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -180,10 +181,7 @@ void add_impacts(const Group& group) {
   const bool is_quick = group.options.is_quick;
   const Values stiffness = is_quick ? Values{2e3, 5e4} : Values{2e3, 1e4, 2e4, 5e4};
   const std::vector<Thrown> bodies = thrown(group.scenario, is_quick);
-  std::vector<RunUp> run_ups(bodies.size());
-  group.do_all("run-up", bodies.size(), [&](std::size_t i) {
-    run_ups[i] = find_run_up(group.place, bodies[i].scenario, bodies[i].speed);
-  });
+  std::vector<std::optional<RunUp>> run_ups(bodies.size());  // found when first needed
   std::vector<Play> plays;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Thrown& body = bodies[i];
@@ -193,7 +191,11 @@ void add_impacts(const Group& group) {
                         {"wanted_speed", body.speed},
                         {"stiffness", k}},
                        [&, i, k] {
-                         const RunUp& run_up = run_ups[i];
+                         if (!run_ups[i]) {
+                           run_ups[i] =
+                               find_run_up(group.place, bodies[i].scenario, bodies[i].speed);
+                         }
+                         const RunUp& run_up = *run_ups[i];
                          if (!run_up.why_not.empty()) return impossible(run_up.why_not);
                          const Impact found =
                              measure_impact(bodies[i].scenario, run_up.config, k, bodies[i].speed,
@@ -207,7 +209,7 @@ void add_impacts(const Group& group) {
     }
   }
   group.add("impacts", {{"deepest", kDeepestImpact}, {"rest_speed", ImpactConfig().rest_speed}},
-            plays);
+            plays, stiffness.size());
 }
 
 }  // namespace hg::haptify

@@ -7,16 +7,24 @@
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/studies/fault_campaign.h"
+#include "hg/studies/runs.h"
 
 namespace hg::studies {
 namespace {
 
 config::Scenario walk_scenario() { return config::load_scenario("models/scenarios/walk.yaml"); }
 
+FaultCase play_judged(const config::Scenario& scenario, const FaultCase& drawn,
+                      const CampaignConfig& config, double clean_force) {
+  FaultCase result = play_fault(scenario, drawn, config);
+  judge(config, clean_force, result);
+  return result;
+}
+
 FaultCase play(const char* kind, int index = 0, double magnitude = 0.0) {
   const faults::Injection injection = {
       .kind = faults::find_kind(kind), .index = index, .magnitude = magnitude, .from_s = 2.5};
-  return play_fault(walk_scenario(), {.injection = injection}, {.watched_s = 1.0}, 10.0);
+  return play_judged(walk_scenario(), {.injection = injection}, {.watched_s = 1.0}, 10.0);
 }
 
 TEST(PlayFault, ASensorWithoutANumberIsNoticedInTheSameCycle) {
@@ -41,9 +49,9 @@ FaultCase play_in_a_stop(const char* kind, int index, double magnitude, double a
       .kind = faults::find_kind(kind), .index = index, .magnitude = magnitude, .from_s = 2.5};
   const faults::Injection stop = {.kind = faults::find_kind("emergency_stop"),
                                   .from_s = 2.5 - after_s};
-  return play_fault(walk_scenario(),
-                    {.phase = Phase::kStopping, .injection = injection, .other = stop},
-                    {.watched_s = 2.0}, 10.0);
+  return play_judged(walk_scenario(),
+                     {.phase = Phase::kStopping, .injection = injection, .other = stop},
+                     {.watched_s = 2.0}, 10.0);
 }
 
 TEST(PlayFault, AGantryThatRunsAwayIsStoppedByItsBrakesSoonAndNear) {
@@ -92,7 +100,7 @@ TEST(PlayFault, AGantryEncoderThatDriftsSlowlyIsSeenInTime) {
     const faults::Injection injection = {
         .kind = faults::find_kind("gantry_encoder_drift"), .magnitude = speed, .from_s = 2.5};
     const FaultCase result =
-        play_fault(walk_scenario(), {.injection = injection}, {.watched_s = 40.0}, 10.0);
+        play_judged(walk_scenario(), {.injection = injection}, {.watched_s = 40.0}, 10.0);
     EXPECT_EQ(result.fault, FaultCode::kGantryDeviates);
     EXPECT_LT(result.travel_share, 0.5);
   }
@@ -103,8 +111,8 @@ TEST(PlayFault, AFallingArmIsWatchedToTheEndAndReported) {
       .kind = faults::find_kind("brake_weak"), .index = 4, .from_s = 2.0};
   const faults::Injection stop = {.kind = faults::find_kind("emergency_stop"), .from_s = 4.0};
   const FaultCase result =
-      play_fault(config::load_scenario("models/scenarios/excavator.yaml"),
-                 {.phase = Phase::kPair, .injection = weak, .other = stop}, {}, 10.0);
+      play_judged(config::load_scenario("models/scenarios/excavator.yaml"),
+                  {.phase = Phase::kPair, .injection = weak, .other = stop}, {}, 10.0);
   EXPECT_EQ(result.outcome, Outcome::kNoticed);
   EXPECT_GT(result.travel_share, 1.0);
   EXPECT_TRUE(result.has_reported_slip);
@@ -126,7 +134,7 @@ TEST(PlayFault, WhatBecomesWorseWithoutAReactionIsUnnoticed) {
   const faults::Injection injection = {
       .kind = faults::find_kind("force_sensor_offset"), .magnitude = 5.0, .from_s = 2.5};
   const CampaignConfig strict = {.watched_s = 1.0, .harmless_force = -5.0};
-  EXPECT_EQ(play_fault(walk_scenario(), {.injection = injection}, strict, 0.0).outcome,
+  EXPECT_EQ(play_judged(walk_scenario(), {.injection = injection}, strict, 0.0).outcome,
             Outcome::kUnnoticed);
 }
 
@@ -135,7 +143,8 @@ TEST(Campaign, IsTheSameForTheSameSeedAndTellsEveryCase) {
   scenario.duration_s = 3.0;
   const auto cases_of = [&](std::uint64_t seed) {
     const CampaignConfig config = {.cases = 4, .seed = seed, .watched_s = 0.1};
-    return to_json(run_campaign({scenario}, config, {}, {}))["cases"];
+    Runs runs;
+    return to_json(run_campaign({scenario}, config, {}, runs))["cases"];
   };
   const auto cases = cases_of(3);
   EXPECT_EQ(cases.size(), 4U);

@@ -6,13 +6,45 @@ Exit codes: 0 every run has a result, 1 some have none or are not the same again
 
 from __future__ import annotations
 
-import argparse
-import importlib.util
-import os
-import pathlib
 import signal
 import sys
-import types
+import time
+
+ENDED = 130  # exit code after Ctrl-C
+
+
+AT_ONCE_S = 1.0  # signals that follow each other are one
+interrupted_at = -AT_ONCE_S
+
+
+def interrupt(*_):
+    global interrupted_at
+    now = time.monotonic()
+    if now - interrupted_at >= AT_ONCE_S:  # a second one would end what cleans up after the first
+        interrupted_at = now
+        raise KeyboardInterrupt
+
+
+def end(code):
+    """Ends without a word on what Ctrl-C interrupts from now on."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    if code == ENDED:
+        print("\nended; what has been played is kept, and the same command continues",
+              file=sys.stderr)
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, interrupt)
+    signal.signal(signal.SIGINT, lambda *_: end(ENDED))  # until main() begins
+
+import argparse  # noqa: E402
+import ctypes  # noqa: E402
+import importlib.util  # noqa: E402
+import os  # noqa: E402
+import pathlib  # noqa: E402
+import types  # noqa: E402
 
 if not __package__:
     # Run as a folder: the package's own __init__ would need its compiled part.
@@ -64,6 +96,9 @@ def parsers():
         each.add_argument("--engine", choices=("local", "dask"), default="local")
         each.add_argument("--scheduler", default="",
                           help="address of a Dask scheduler; default: workers on this machine")
+    main.add_argument("--quiet", action="store_true",
+                      help="say only which runs have no result; end with the process that started "
+                           "this: for commands that play their runs so")
     main.add_argument("--shard", type=shard, metavar="I/N", help="only each N-th run, from the I-th on")
     for each in (main, submit):
         each.add_argument("--again", action="store_true", help="forget the runs that the folder has")
@@ -95,8 +130,11 @@ def tell_commands(title, found, result):
         print(f"  and {len(found) - SHOWN} more; all are in {result.folder / 'repeat.sh'}")
 
 
-def tell(result):
+def tell(result, is_quiet=False):
     """Prints what came of a sweep; its exit code."""
+    if is_quiet:
+        tell_commands("without a result:", result.without_result(), result)
+        return 1 if result.without_result() else 0
     lost, fault, unexpected = result.without_result(), result.with_code(3), result.with_code(1)
     continued = f", {result.repeated} of them from before" if result.repeated else ""
     print(f"{runs(len(result.runs))} of '{result.study.title}'{continued}: "
@@ -113,8 +151,17 @@ def tell(result):
     return 1 if lost else 0
 
 
+def end_with_parent():
+    """Ctrl-C reaches a whole group of processes; what kills only the parent would leave us."""
+    pr_set_pdeathsig = 1
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
+
+
 def main(words):
-    if importlib.util.find_spec("yaml") is None:
+    has_yaml = importlib.util.find_spec("yaml") is not None
+    if words == ["--check"]:  # who asks says what is missing
+        return 0 if has_yaml else 2
+    if not has_yaml:
         print(f"sweep: {sys.executable} needs PyYAML: tools/setup.sh build, or pip install pyyaml "
               "scipy pyarrow", file=sys.stderr)
         return 2
@@ -123,10 +170,6 @@ def main(words):
     command = words[0] if words and words[0] in COMMANDS else ""
     arguments = parsers()[command].parse_args(words[1:] if command else words)
 
-    def interrupt(*_):
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGTERM, interrupt)
     try:
         described = study.load_study(arguments.study)
         if command == "show":
@@ -148,7 +191,7 @@ def main(words):
             return 1 if found.differing or not found.played else 0
         if command == "submit":
             if arguments.again:
-                campaign.Folder(campaign.folder_of(described, arguments.out)).forget()
+                campaign.forget(campaign.Folder(campaign.folder_of(described, arguments.out)))
             campaign.begin(described, arguments.out)
             script = slurm.write_script(described, arguments.out, campaign.find_program().file,
                                         arguments.shards, arguments.cpus, arguments.sbatch)
@@ -158,9 +201,13 @@ def main(words):
                 out = f" --out {arguments.out}" if arguments.out else ""
                 print(f"  hapticgiant sweep merge {arguments.study}{out}")
             return 0
+        if arguments.quiet:
+            end_with_parent()
         return tell(campaign.run(described, arguments.out, jobs=arguments.jobs,
                                  shard=arguments.shard, engine=arguments.engine,
-                                 scheduler=arguments.scheduler, again=arguments.again))
+                                 scheduler=arguments.scheduler, again=arguments.again,
+                                 table=not arguments.quiet),
+                    arguments.quiet)
     except (study.StudyError, campaign.SweepError) as error:
         print(error, file=sys.stderr)
         return 2
@@ -170,11 +217,12 @@ def main(words):
     except OSError as error:
         print(f"sweep: {error}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        print("\nended; what has been played is kept, and the same command continues",
-              file=sys.stderr)
-        return 130
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    try:
+        signal.signal(signal.SIGINT, interrupt)
+        exit_code = main(sys.argv[1:])
+    except KeyboardInterrupt:
+        exit_code = ENDED
+    end(exit_code)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import json
+import math
 import os
 import pathlib
 import random
@@ -11,7 +13,7 @@ import shlex
 import time
 
 from hapticgiant.sweep import engines
-from hapticgiant.sweep.manifest import HEADER, Folder, Manifest
+from hapticgiant.sweep.manifest import HEADER, Folder, Manifest, SweepError
 from hapticgiant.sweep.program import (BAD_INPUT, SUMMARY, Outcome, Program, find_program,
                                        measures_of)
 from hapticgiant.sweep.progress import Progress
@@ -24,10 +26,6 @@ TRIES = 3  # of a run that somebody has ended
 FIRST_RUNS = 10  # that must not all be refused
 LATER = {"events", "reality", "shaking", "link"}  # measures that a trial is too short for
 TRIAL = ["--duration", "0.001"]  # enough to load, check and take the posture
-
-
-class SweepError(RuntimeError):
-    """A sweep that cannot be begun, continued or merged; the message says what to do."""
 
 
 @dataclasses.dataclass
@@ -66,24 +64,25 @@ class Result:
 
     def command(self, run: Run) -> str:
         """The command that repeats this run."""
-        return shlex.join(self.program.command(self.study.arguments(run)))
+        return shlex.join(self.program.command(self.study, run))
 
 
 def run(study: Study | str | os.PathLike, out: str | os.PathLike | None = None, *,
         jobs: int | None = None, shard: tuple[int, int] | None = None, engine: str = "local",
-        scheduler: str = "", again: bool = False) -> Result:
+        scheduler: str = "", again: bool = False, table: bool = True) -> Result:
     """Plays all runs of a study that its folder does not have, and writes the table.
 
     out: the folder; default NAME.sweep beside the study. jobs: processes at a time. shard: (i, n)
     plays each n-th run from the i-th on. engine: local or dask, there at `scheduler` or, without
-    one, on this machine. again: forgets what the folder has. Raises StudyError, SweepError.
+    one, on this machine. again: forgets what the folder has. table: whether the table is written.
+    Raises StudyError, SweepError.
     """
     study, folder, program = _prepare(study, out)
     if again and shard is not None:
         raise SweepError("--again deletes the runs of other shards, too: give it to `submit` or to "
                          "a sweep without --shard")
     if again:
-        folder.forget()
+        forget(folder)
     _begin(study, folder, program, jobs)
     records = folder.records()
     has_before = {number for number, record in records.items() if record["state_hash"] is not None}
@@ -91,8 +90,8 @@ def run(study: Study | str | os.PathLike, out: str | os.PathLike | None = None, 
     try:
         manifest = Manifest(folder, shard)
     except BlockingIOError:
-        raise SweepError(f"{folder.path}: another sweep is writing there") from None
-    commands = {run.number: program.command(study.arguments(run)) + SUMMARY for run in wanted}
+        raise _busy(folder) from None
+    commands = {run.number: program.measured(study, run) for run in wanted}
     by_number = {run.number: run for run in wanted}
     refused = 0
     try:
@@ -108,9 +107,17 @@ def run(study: Study | str | os.PathLike, out: str | os.PathLike | None = None, 
         manifest.close()
     result = Result(study, folder.path, records, program, shard=shard,
                     repeated=len(_of_shard(study, shard)) - len(wanted))
-    if shard is None:
+    if shard is None and table:
         result.file = write_table(folder.path, result.rows)
     return result
+
+
+def forget(folder: Folder) -> None:
+    """Deletes the runs of a folder. Raises SweepError while another sweep writes there."""
+    try:
+        folder.forget()
+    except BlockingIOError:
+        raise _busy(folder) from None
 
 
 def begin(study: Study | str | os.PathLike, out: str | os.PathLike | None = None) -> None:
@@ -159,7 +166,7 @@ def check(study: Study | str | os.PathLike, out: str | os.PathLike | None = None
     if count is not None and count < len(played):
         played = sorted(random.Random(1).sample(played, count), key=lambda run: run.number)
     by_number = {run.number: run for run in played}
-    commands = {run.number: program.command(study.arguments(run)) + SUMMARY for run in played}
+    commands = {run.number: program.measured(study, run) for run in played}
     differing = []
     for number, outcome, seconds in _play(commands, engine, scheduler, jobs, "repeated"):
         before = records[number]
@@ -224,7 +231,7 @@ def _trials(study):
     for key in first.parameters:
         values = list(dict.fromkeys(run.parameters[key] for run in study.runs))
         numbers = [value_of(value) for value in values]
-        if all(isinstance(value, (int, float)) for value in numbers):
+        if all(isinstance(value, (int, float)) and math.isfinite(value) for value in numbers):
             values = [values[numbers.index(end(numbers))] for end in (min, max)]
         trials += [Run(0, {**first.parameters, key: value}) for value in values]
     return trials
@@ -232,9 +239,17 @@ def _trials(study):
 
 def _header(study, program, jobs):
     """Who plays what with which files; tries whether the runs can begin."""
+    header = {"format": FORMAT, "title": study.title, "runs": len(study.runs),
+              "study": study.digest(), "version": program.version, "program": program.digest,
+              "files": study.files}
+    return header if study.command else {**header, "files": _files(study, program, jobs)}
+
+
+def _files(study, program, jobs):
+    """What the files of the runs hold, as a hash. Raises StudyError where runs cannot begin."""
     for duration in {run.parameters.get("duration_s", study.fixed.get("duration_s"))
                      for run in study.runs} - {None}:
-        if not isinstance(value_of(duration), (int, float)) or not value_of(duration) > 0:
+        if not isinstance(value_of(duration), (int, float)) or not 0 < value_of(duration) < math.inf:
             raise StudyError(f"{study.place('duration_s')}: duration_s: expected a number above 0, "
                              f"got '{duration}'")
     commands = {}
@@ -243,7 +258,7 @@ def _header(study, program, jobs):
         if "--duration" in arguments:
             at = arguments.index("--duration")
             del arguments[at:at + 2]
-        command = program.command(arguments + TRIAL) + SUMMARY
+        command = program.run(arguments + TRIAL) + SUMMARY
         if command not in commands.values():
             commands[len(commands)] = command
     first = dict(engines.Local(1).play({0: commands.pop(0)}))
@@ -262,9 +277,15 @@ def _header(study, program, jobs):
             raise StudyError(f"{study.file}: measures: no measure '{wanted}', did you mean "
                              f"'{nearest(top, known)}'?")
     files = "".join(summary["configuration"] for summary in summaries)
-    return {"format": FORMAT, "title": study.title, "runs": len(study.runs),
-            "study": study.digest(), "version": program.version, "program": program.digest,
-            "files": hashlib.sha256(files.encode()).hexdigest()[:16]}
+    return _digest(files)
+
+
+def _digest(text):
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _busy(folder):
+    return SweepError(f"{folder.path}: another sweep is writing there")
 
 
 def _other(folder, what):
@@ -338,6 +359,13 @@ def _record(study: Study, run: Run, program: Program, outcome: Outcome, seconds:
               "ended_s": round(seconds, 3)}
     if summary is None:
         record["error"] = outcome.why()
+        if study.command:
+            record["results"] = None
+    elif study.command and not isinstance(summary.get("results"), dict):
+        record |= {"error": f"{study.command[0]}: has no parts that print results", "results": None}
+    elif study.command:
+        results = summary["results"]
+        record |= {"state_hash": _digest(json.dumps(results, sort_keys=True)), "results": results}
     else:
         record |= {"state_hash": summary["state_hash"], "fault": summary["fault"]["code"],
                    "measures": measures_of(summary)}

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import concurrent.futures
+import contextlib
 import os
+import queue
 import signal
 import subprocess
 import threading
@@ -19,6 +20,21 @@ def processors() -> int:
     return len(os.sched_getaffinity(0))
 
 
+@contextlib.contextmanager
+def undisturbed():
+    """Here Ctrl-C is without effect, so that what has to be cleaned up is."""
+    signals = (signal.SIGINT, signal.SIGTERM)
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = [signal.signal(number, signal.SIG_IGN) for number in signals]
+    try:
+        yield
+    finally:
+        for number, handler in zip(signals, before):
+            signal.signal(number, handler if handler is not None else signal.SIG_DFL)
+
+
 class Local:
     """Processes on this machine, `jobs` at a time."""
 
@@ -27,34 +43,54 @@ class Local:
 
     def play(self, commands: dict[int, list[str]]) -> Iterator[tuple[int, Outcome]]:
         """Ends all processes when the caller stops asking."""
-        lock, running = threading.Lock(), set()
-        has_ended = False
+        lock, running, waiting = threading.Lock(), set(), iter(commands.items())
+        ended, has_stopped = queue.SimpleQueue(), False
 
-        def one(number, words):
+        def begin_one():
             with lock:
-                if has_ended:
-                    return number, Outcome(LOST, "", "")
+                number, words = next(waiting, (None, None))
+                if has_stopped or number is None:
+                    return None, None
                 # a session of its own: Ctrl-C would end the run early, and as if all were well
                 process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                           stderr=subprocess.PIPE, text=True, errors="replace",
-                                           start_new_session=True)
+                                           stderr=subprocess.PIPE, encoding="utf-8",
+                                           errors="replace", start_new_session=True)
                 running.add(process)
-            out, err = process.communicate()
-            with lock:
-                running.discard(process)
-            return number, Outcome(process.returncode, out, err)
+                return number, process
 
-        pool = concurrent.futures.ThreadPoolExecutor(self.jobs)
+        def serve():
+            try:
+                while True:
+                    number, process = begin_one()
+                    if process is None:
+                        return
+                    out, err = process.communicate()
+                    with lock:
+                        running.discard(process)
+                    ended.put((number, Outcome(process.returncode, out, err)))
+            except Exception as error:  # no process could be started
+                ended.put((None, error))
+
+        threads = [threading.Thread(target=serve, daemon=True)
+                   for _ in range(min(self.jobs, len(commands)))]
         try:
-            futures = [pool.submit(one, *item) for item in commands.items()]
-            for future in concurrent.futures.as_completed(futures):
-                yield future.result()
+            for thread in threads:
+                thread.start()
+            for _ in commands:
+                number, outcome = ended.get()
+                if number is None:
+                    raise outcome
+                yield number, outcome
         finally:
-            with lock:
-                has_ended = True
-                for process in running:
-                    process.kill()
-            pool.shutdown(cancel_futures=True)
+            with undisturbed():
+                with lock:
+                    has_stopped = True
+                    for process in running:
+                        if process.poll() is None:
+                            os.killpg(process.pid, signal.SIGKILL)
+                for thread in threads:
+                    if thread.ident is not None:
+                        thread.join()
 
     def close(self) -> None:
         pass
@@ -79,7 +115,7 @@ class Dask:
         """Dask gives the runs of a lost worker to others."""
         numbers = {
             self._client.submit(subprocess.run, words, stdin=subprocess.DEVNULL,
-                                capture_output=True, text=True, errors="replace",
+                                capture_output=True, encoding="utf-8", errors="replace",
                                 start_new_session=True, cwd=os.getcwd(), pure=False): number
             for number, words in commands.items()}
         for future in self._as_completed(list(numbers)):

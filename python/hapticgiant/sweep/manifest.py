@@ -7,12 +7,20 @@ that a sweep that is killed loses the runs that are being played and nothing els
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import json
 import os
 import pathlib
+import sys
 
 HEADER = "study.json"
+KEYS = {"format", "title", "runs", "study", "version", "program", "files"}  # of the header
+LINES = "manifest*.jsonl"
+
+
+class SweepError(RuntimeError):
+    """A sweep that cannot be begun, continued or merged; the message says what to do."""
 
 
 class Folder:
@@ -22,42 +30,81 @@ class Folder:
         self.path = path
 
     def header(self) -> dict | None:
+        """None for a folder without a sweep. Raises SweepError."""
         try:
-            return json.loads((self.path / HEADER).read_text(encoding="utf-8"))
+            header = json.loads((self.path / HEADER).read_text(encoding="utf-8"))
         except FileNotFoundError:
+            if any(file.stat().st_size for file in self.path.glob(LINES)):
+                raise SweepError(f"{self.path} has runs, but no {HEADER} that says of which study: "
+                                 "--again forgets them") from None
             return None
+        except ValueError:
+            header = None
+        if not isinstance(header, dict) or not KEYS <= header.keys():
+            raise SweepError(f"{self.path / HEADER}: is damaged: --again forgets the runs")
+        return header
 
     def settle(self, header: dict) -> dict:
         """Writes the header unless there is one; returns the one that is there now."""
         self.path.mkdir(parents=True, exist_ok=True)
         partial = self.path / f"{HEADER}.{os.uname().nodename}.{os.getpid()}"
-        partial.write_text(json.dumps(header, indent=2) + "\n", encoding="utf-8")
         try:
+            partial.write_text(json.dumps(header, indent=2) + "\n", encoding="utf-8")
             os.link(partial, self.path / HEADER)  # of several shards the first one
         except FileExistsError:
             pass
         finally:
-            partial.unlink()
+            partial.unlink(missing_ok=True)
         return self.header()
 
     def records(self) -> dict[int, dict]:
         """By number of the run, of all shards; of several lines about a run one with a result."""
         records = {}
-        for file in sorted(self.path.glob("manifest*.jsonl")):
-            with open(file, encoding="utf-8") as lines:
-                for line in lines:
+        for file in sorted(self.path.glob(LINES)):
+            with open(file, encoding="utf-8", errors="replace") as lines:
+                for number, line in enumerate(lines, 1):
                     if not line.endswith("\n"):
                         continue  # was being written
-                    record = json.loads(line)
-                    if record["run"] not in records or record["state_hash"] is not None:
+                    record = _read(line)
+                    if record is None:
+                        print(f"{file}:{number}: is damaged; its run is played again",
+                              file=sys.stderr)
+                    elif record["run"] not in records or record["state_hash"] is not None:
                         records[record["run"]] = record
         return records
 
     def forget(self) -> None:
-        """Deletes everything of the sweep, and nothing else."""
-        for pattern in (HEADER, "manifest*.jsonl", "results.*", "repeat.sh"):
-            for file in self.path.glob(pattern):
+        """Deletes everything of the sweep, and nothing else. Raises BlockingIOError while another
+        process writes there."""
+        with contextlib.ExitStack() as stack:
+            files = list(self.path.glob(LINES))
+            for file in files:
+                descriptor = os.open(file, os.O_RDWR)
+                stack.callback(os.close, descriptor)
+                _lock(descriptor)
+            for file in files:
                 file.unlink()
+            for pattern in ("results.*", "repeat.sh", HEADER):  # last: see header()
+                for file in self.path.glob(pattern):
+                    file.unlink()
+
+
+def _read(line):
+    try:
+        record = json.loads(line)
+    except ValueError:
+        return None
+    is_whole = isinstance(record, dict) and {"run", "state_hash", "exit_code"} <= record.keys()
+    return record if is_whole else None
+
+
+def _lock(descriptor):
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise
+    except OSError:
+        pass  # a file system without locks
 
 
 class Manifest:
@@ -65,14 +112,20 @@ class Manifest:
 
     def __init__(self, folder: Folder, shard: tuple[int, int] | None):
         name = "manifest.jsonl" if shard is None else f"manifest.{shard[0]}of{shard[1]}.jsonl"
-        self._file = os.open(folder.path / name, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(self._file)
-            raise
-        except OSError:
-            pass  # a file system without locks
+        self._path = folder.path / name
+        while True:
+            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
+            try:
+                _lock(self._file)
+                is_there = os.path.samestat(os.fstat(self._file), os.stat(self._path))
+            except FileNotFoundError:
+                is_there = False
+            except BlockingIOError:
+                os.close(self._file)
+                raise
+            if is_there:
+                break
+            os.close(self._file)  # somebody has just forgotten it
         self._drop_partial_line()
 
     def _drop_partial_line(self):
@@ -88,8 +141,11 @@ class Manifest:
 
     def append(self, record: dict) -> None:
         data = (json.dumps(record) + "\n").encode()
-        while data:
-            data = data[os.write(self._file, data):]
+        try:
+            while data:
+                data = data[os.write(self._file, data):]
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(self._path)) from None
 
     def close(self) -> None:
         os.close(self._file)

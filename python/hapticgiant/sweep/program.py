@@ -11,6 +11,8 @@ import shutil
 import subprocess
 import sys
 
+from hapticgiant.sweep.study import Run, Study
+
 QUIET = ["--fast", "--no-viewer", "--no-recording", "--flight-recorder", "off"]
 SUMMARY = ["--summary", "/dev/stdout"]
 # of a summary: what depends on the computer, what a run is told, and what has a column of its own
@@ -31,9 +33,19 @@ class Program:
     version: str
     digest: str
 
-    def command(self, arguments: list[str]) -> list[str]:
-        """The run with these arguments, as it can be typed."""
+    def command(self, study: Study, run: Run) -> list[str]:
+        """The command of a run, as it can be typed."""
+        if study.command:
+            return [self.file, *study.command, *study.arguments(run)]
+        return self.run(study.arguments(run))
+
+    def run(self, arguments: list[str]) -> list[str]:
+        """`hapticgiant run` with these arguments, as it can be typed."""
         return [self.file, "run", *arguments, *QUIET]
+
+    def measured(self, study: Study, run: Run) -> list[str]:
+        """The same, so that it prints what Outcome.summary() reads."""
+        return self.command(study, run) + ([] if study.command else SUMMARY)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -51,7 +63,7 @@ class Outcome:
             summary = json.loads(self.out[begin + 1:]) if begin >= 0 else None
         except ValueError:
             return None
-        return None if summary is None or summary["interrupted"] else summary
+        return None if summary is None or summary.get("interrupted") else summary
 
     def was_ended(self) -> bool:
         """Whether somebody else has ended it, or a signal did, so that it is worth another try."""

@@ -1,5 +1,8 @@
 """A study: a YAML file that says which runs there are.
 
+A study of another command of the program is written by that command (command, parts, files): its
+runs are the shares of its work, `--part I/N`.
+
 fixed and parameters have the same keys: an option of `hapticgiant run` (seed, hand, duration_s), or
 a key of one of its files (twin.mass_scale). Values are kept as the words of the file: they go to
 the program as they stand.
@@ -9,6 +12,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import functools
 import hashlib
 import itertools
 import json
@@ -51,9 +55,15 @@ class Study:
     measures: list[str]
     places: dict[str, str]
     """Where a key stands: "study.yaml:7:3"."""
+    command: list[str] = dataclasses.field(default_factory=list)
+    """Words of a command that plays a share of its work per run; empty: `run`."""
+    files: str = ""
+    """Of such a study, what its files hold, as a hash."""
 
     def arguments(self, run: Run) -> list[str]:
         """The words after `hapticgiant run` that are this run's own."""
+        if self.command:
+            return ["--part", run.parameters["part"]]
         words, options = [], {**self.fixed, **run.parameters}
         words.append(self._file_or_name("scenario", options.get("scenario", "door")))
         for key, value in options.items():
@@ -68,6 +78,8 @@ class Study:
     def digest(self) -> str:
         """Differs where any run differs."""
         every = [[run.number, self.arguments(run)] for run in self.runs]
+        if self.command:
+            every = [self.command, self.files, every]
         return hashlib.sha256(json.dumps(every).encode()).hexdigest()[:16]
 
     def place(self, key: str) -> str:
@@ -78,8 +90,13 @@ class Study:
         return str(self.file)
 
     def _file_or_name(self, key, value):
-        beside = self.file.parent / value
-        return str(beside.resolve()) if key in FILES and beside.is_file() else value
+        return _file_beside(self.file, value) if key in FILES else value
+
+
+@functools.cache
+def _file_beside(study, name):
+    beside = study.parent / name
+    return str(beside.resolve()) if beside.is_file() else name
 
 
 def value_of(words: str):
@@ -124,7 +141,13 @@ class _Reader:
         if root is None:
             raise StudyError(f"{self.file}: expected a map of keys, got nothing")
         self.nodes = yaml.nodes
-        parts = self.map(root, "", ("title", "fixed", "parameters", "samples", "rows", "measures"))
+        parts = self.map(root, "", ("title", "fixed", "parameters", "samples", "rows", "measures",
+                                    "command", "parts", "files"))
+        if "command" in parts:
+            return self.study_of_a_command(root, parts)
+        for key in ("parts", "files"):
+            if key in parts:
+                self.fault(parts[key], key, "only beside 'command'")
         fixed = {key: self.words(node) for key, node in self.keys(parts.get("fixed")).items()}
         grid, ranges = {}, {}
         for key, node in self.keys(parts.get("parameters")).items():
@@ -149,6 +172,20 @@ class _Reader:
         return Study(self.file, self.words(title) if title else self.file.stem, fixed, runs,
                      [self.words(node) for node in measures.value] if measures else [],
                      self.places)
+
+    def study_of_a_command(self, root, parts):
+        for needed in ("command", "parts"):
+            if needed not in parts:
+                self.fault(root, "", f"key '{needed}' is missing")
+        if others := [key for key in parts if key not in ("title", "command", "parts", "files")]:
+            self.fault(parts[others[0]], others[0], "not beside 'command'")
+        if not isinstance(parts["command"], self.nodes.SequenceNode) or not parts["command"].value:
+            self.fault(parts["command"], "command", "expected a list of words")
+        command = [self.words(word) for word in parts["command"].value]
+        count = self.count(parts["parts"], "parts")
+        return Study(self.file, self.words(parts["title"]) if "title" in parts else command[0], {},
+                     [Run(i, {"part": f"{i}/{count}"}) for i in range(1, count + 1)], [], {},
+                     command, self.words(parts["files"]) if "files" in parts else "")
 
     def fault(self, node, item, what):
         mark = node.start_mark

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import csv
 import fnmatch
+import json
+import os
 import pathlib
 
 from hapticgiant.sweep.study import Study, value_of
@@ -28,6 +30,12 @@ def rows_of(study: Study, records: dict[int, dict]) -> list[dict]:
         record = records.get(run.number)
         if record is None:
             continue
+        if study.command:
+            for number, result in sorted((record["results"] or {}).items(), key=lambda it: int(it[0])):
+                rows.append({"run": int(number), **{
+                    key: value if isinstance(value, (int, float, str, type(None))) else
+                    json.dumps(value) for key, value in result.items()}})
+            continue
         row = {"run": run.number}
         row |= {key: value_of(words) for key, words in run.parameters.items()}
         row |= {key: record[key] for key in ("exit_code", "state_hash", "fault")}
@@ -35,7 +43,7 @@ def rows_of(study: Study, records: dict[int, dict]) -> list[dict]:
             if name not in row and is_chosen(name):
                 row[name] = value
         rows.append(row)
-    return rows
+    return sorted(rows, key=lambda row: row["run"])
 
 
 def columns_of(rows: list[dict]) -> dict[str, list]:
@@ -55,21 +63,24 @@ def columns_of(rows: list[dict]) -> dict[str, list]:
 
 def write_table(folder: pathlib.Path, rows: list[dict]) -> pathlib.Path:
     """Writes results.parquet or results.csv, whole or not at all; returns the file."""
-    columns = columns_of(rows)
     try:
         import pyarrow
         import pyarrow.parquet
     except ImportError:
-        file = folder / "results.csv"
-        partial = file.with_suffix(".partial")
-        with open(partial, "w", newline="", encoding="utf-8") as out:
-            writer = csv.writer(out)
-            writer.writerow(columns)
-            writer.writerows(zip(*columns.values()))
-    else:
-        file = folder / "results.parquet"
-        partial = file.with_suffix(".partial")
-        arrays = {name: pyarrow.array(values) for name, values in columns.items()}
-        pyarrow.parquet.write_table(pyarrow.table(arrays), partial)
-    partial.rename(file)
+        pyarrow = None
+    columns = columns_of(rows)
+    file = folder / ("results.csv" if pyarrow is None else "results.parquet")
+    partial = file.with_suffix(f".{os.uname().nodename}.{os.getpid()}")
+    try:
+        if pyarrow is None:
+            with open(partial, "w", newline="", encoding="utf-8") as out:
+                writer = csv.writer(out)
+                writer.writerow(columns)
+                writer.writerows(zip(*columns.values()))
+        else:
+            arrays = {name: pyarrow.array(values) for name, values in columns.items()}
+            pyarrow.parquet.write_table(pyarrow.table(arrays), partial)
+        partial.rename(file)
+    finally:
+        partial.unlink(missing_ok=True)
     return file
