@@ -18,7 +18,7 @@ constexpr double kDegree = pi / 180.0;
 constexpr double kShortest = 1.2, kTallest = 2.3;  // m
 constexpr double kArmRadius = 0.04;                // [A] of forearm and hand, m
 
-// [ANSUR]: mean and standard deviation of the stature, m
+// [GB14]: mean and standard deviation of the stature, m
 struct Population {
   double mean, deviation;
 };
@@ -43,7 +43,9 @@ struct JointRow {
   double from, to, dq_max, ddq_max, torque, share;
 };
 // Ranges [BA79]; abduction beyond 90 degrees is flexion beyond 90 with the arm turned, so that it
-// would count twice, or lie behind the back; adduction [K]. Speeds and accelerations [K].
+// would count twice, or lie behind the back; adduction [K]. Speeds and accelerations [K]. Torques:
+// shoulder flexion by a published mean, wrist [DG96], others [A]; shares of women: shoulder
+// likewise, elbow [KB85], wrist [WI25], others by their neighbours.
 constexpr std::array<JointRow, kArmJoints> kJoints = {{
     {"shoulder flexion", -62, 167, 5, 40, 69, 0.50},
     {"shoulder abduction", -30, 90, 5, 40, 60, 0.50},
@@ -53,7 +55,7 @@ constexpr std::array<JointRow, kArmJoints> kJoints = {{
     {"wrist flexion", -75, 76, 8, 120, 7.1, 0.64},
     {"radial deviation", -36, 22, 6, 100, 9.5, 0.64},
 }};
-constexpr double kSpeedOfWomen = 0.9;  // [KBVV85]
+constexpr double kSpeedOfWomen = 0.9;  // [KB85]: arm flexion
 
 // z with the share `p` of a standard normal distribution below it
 double normal_quantile(double p) {

@@ -1,9 +1,9 @@
 /// The arm of a standing person: seven joints from anthropometry, with ranges, speeds,
 /// accelerations and torques.
 ///
-/// Sources, [HANDBOOK] 8.1 and docs/concepts/human_arm.md: stature by [ANSUR], lengths as shares of
-/// it by [DC66], ranges by [BA79], speeds and accelerations [K] of the handbook, torques of men and
-/// the share of women by several. A right arm; a left one is its mirror image.
+/// Sources, [HANDBOOK] 8.1 and docs/concepts/human_arm.md: stature by [GB14], lengths as shares of
+/// it by [DC66], ranges by [BA79], speeds and accelerations of the handbook, torques of several. A
+/// right arm; a left one is its mirror image.
 ///
 /// Frame F stands on the floor under the middle of the person: x forward, y left, z up. The frame
 /// of the hand has its origin in the middle of the grip: x along the hand away from the wrist, z

@@ -29,6 +29,8 @@ void check(const CapabilityOptions& options) {
   require(options.voxel >= 0.01 && options.voxel <= 1.0, "voxel: 0.01 to 1 m", options.voxel);
   require(options.orientation_bands >= 1 && options.orientation_bands <= 50,
           "orientation_bands: 1 to 50", options.orientation_bands);
+  require(options.effort > 0.0 && options.effort <= 1.0, "effort: above 0, at most 1",
+          options.effort);
 }
 
 ArmVector draw(const HumanArm& arm, Random& random) {
@@ -90,12 +92,12 @@ struct Cell {
 
 }  // namespace
 
-HandPose hand_pose(const HumanArm& arm, const ArmVector& q) {
+HandPose hand_pose(const HumanArm& arm, const ArmVector& q, double effort) {
   const ArmPosture posture = arm_posture(arm, q);
   const auto linear = posture.J.topRows<3>();
   const auto angular = posture.J.bottomRows<3>();
-  const ArmVector speeds = of_joints(arm, &ArmJoint::dq_max);
-  const ArmVector accelerations = of_joints(arm, &ArmJoint::ddq_max);
+  const ArmVector speeds = effort * of_joints(arm, &ArmJoint::dq_max);
+  const ArmVector accelerations = effort * of_joints(arm, &ArmJoint::ddq_max);
   const ArmVector torques = of_joints(arm, &ArmJoint::torque);
   return {.T_F_hand = posture.T_F_hand,
           .q = q,
@@ -151,7 +153,7 @@ HumanCapability human_capability(const HumanArm& arm, const CapabilityOptions& o
     const auto rest = static_cast<double>(chosen.size() - i);
     std::swap(chosen[i], chosen[i + static_cast<std::size_t>(rest * random.next())]);
     const Cell& cell = chosen[i].second;
-    result.poses.push_back(hand_pose(arm, cell.q));
+    result.poses.push_back(hand_pose(arm, cell.q, options.effort));
     if (options.weight == PoseWeight::kSamples) result.poses.back().weight = cell.samples;
   }
   return result;

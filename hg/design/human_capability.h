@@ -33,6 +33,9 @@ struct CapabilityOptions {
   double voxel = 0.1;         ///< Edge of a cube, m
   int orientation_bands = 6;  ///< Bands of the hand's direction; 2 n of azimuth, 2 n of roll
   PoseWeight weight = PoseWeight::kOne;
+  /// Share of the largest speeds and accelerations that the person uses, above 0 to 1; unhurried
+  /// everyday motions take about half, [HANDBOOK] 8.1 [A]
+  double effort = 1.0;
 };
 
 /// One pose of the hand, and the ellipsoids of the hand in it.
@@ -58,7 +61,7 @@ struct HumanCapability {
 /// Throws SetupError where an option is out of range.
 HumanCapability human_capability(const HumanArm& arm, const CapabilityOptions& options = {});
 
-/// The pose and ellipsoids of one posture; weight 1.
-HandPose hand_pose(const HumanArm& arm, const ArmVector& q);
+/// The pose and ellipsoids of one posture; weight 1. `effort`: see CapabilityOptions.
+HandPose hand_pose(const HumanArm& arm, const ArmVector& q, double effort = 1.0);
 
 }  // namespace hg::design
