@@ -12,6 +12,7 @@
 #include "hg/controller/safety/stopping.h"
 #include "hg/core/error.h"
 #include "hg/core/index.h"
+#include "hg/model/haptic_giant.h"
 
 namespace hg::config {
 namespace {
@@ -93,6 +94,13 @@ void check_gantry(Loader& loader, const model::ChainModel& chain, const DeviceDr
                 "kinematics",
                 "haptic_giant needs two prismatic gantry joints and six manipulator joints");
     loader.rule(!has_posture, "posture", "haptic_giant has the posture of eq. (30)");
+    if (model.handle >= 0 && chain.nv() == kMaxGantry + 6) {
+      try {
+        model::haptic_giant::lengths_of(chain, model.handle);
+      } catch (const SetupError& error) {
+        loader.rule(false, "kinematics", error.what());
+      }
+    }
   } else {
     loader.rule(draft.gantry.empty() || loader.is_given("posture"), "gantry",
                 "a gantry needs 'posture': without goals of the joints it has nowhere to go");

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "hg/core/error.h"
+#include "hg/model/chain_data.h"
+
 namespace hg::model::haptic_giant {
 namespace {
 
@@ -33,7 +36,7 @@ struct Wrist {
   InverseStatus status;
 };
 
-Wrist solve_wrist(const Pose& T_B_H, int f, int w) noexcept {
+Wrist solve_wrist(const Pose& T_B_H, int f, int w, const Lengths& lengths) noexcept {
   const Eigen::Matrix3d& C = T_B_H.R;
   Wrist wrist = {};
   const double sin_beta = std::hypot(C(0, 2), C(1, 2));
@@ -48,11 +51,11 @@ Wrist solve_wrist(const Pose& T_B_H, int f, int w) noexcept {
     wrist.status = InverseStatus::kSingular;
   }
 
-  const double cos_q4 = (-kD3 - kD6 * std::cos(wrist.s) - T_B_H.p.z()) / kL4;
+  const double cos_q4 = (-lengths.D3 - lengths.D6 * std::cos(wrist.s) - T_B_H.p.z()) / lengths.L4;
   if (std::abs(cos_q4) > kLargestCosine) wrist.status = InverseStatus::kHeightOutOfReach;
   wrist.q4 = w * std::acos(std::clamp(cos_q4, -1.0, 1.0));
 
-  const double r = kL4 * std::sin(wrist.q4) + kD6 * std::sin(wrist.s);
+  const double r = lengths.L4 * std::sin(wrist.q4) + lengths.D6 * std::sin(wrist.s);
   wrist.elbow = T_B_H.p.head<2>() - r * e(wrist.psi);
   return wrist;
 }
@@ -79,51 +82,96 @@ std::string_view to_string(InverseStatus status) noexcept {
   return "unknown";
 }
 
-Eigen::Vector3d elbow(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept {
-  const Eigen::Vector2d xy = q_p + kL1 * e(q_m[0]) + kL2 * e(q_m[0] + q_m[1]);
-  return {xy.x(), xy.y(), -kD3};
+Lengths lengths_of(const ChainModel& chain, int handle) {
+  if (chain.nv() != 8 || chain.nq() != 8) {
+    throw SetupError("the closed form needs two gantry joints and six manipulator joints");
+  }
+  ChainData data(chain);
+  const auto pose = [&](const Eigen::Vector2d& q_p, const Vector6& q_m) -> Pose {
+    Eigen::VectorXd q(8);
+    q << q_p, q_m;
+    data.update_poses(q);
+    return data.pose(handle);
+  };
+  const auto at = [&](double q2, double q4, double q5) -> Eigen::Vector3d {
+    return pose({0, 0}, (Vector6() << 0, q2, 0, q4, q5, 0).finished()).p;
+  };
+  const Eigen::Vector3d hanging = at(0, 0, 0);
+  const double folded_x = at(pi, 0, 0).x();
+  const double level_z = at(0, pi / 2, 0).z();
+  const double D6 = at(0, pi / 2, pi / 2).z() - level_z;
+  const Lengths lengths = {.L1 = (hanging.x() + folded_x) / 2,
+                           .L2 = (hanging.x() - folded_x) / 2,
+                           .D3 = -level_z,
+                           .L4 = level_z - hanging.z() - D6,
+                           .D6 = D6};
+
+  // postures in which every joint and length counts
+  constexpr double kSame = 1e-6;  // m and 1
+  const Eigen::Vector2d q_p(0.3, -0.2);
+  for (double angle : {0.4, 1.1}) {
+    const Vector6 q_m =
+        (Vector6() << angle, 1.2, -0.5 - angle, 0.9 * angle, 0.3, -0.7 * angle).finished();
+    const Pose expected = hand_pose(q_p, q_m, lengths);
+    const Pose is = pose(q_p, q_m);
+    if ((is.p - expected.p).norm() < kSame && (is.R - expected.R).norm() < kSame) continue;
+    throw SetupError(
+        "the joints are not arranged as those of a HapticGiant; with "
+        "'kinematics: general' and a posture the device works");
+  }
+  return lengths;
+}
+
+Eigen::Vector3d elbow(const Eigen::Vector2d& q_p, const Vector6& q_m,
+                      const Lengths& lengths) noexcept {
+  const Eigen::Vector2d xy = q_p + lengths.L1 * e(q_m[0]) + lengths.L2 * e(q_m[0] + q_m[1]);
+  return {xy.x(), xy.y(), -lengths.D3};
 }
 
 Eigen::Matrix3d hand_orientation(double psi, double s, double q6) noexcept {
   return R_z(psi) * R_y(pi - s) * R_z(q6 + pi);
 }
 
-Pose hand_pose(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept {
+Pose hand_pose(const Eigen::Vector2d& q_p, const Vector6& q_m, const Lengths& lengths) noexcept {
   const double psi = q_m[0] + q_m[1] + q_m[2] + pi;
   const double s = q_m[3] + q_m[4];
-  const Eigen::Vector2d reach = (kL4 * std::sin(q_m[3]) + kD6 * std::sin(s)) * e(psi);
-  const double height = -kL4 * std::cos(q_m[3]) - kD6 * std::cos(s);
-  return {elbow(q_p, q_m) + Eigen::Vector3d(reach.x(), reach.y(), height),
+  const Eigen::Vector2d reach = (lengths.L4 * std::sin(q_m[3]) + lengths.D6 * std::sin(s)) * e(psi);
+  const double height = -lengths.L4 * std::cos(q_m[3]) - lengths.D6 * std::cos(s);
+  return {elbow(q_p, q_m, lengths) + Eigen::Vector3d(reach.x(), reach.y(), height),
           hand_orientation(psi, s, q_m[5])};
 }
 
-InverseStatus inverse(const Pose& T_B_H, const Eigen::Vector2d& q_p, Branch branch,
-                      Vector6& q_m) noexcept {
-  const Wrist wrist = solve_wrist(T_B_H, branch.f, branch.w);
+InverseStatus inverse(const Pose& T_B_H, const Eigen::Vector2d& q_p, Branch branch, Vector6& q_m,
+                      const Lengths& lengths) noexcept {
+  const Wrist wrist = solve_wrist(T_B_H, branch.f, branch.w, lengths);
   const Eigen::Vector2d d = wrist.elbow - q_p;
-  const double cos_q2 = (d.squaredNorm() - kL1 * kL1 - kL2 * kL2) / (2.0 * kL1 * kL2);
+  const double cos_q2 = (d.squaredNorm() - lengths.L1 * lengths.L1 - lengths.L2 * lengths.L2) /
+                        (2.0 * lengths.L1 * lengths.L2);
   const double q2 = branch.k * std::acos(std::clamp(cos_q2, -1.0, 1.0));
-  const double q1 =
-      std::atan2(d.y(), d.x()) - std::atan2(kL2 * std::sin(q2), kL1 + kL2 * std::cos(q2));
+  const double q1 = std::atan2(d.y(), d.x()) -
+                    std::atan2(lengths.L2 * std::sin(q2), lengths.L1 + lengths.L2 * std::cos(q2));
   q_m = assemble(wrist, q1, q2);
   if (wrist.status == InverseStatus::kHeightOutOfReach) return wrist.status;
   return std::abs(cos_q2) > kLargestCosine ? InverseStatus::kDistanceOutOfReach : wrist.status;
 }
 
-double jacobian_determinant(const Vector6& q_m) noexcept {
-  return -kL1 * kL2 * kL4 * std::sin(q_m[1]) * std::sin(q_m[3]) * std::sin(q_m[3] + q_m[4]);
+double jacobian_determinant(const Vector6& q_m, const Lengths& lengths) noexcept {
+  return -lengths.L1 * lengths.L2 * lengths.L4 * std::sin(q_m[1]) * std::sin(q_m[3]) *
+         std::sin(q_m[3] + q_m[4]);
 }
 
-Eigen::Vector2d gantry_target(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept {
+Eigen::Vector2d gantry_target(const Eigen::Vector2d& q_p, const Vector6& q_m,
+                              const Lengths& lengths) noexcept {
   const double psi = q_m[0] + q_m[1] + q_m[2] + pi;
-  return elbow(q_p, q_m).head<2>() + std::hypot(kL1, kL2) * e(psi);
+  return elbow(q_p, q_m, lengths).head<2>() + std::hypot(lengths.L1, lengths.L2) * e(psi);
 }
 
-InverseStatus inverse_at_target(const Pose& T_B_H, Eigen::Vector2d& q_p, Vector6& q_m) noexcept {
-  const Wrist wrist = solve_wrist(T_B_H, 1, 1);
+InverseStatus inverse_at_target(const Pose& T_B_H, Eigen::Vector2d& q_p, Vector6& q_m,
+                                Branch branch, const Lengths& lengths) noexcept {
+  const Wrist wrist = solve_wrist(T_B_H, branch.f, branch.w, lengths);
   const double q2 = 0.5 * pi;
-  const double q3 = -std::atan2(kL1, kL2);
-  q_p = wrist.elbow + std::hypot(kL1, kL2) * e(wrist.psi);
+  const double q3 = -std::atan2(lengths.L1, lengths.L2);
+  q_p = wrist.elbow + std::hypot(lengths.L1, lengths.L2) * e(wrist.psi);
   q_m = assemble(wrist, wrist.psi - pi - q2 - q3, q2);
   return wrist.status;
 }

@@ -13,14 +13,22 @@
 #include <string_view>
 
 #include "hg/core/types.h"
+#include "hg/model/chain_model.h"
 
 namespace hg::model::haptic_giant {
 
-inline constexpr double kL1 = 0.53;  ///< m, joint 1 to joint 2
-inline constexpr double kL2 = 0.67;  ///< m, joint 2 to joint 3
-inline constexpr double kD3 = 0.75;  ///< m, joint 3 down to joint 4 (elbow)
-inline constexpr double kL4 = 0.42;  ///< m, joint 4 to joint 5
-inline constexpr double kD6 = 0.12;  ///< m, joint 5 to the handle
+/// Lengths of the five links, m; the defaults are those of [HG] Table I.
+struct Lengths {
+  double L1 = 0.53;  ///< Joint 1 to joint 2, m
+  double L2 = 0.67;  ///< Joint 2 to joint 3, m
+  double D3 = 0.75;  ///< Joint 3 down to joint 4 (elbow), m
+  double L4 = 0.42;  ///< Joint 4 to joint 5, m
+  double D6 = 0.12;  ///< Joint 5 to the handle, m
+};
+
+/// Lengths of a chain with two gantry joints and six manipulator joints, from poses of its frame
+/// `handle`; throws SetupError where the chain is not built as a HapticGiant.
+Lengths lengths_of(const ChainModel& chain, int handle);
 
 /// Signs that select one of the eight solutions; the device works in (+, +, +).
 struct Branch {
@@ -43,25 +51,29 @@ std::string_view to_string(InverseStatus status) noexcept;
 Eigen::Matrix3d hand_orientation(double psi, double s, double q6) noexcept;
 
 /// Pose T_B_H of the handle.
-Pose hand_pose(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept;
+Pose hand_pose(const Eigen::Vector2d& q_p, const Vector6& q_m,
+               const Lengths& lengths = {}) noexcept;
 
 /// Origin of joint 4 in B.
-Eigen::Vector3d elbow(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept;
+Eigen::Vector3d elbow(const Eigen::Vector2d& q_p, const Vector6& q_m,
+                      const Lengths& lengths = {}) noexcept;
 
 /// Joint angles in [-pi, pi) that bring the handle to T_B_H with the gantry at q_p.
 [[nodiscard]] InverseStatus inverse(const Pose& T_B_H, const Eigen::Vector2d& q_p, Branch branch,
-                                    Vector6& q_m) noexcept;
+                                    Vector6& q_m, const Lengths& lengths = {}) noexcept;
 
 /// Determinant of the Jacobian (6 x 6) of m1..m6 at the handle; zero if sin q2, sin q4 or
 /// sin(q4+q5) is zero.
-double jacobian_determinant(const Vector6& q_m) noexcept;
+double jacobian_determinant(const Vector6& q_m, const Lengths& lengths = {}) noexcept;
 
 /// Gantry position that brings q2 to pi/2 and q3 to -atan(L1/L2) at the same handle pose, (30).
-Eigen::Vector2d gantry_target(const Eigen::Vector2d& q_p, const Vector6& q_m) noexcept;
+Eigen::Vector2d gantry_target(const Eigen::Vector2d& q_p, const Vector6& q_m,
+                              const Lengths& lengths = {}) noexcept;
 
-/// Gantry and joint positions that reach T_B_H in the posture of (30), branch (+, +, +).
-[[nodiscard]] InverseStatus inverse_at_target(const Pose& T_B_H, Eigen::Vector2d& q_p,
-                                              Vector6& q_m) noexcept;
+/// Gantry and joint positions that reach T_B_H in the posture of (30); `branch.k` is +.
+[[nodiscard]] InverseStatus inverse_at_target(const Pose& T_B_H, Eigen::Vector2d& q_p, Vector6& q_m,
+                                              Branch branch = {},
+                                              const Lengths& lengths = {}) noexcept;
 
 /// angle + n * 2 pi nearest to `previous`; keeps the unlimited joint m1 unwrapped.
 double nearest_turn(double angle, double previous) noexcept;

@@ -108,15 +108,17 @@ Start closed_form_start(const config::DeviceConfig& device, const config::Twin& 
                     "twin's placement",
                     twin.name, what, p.x(), p.y(), p.z(), to_string(status)));
   };
+  const model::haptic_giant::Lengths lengths =
+      model::haptic_giant::lengths_of(device.model.chain, device.model.handle);
   Eigen::Vector2d q_p;
   Vector6 q_m;
-  require_solved(model::haptic_giant::inverse_at_target(start.T_B_H, q_p, q_m),
+  require_solved(model::haptic_giant::inverse_at_target(start.T_B_H, q_p, q_m, {}, lengths),
                  "the device cannot reach");
   for (int i = 0; i < 2; ++i) {
     const Interval range = device.model.gantry_range[i];
     q_p[i] = std::clamp(q_p[i], range.lb, range.ub);
   }
-  require_solved(model::haptic_giant::inverse(start.T_B_H, q_p, {}, q_m),
+  require_solved(model::haptic_giant::inverse(start.T_B_H, q_p, {}, q_m, lengths),
                  "the gantry's reach ends before");
   start.q_p = q_p;
   start.q_m = q_m;

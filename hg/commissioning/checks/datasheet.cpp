@@ -32,7 +32,7 @@ Distribution distribution(const Survey& survey, Value value) {
 }
 
 Bottleneck bottleneck(const config::DeviceConfig& device, const Survey& survey, int first_joint,
-                      Guarantee Posture::*guarantee) {
+                      model::Guarantee Posture::*guarantee) {
   const auto& joints = device.model.chain.joints();
   std::vector<int> counts(joints.size(), 0);
   for (const Posture& posture : survey.postures) {

@@ -197,7 +197,7 @@ std::string joint_out_of_singularity(const config::DeviceConfig& device, const S
       q[model.n_p + i] += step;
       chain.update_kinematics(q, zero);
       const model::Jacobian J = manipulator_jacobian(model, chain, model.handle);
-      const double value = conditioning(J, survey.length).smallest;
+      const double value = model::conditioning(J, survey.length).smallest;
       if (value <= best) continue;
       best = value;
       joint = i;

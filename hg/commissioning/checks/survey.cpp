@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kAtLimit = 0.2;  // chance of a joint to stand at a limit
 constexpr int kTries = 1000;
-constexpr double kPaperForce = 50.0, kPaperTorque = 10.0;  // [HG] III-B
 
 double draw_coordinate(const JointRanges& ranges, Eigen::Index k, bool at_limits, Random& random) {
   double share = random.next();
@@ -48,15 +47,6 @@ Scene make_scene(const config::DeviceConfig& device) {
   return scene;
 }
 
-bool has_paper_wrench(const model::Jacobian& J, const Eigen::VectorXd& available) {
-  for (Eigen::Index i = 0; i < J.cols(); ++i) {
-    const double needed =
-        kPaperForce * J.col(i).head<3>().norm() + kPaperTorque * J.col(i).tail<3>().norm();
-    if (needed > available[i]) return false;
-  }
-  return true;
-}
-
 // scene.chain: after update() at q
 Posture examine(const Scene& scene, const Eigen::VectorXd& q, double length) {
   const DeviceModel& model = scene.device.model;
@@ -66,11 +56,12 @@ Posture examine(const Scene& scene, const Eigen::VectorXd& q, double length) {
   Posture posture;
   posture.q = q;
   posture.handle = scene.chain.pose(model.handle).p;
-  posture.force = worst_direction(J.topRows<3>(), available);
-  posture.torque = worst_direction(J.bottomRows<3>(), available);
-  posture.acceleration = worst_acceleration(J_m, scene.ddq_max);
-  posture.conditioning = conditioning(J_m, length);
-  posture.has_paper_wrench = has_paper_wrench(J, available);
+  posture.force = model::worst_direction(J.topRows<3>(), available);
+  posture.torque = model::worst_direction(J.bottomRows<3>(), available);
+  posture.acceleration = model::worst_acceleration(J_m, scene.ddq_max);
+  posture.conditioning = model::conditioning(J_m, length);
+  posture.has_paper_wrench =
+      model::holds_wrench(J, available, model::kPaperForce, model::kPaperTorque);
   return posture;
 }
 
@@ -127,7 +118,7 @@ void add_positions(const Scene& scene, const Eigen::VectorXd& q, int copies, boo
   const auto n_p = static_cast<Eigen::Index>(model.n_p);
   const Eigen::Matrix3Xd J = scene.chain.jacobian(model.handle).topRows<3>();
   const Eigen::VectorXd available = scene.effort - scene.chain.gravity().cwiseAbs();
-  const double force = worst_direction(J, available).value;
+  const double force = model::worst_direction(J, available).value;
   const Eigen::Vector3d handle = scene.chain.pose(model.handle).p;
   for (int copy = 0; copy < copies; ++copy) {
     Eigen::Vector3d shift = Eigen::Vector3d::Zero();
@@ -152,7 +143,8 @@ Posture descend(Scene& scene, const Posture& from, double length) {
   const DeviceModel& model = scene.device.model;
   const auto smallest = [&](const Eigen::VectorXd& q) {
     scene.chain.update_kinematics(q, scene.zero);
-    return conditioning(manipulator_jacobian(model, scene.chain, model.handle), length).smallest;
+    return model::conditioning(manipulator_jacobian(model, scene.chain, model.handle), length)
+        .smallest;
   };
   Eigen::VectorXd q = from.q;
   double best = from.conditioning.smallest;

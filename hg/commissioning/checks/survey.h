@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "hg/commissioning/checks/capability.h"
 #include "hg/config/device.h"
 #include "hg/core/random.h"
+#include "hg/model/capability.h"
 #include "hg/model/chain_data.h"
 
 namespace hg::checks {
@@ -44,12 +44,13 @@ std::optional<Eigen::VectorXd> draw(const config::DeviceConfig& device, const Jo
 
 /// One posture within all limits, Cartesian ones included.
 struct Posture {
-  Eigen::VectorXd q;       ///< positions, gantry first
-  Eigen::Vector3d handle;  ///< position of the handle in B, m
-  Guarantee force;         ///< guaranteed force, N; joint: index in the chain
-  Guarantee torque;        ///< guaranteed torque, Nm
-  Guarantee acceleration;  ///< guaranteed acceleration, m/s^2; joint: index in the manipulator
-  Conditioning conditioning;
+  Eigen::VectorXd q;        ///< positions, gantry first
+  Eigen::Vector3d handle;   ///< position of the handle in B, m
+  model::Guarantee force;   ///< guaranteed force, N; joint: index in the chain
+  model::Guarantee torque;  ///< guaranteed torque, Nm
+  model::Guarantee
+      acceleration;  ///< guaranteed acceleration, m/s^2; joint: index in the manipulator
+  model::Conditioning conditioning;
   /// Provides 50 N and 10 Nm at once, in any directions, [HG] III-B
   bool has_paper_wrench = false;
 };

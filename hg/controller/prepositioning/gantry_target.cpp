@@ -8,7 +8,6 @@
 
 #include "hg/core/error.h"
 #include "hg/core/rotation.h"
-#include "hg/model/haptic_giant.h"
 
 namespace hg::prepositioning {
 namespace {
@@ -33,6 +32,7 @@ GantryTarget::GantryTarget(const DeviceModel& device)
         "prepositioning: the closed-form target needs two gantry joints and six manipulator "
         "joints");
   }
+  if (has_closed_form_) lengths_ = model::haptic_giant::lengths_of(device.chain, handle_);
   for (const limits::JointLimits& joint : device.joint_limits) {
     range_.push_back({joint.q_min, joint.q_max});
   }
@@ -48,7 +48,7 @@ GantryTarget::GantryTarget(const DeviceModel& device)
 VectorP GantryTarget::step(const RobotState& robot, const VectorM& q_m,
                            TargetState& state) noexcept {
   if (n_p_ == 0) return VectorP(0);
-  if (has_closed_form_) return model::haptic_giant::gantry_target(robot.q_p, q_m);
+  if (has_closed_form_) return model::haptic_giant::gantry_target(robot.q_p, q_m, lengths_);
 
   const VectorPM q_now = stacked(robot.q_p, q_m);
   chain_.update_kinematics(q_now, at_rest_);

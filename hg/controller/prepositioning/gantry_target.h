@@ -12,6 +12,7 @@
 #include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
+#include "hg/model/haptic_giant.h"
 #include "hg/signals/state.h"
 
 namespace hg::prepositioning {
@@ -43,6 +44,7 @@ class GantryTarget {
   VectorPM limited_step(MatrixPM H, VectorPM g, const VectorPM& q) const noexcept;
 
   bool has_closed_form_;
+  model::haptic_giant::Lengths lengths_;  ///< Of a device with a closed form
   int n_p_, handle_;
   model::ChainData chain_;
   std::vector<Interval> range_;  ///< Ranges of gantry and manipulator joints

@@ -64,9 +64,9 @@ TEST(InverseKinematics, FindsThePostureOfTheClosedForm) {
   std::mt19937 random(kSeed);
   ChainData chain(haptic_giant_chain());
   InverseProblem problem = problem_of(chain.model(), "handle");
-  problem.goal[3] = 0.5 * pi;                                           // m2
-  problem.goal[4] = -std::atan2(haptic_giant::kL1, haptic_giant::kL2);  // m3
-  problem.q_min[5] = 0.0;                                               // m4: forearm on one side
+  problem.goal[3] = 0.5 * pi;                                                             // m2
+  problem.goal[4] = -std::atan2(haptic_giant::Lengths{}.L1, haptic_giant::Lengths{}.L2);  // m3
+  problem.q_min[5] = 0.0;  // m4: forearm on one side
   for (int sample = 0; sample < 20; ++sample) {
     Eigen::VectorXd q = random_posture(problem, random);
     q[0] = q[1] = 0.0;

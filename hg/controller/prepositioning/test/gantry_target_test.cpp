@@ -17,6 +17,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kNoGoal = std::numeric_limits<double>::quiet_NaN();
+constexpr model::haptic_giant::Lengths kLengths;
 constexpr auto kSolved = model::haptic_giant::InverseStatus::kSolved;
 constexpr double kSame = 1e-6;  // m and rad, tolerance of the numeric target
 
@@ -31,7 +32,7 @@ DeviceModel numeric() {
       .chain = haptic_giant(), .n_p = 2, .n_m = 6, .handle = haptic_giant().frame("handle")};
   device.posture = VectorM::Constant(6, kNoGoal);
   device.posture[1] = 0.5 * pi;
-  device.posture[2] = -std::atan2(model::haptic_giant::kL1, model::haptic_giant::kL2);
+  device.posture[2] = -std::atan2(kLengths.L1, kLengths.L2);
   device.gantry_range.resize(2);
   device.joint_limits.resize(6);
   return device;

@@ -11,7 +11,7 @@
 #include "hg/core/types.h"
 #include "hg/model/chain_data.h"
 
-namespace hg::checks {
+namespace hg::model {
 
 /// Smallest over all directions of the largest force (N), torque (Nm) or acceleration (m/s^2).
 struct Guarantee {
@@ -26,8 +26,14 @@ Guarantee worst_direction(const Eigen::Ref<const Eigen::Matrix3Xd>& columns,
 
 /// Acceleration of the handle's origin, without angular acceleration, available in every direction
 /// with joint accelerations up to ddq_max; zero where J has not full rank.
-Guarantee worst_acceleration(const model::Jacobian& J,
-                             const Eigen::Ref<const Eigen::VectorXd>& ddq_max);
+Guarantee worst_acceleration(const Jacobian& J, const Eigen::Ref<const Eigen::VectorXd>& ddq_max);
+
+/// Force and torque at the handle that the HapticGiant provides in any direction, [HG] III-B.
+inline constexpr double kPaperForce = 50.0, kPaperTorque = 10.0;  // N, Nm
+
+/// Whether a force (N) and a torque (Nm) can be held at once, in any directions.
+bool holds_wrench(const Jacobian& J, const Eigen::Ref<const Eigen::VectorXd>& available,
+                  double force, double torque);
 
 struct Conditioning {
   double smallest = 0.0;   ///< smallest singular value of the scaled Jacobian
@@ -35,6 +41,6 @@ struct Conditioning {
 };
 
 /// Conditioning of J with its linear rows divided by `length` in m, so that all rows are rad.
-Conditioning conditioning(const model::Jacobian& J, double length);
+Conditioning conditioning(const Jacobian& J, double length);
 
-}  // namespace hg::checks
+}  // namespace hg::model
