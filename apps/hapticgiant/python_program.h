@@ -13,4 +13,10 @@ std::string python_interpreter();
 /// Words that start python/hapticgiant/`part`, or its module where the package is installed.
 std::vector<std::string> python_program(const std::string& part);
 
+/// Gives this process to python/hapticgiant/`part` with these arguments. Its environment has
+/// HAPTICGIANT_PROGRAM, the file of this program, which plays the runs. Does not return; throws
+/// SetupError where the interpreter cannot be started.
+[[noreturn]] void become_python_program(const std::string& part,
+                                        const std::vector<std::string>& arguments);
+
 }  // namespace hg::apps

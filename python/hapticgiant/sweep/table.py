@@ -10,7 +10,8 @@ import csv
 import fnmatch
 import pathlib
 
-from hapticgiant.sweep.study import Study, value_of
+from hapticgiant.sweep.reader import value_of
+from hapticgiant.sweep.study import Study
 
 
 def rows_of(study: Study, records: dict[int, dict]) -> list[dict]:
