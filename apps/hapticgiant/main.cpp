@@ -31,6 +31,7 @@
 #include "apps/hapticgiant/simulate_command.h"
 #include "apps/hapticgiant/stack.h"
 #include "apps/hapticgiant/start_test_command.h"
+#include "apps/hapticgiant/study_command.h"
 #include "apps/hapticgiant/sweep_command.h"
 #include "apps/hapticgiant/tune_command.h"
 #include "apps/hapticgiant/version.h"
@@ -123,6 +124,7 @@ int main(int argc, char** argv) {
   apps::add_haptify(app, exit_code);
   apps::add_tune(app, exit_code);
   apps::add_sweep(app);
+  apps::add_study(app);
   apps::refuse_empty_values(app);
 
   return apps::code_after_output(parse(app, argc, argv, exit_code));
