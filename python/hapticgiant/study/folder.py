@@ -74,11 +74,7 @@ class Folder:
     def begin(self, version: str, is_simulated: bool, model: str = "") -> None:
         """Makes the folder, or checks that it is of this study; only one process may write there."""
         self.path.mkdir(parents=True, exist_ok=True)
-        self._lock = open(self.path / ".lock", "w", encoding="utf-8")
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise FolderError(f"{self.path}: another program is writing there") from None
+        self._take()
         description = {
             "Name": self.study.title, "DatasetType": "raw", "HapticGiantFormat": FORMAT,
             "Study": self.study.digest(), "Simulated": is_simulated, "Model": model,
@@ -89,6 +85,13 @@ class Folder:
             shutil.copyfile(self.study.file, self.path / "study.yaml")
             self.write(self.path / DESCRIPTION, trials.dump(description))
         shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # what a crash has left
+
+    def _take(self):
+        self._lock = open(self.path / ".lock", "w", encoding="utf-8")
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise FolderError(f"{self.path}: another program is writing there") from None
 
     def require(self, wanted: dict) -> None:
         """Raises FolderError where the folder is of another study or of other people."""
@@ -150,6 +153,7 @@ class Folder:
     def forget(self, code: str) -> int:
         """Deletes everything of one participant; how many files."""
         self.description()
+        self._take()
         codes = [each.code for each in self.participants()]
         if code not in codes:
             near = f", did you mean '{nearest(code, codes)}'?" if codes else ""
