@@ -33,6 +33,7 @@
 #include "apps/hapticgiant/simulate_command.h"
 #include "apps/hapticgiant/stack.h"
 #include "apps/hapticgiant/start_test_command.h"
+#include "apps/hapticgiant/study_command.h"
 #include "apps/hapticgiant/sweep_command.h"
 #include "apps/hapticgiant/tune_command.h"
 #include "apps/hapticgiant/version.h"
@@ -127,6 +128,7 @@ int main(int argc, char** argv) {
   apps::add_design(app);
   apps::add_sweep(app);
   apps::add_imus(app);
+  apps::add_study(app);
   apps::refuse_empty_values(app);
 
   return apps::code_after_output(parse(app, argc, argv, exit_code));

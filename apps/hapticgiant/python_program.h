@@ -32,6 +32,7 @@ std::vector<std::string> python_program(const std::string& part);
 
 /// Replaces this process by that program with these arguments; HAPTICGIANT_PROGRAM names this one.
 /// Does not return; throws SetupError where the interpreter cannot be started.
-void become_python_program(const std::string& part, const std::vector<std::string>& arguments);
+[[noreturn]] void become_python_program(const std::string& part,
+                                        const std::vector<std::string>& arguments);
 
 }  // namespace hg::apps

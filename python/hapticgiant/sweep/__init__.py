@@ -11,6 +11,7 @@ and the command that repeats a run is the one that has made it.
 """
 
 from hapticgiant.sweep.campaign import Result, SweepError, check, merge, run
-from hapticgiant.sweep.study import Study, StudyError, load_study
+from hapticgiant.sweep.reader import StudyError
+from hapticgiant.sweep.study import Study, load_study
 
 __all__ = ["Result", "Study", "StudyError", "SweepError", "check", "load_study", "merge", "run"]

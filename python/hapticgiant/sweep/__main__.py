@@ -165,7 +165,7 @@ def main(words):
         print(f"sweep: {sys.executable} needs PyYAML: tools/setup.sh build, or pip install pyyaml "
               "scipy pyarrow", file=sys.stderr)
         return 2
-    from hapticgiant.sweep import campaign, slurm, study
+    from hapticgiant.sweep import campaign, reader, slurm, study
 
     command = words[0] if words and words[0] in COMMANDS else ""
     arguments = parsers()[command].parse_args(words[1:] if command else words)
@@ -208,7 +208,7 @@ def main(words):
                                  scheduler=arguments.scheduler, again=arguments.again,
                                  table=not arguments.quiet),
                     arguments.quiet)
-    except (study.StudyError, campaign.SweepError) as error:
+    except (reader.StudyError, campaign.SweepError) as error:
         print(error, file=sys.stderr)
         return 2
     except BrokenPipeError:  # the reader has seen enough

@@ -17,8 +17,8 @@ from hapticgiant.sweep.manifest import HEADER, Folder, Manifest, SweepError
 from hapticgiant.sweep.program import (BAD_INPUT, SUMMARY, Outcome, Program, find_program,
                                        measures_of)
 from hapticgiant.sweep.progress import Progress
-from hapticgiant.sweep.study import (OPTIONS, Run, Study, StudyError, load_study, nearest,
-                                     value_of)
+from hapticgiant.sweep.reader import OPTIONS, StudyError, nearest, value_of
+from hapticgiant.sweep.study import Run, Study, load_study
 from hapticgiant.sweep.table import rows_of, write_table
 
 FORMAT = 1

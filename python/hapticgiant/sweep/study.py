@@ -11,8 +11,6 @@ the program as they stand.
 from __future__ import annotations
 
 import dataclasses
-import difflib
-import functools
 import hashlib
 import itertools
 import json
@@ -20,20 +18,9 @@ import math
 import os
 import pathlib
 
-OPTIONS = {"scenario": "", "device": "--device", "twin": "--twin", "user": "--user",
-           "simulation": "--simulation", "plant": "--plant", "sensors": "--sensors",
-           "hand": "--hand", "seed": "--seed", "law": "--law", "bounds": "--bounds",
-           "gantry": "--gantry", "braking": "--braking", "passivity": "--passivity",
-           "rate_Hz": "--rate-hz", "step_s": "--step", "duration_s": "--duration"}
-"""Options of `hapticgiant run` that a study may give, and how the command line calls them."""
-FILES = ("scenario", "device", "twin", "user", "simulation")  # options that may name a file
-PARTS = ("scenario", "device", "simulation", "twin", "script")  # before the dot of a key
-MOST_RUNS = 1_000_000
+from hapticgiant.sweep.reader import (MOST, Placed, Reader, StudyError, arguments_of, value_of)
+
 METHODS = ("latin_hypercube", "sobol")
-
-
-class StudyError(ValueError):
-    """A fault of a study; the message has file, line and column."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,7 +32,7 @@ class Run:
 
 
 @dataclasses.dataclass
-class Study:
+class Study(Placed):
     """What load_study() returns."""
 
     file: pathlib.Path
@@ -64,16 +51,7 @@ class Study:
         """The words after `hapticgiant run` that are this run's own."""
         if self.command:
             return ["--part", run.parameters["part"]]
-        words, options = [], {**self.fixed, **run.parameters}
-        words.append(self._file_or_name("scenario", options.get("scenario", "door")))
-        for key, value in options.items():
-            if key == "scenario":
-                continue
-            if key in OPTIONS:
-                words += [OPTIONS[key], self._file_or_name(key, value)]
-            else:
-                words += ["--set", f"{key}={value}"]
-        return words
+        return arguments_of({**self.fixed, **run.parameters}, self.file.parent)
 
     def digest(self) -> str:
         """Differs where any run differs."""
@@ -82,65 +60,15 @@ class Study:
             every = [self.command, self.files, every]
         return hashlib.sha256(json.dumps(every).encode()).hexdigest()[:16]
 
-    def place(self, key: str) -> str:
-        """Where a key stands, or the one that is in it or around it."""
-        for known, place in self.places.items():
-            if known == key or known.startswith(key + ".") or key.startswith(known + "."):
-                return place
-        return str(self.file)
-
-    def _file_or_name(self, key, value):
-        return _file_beside(self.file, value) if key in FILES else value
-
-
-@functools.cache
-def _file_beside(study, name):
-    beside = study.parent / name
-    return str(beside.resolve()) if beside.is_file() else name
-
-
-def value_of(words: str):
-    """The number, truth value or text that these words of YAML stand for."""
-    if words in ("true", "false"):
-        return words == "true"
-    for kind in (int, float):
-        try:
-            return kind(words)
-        except ValueError:
-            continue
-    return words
-
-
-def nearest(name: str, names) -> str:
-    """Of these names the most similar one."""
-    return max(names, key=lambda known: difflib.SequenceMatcher(None, name, known).ratio())
-
 
 def load_study(file: str | os.PathLike) -> Study:
     """The study of a file. Raises StudyError with place, rule and nearest name."""
     return _Reader(pathlib.Path(file)).study()
 
 
-class _Reader:
-    def __init__(self, file):
-        self.file = file
-        self.places = {}
-
+class _Reader(Reader):
     def study(self):
-        import yaml
-
-        try:
-            text = self.file.read_text(encoding="utf-8")
-            root = yaml.compose(text, Loader=yaml.SafeLoader)
-        except (OSError, UnicodeDecodeError) as error:
-            raise StudyError(f"{self.file}: cannot be read: {error}") from None
-        except yaml.YAMLError as error:
-            mark = getattr(error, "problem_mark", None)
-            place = f"{self.file}:{mark.line + 1}:{mark.column + 1}" if mark else str(self.file)
-            raise StudyError(f"{place}: not valid YAML: {getattr(error, 'problem', error)}") from None
-        if root is None:
-            raise StudyError(f"{self.file}: expected a map of keys, got nothing")
-        self.nodes = yaml.nodes
+        root = self.root()
         parts = self.map(root, "", ("title", "fixed", "parameters", "samples", "rows", "measures",
                                     "command", "parts", "files"))
         if "command" in parts:
@@ -158,8 +86,8 @@ class _Reader:
         rows = self.rows(parts.get("rows"), {**fixed, **grid, **ranges})
         samples = self.samples(parts.get("samples"), ranges, root)
         count = len(rows) * len(samples) * math.prod(map(len, grid.values()))
-        if count > MOST_RUNS:
-            self.fault(root, "", f"{count} runs, at most {MOST_RUNS} are possible")
+        if count > MOST:
+            self.fault(root, "", f"{count} runs, at most {MOST} are possible")
         runs = []
         for row, sample in itertools.product(rows, samples):
             for combination in itertools.product(*grid.values()):
@@ -186,66 +114,6 @@ class _Reader:
         return Study(self.file, self.words(parts["title"]) if "title" in parts else command[0], {},
                      [Run(i, {"part": f"{i}/{count}"}) for i in range(1, count + 1)], [], {},
                      command, self.words(parts["files"]) if "files" in parts else "")
-
-    def fault(self, node, item, what):
-        mark = node.start_mark
-        place = f"{self.file}:{mark.line + 1}:{mark.column + 1}: "
-        raise StudyError(place + (f"{item}: " if item else "") + what)
-
-    def words(self, node):
-        """A value in one line, as it can stand behind --set KEY=."""
-        if isinstance(node, self.nodes.ScalarNode):
-            return node.value
-        if isinstance(node, self.nodes.SequenceNode):
-            return f"[{', '.join(map(self.inner_words, node.value))}]"
-        pairs = (f"{self.inner_words(k)}: {self.inner_words(v)}" for k, v in node.value)
-        return "{" + ", ".join(pairs) + "}"
-
-    def inner_words(self, node):
-        is_quoted = isinstance(node, self.nodes.ScalarNode) and node.style is not None
-        return json.dumps(node.value) if is_quoted else self.words(node)
-
-    def map(self, node, item, known=None):
-        if not isinstance(node, self.nodes.MappingNode):
-            self.fault(node, item, "expected a map of keys")
-        result = {}
-        for key, value in node.value:
-            name = self.words(key)
-            if name in result:
-                self.fault(key, name, "given twice")
-            if known and name not in known:
-                self.fault(key, name, f"unknown key, did you mean '{nearest(name, known)}'?")
-            result[name] = value
-        return result
-
-    def keys(self, node):
-        """A map whose keys are options or keys of files."""
-        if node is None:
-            return {}
-        result = self.map(node, "")
-        for key, _ in node.value:
-            name = self.words(key)
-            self.places[name] = f"{self.file}:{key.start_mark.line + 1}:{key.start_mark.column + 1}"
-            part = name.partition(".")[0]
-            if "." in name and part not in PARTS:
-                self.fault(key, name, f"no such part, did you mean '{nearest(part, PARTS)}'? "
-                                      f"They are {', '.join(PARTS)}")
-            if "." not in name and name not in OPTIONS:
-                self.fault(key, name, f"no such option, did you mean '{nearest(name, OPTIONS)}'? "
-                                      f"They are {', '.join(OPTIONS)}")
-        return result
-
-    def number(self, node, item):
-        value = value_of(self.words(node))
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-            self.fault(node, item, f"expected a number, got '{self.words(node)}'")
-        return value
-
-    def count(self, node, item):
-        value = self.number(node, item)
-        if not isinstance(value, int) or not 1 <= value <= MOST_RUNS:
-            self.fault(node, item, f"expected a whole number from 1 to {MOST_RUNS}, got '{value}'")
-        return value
 
     def parameter(self, key, node):
         if isinstance(node, self.nodes.SequenceNode):

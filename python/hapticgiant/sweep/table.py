@@ -12,7 +12,8 @@ import json
 import os
 import pathlib
 
-from hapticgiant.sweep.study import Study, value_of
+from hapticgiant.sweep.reader import value_of
+from hapticgiant.sweep.study import Study
 
 
 def rows_of(study: Study, records: dict[int, dict]) -> list[dict]:

@@ -1,0 +1,220 @@
+"""Command line of `hapticgiant study`; docs/start/user_studies.md.
+
+Exit codes: 0 as it should be, 1 something would ruin the study or a trial has no result, 2 bad input,
+130 ended by Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import types
+
+if not __package__:
+    # Run as a folder: the package's own __init__ would need its compiled part.
+    _package = types.ModuleType("hapticgiant")
+    _package.__path__ = [str(pathlib.Path(__file__).resolve().parents[1])]
+    sys.modules["hapticgiant"] = _package
+
+NEEDED = {"yaml": "pyyaml", "numpy": "numpy", "scipy": "scipy"}
+NEEDED_BY_REPORT = {"statsmodels": "statsmodels", "matplotlib": "matplotlib", "jinja2": "jinja2"}
+
+
+def positive(text):
+    if not (text.isdigit() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"expected a whole number from 1 on, got '{text}'")
+    return int(text)
+
+
+def parser():
+    main = argparse.ArgumentParser(prog="hapticgiant study",
+                                   description="User studies (docs/start/user_studies.md).")
+    commands = main.add_subparsers(dest="command", required=True, metavar="COMMAND")
+
+    def add(name, what):
+        command = commands.add_parser(name, help=what, description=what)
+        command.add_argument("study", help="study.yaml")
+        return command
+
+    check = add("check", "Finds what would ruin a study, plays a trial of each condition, and simulates its tests.")
+    check.add_argument("--no-trials", action="store_true", help="play nothing")
+    registration = add("preregistration", "Writes the text of a pre-registration (Markdown).")
+    for each in (check, registration):
+        each.add_argument("--simulations", type=positive, default=500, help="simulated studies per figure")
+    plan = add("plan", "Prints the order of each participant.")
+    plan.add_argument("--participant", metavar="CODE", help="every step of this one")
+    simulate = add("simulate", "Plays a study with simulated people; the same command again continues.")
+    simulate.add_argument("--participants", type=positive, metavar="N", help="only the first N of the plan")
+    simulate.add_argument("--jobs", type=positive, help="trials at a time; default: one per processor")
+    simulate.add_argument("--keep-recordings", action="store_true", help="keep the recording of each trial (27 MB for 14 s)")
+    report = add("report", "Writes report.html, report.tex and the analysis script into the folder of the study.")
+    forget = commands.add_parser("forget", help="Deletes everything of one participant.",
+                                 description="Deletes everything of one participant.")
+    forget.add_argument("code", metavar="CODE")
+    forget.add_argument("study", help="study.yaml")
+    for each in (simulate, report, forget):
+        each.add_argument("--out", help="folder of the study; default: NAME.study beside study.yaml")
+    return main
+
+
+def missing(needed):
+    return [package for module, package in needed.items() if importlib.util.find_spec(module) is None]
+
+
+def show_plan(study, code):
+    from hapticgiant.study import planning
+    from hapticgiant.sweep.reader import StudyError, nearest
+
+    found = planning.plan(study)
+    if code is None:
+        for each in found:
+            print(f"{each.code}  {'  '.join(each.conditions)}")
+        return 0
+    one = next((each for each in found if each.code == code), None)
+    if one is None:
+        raise StudyError(f"--participant {code}: no such code, did you mean '{nearest(code, [p.code for p in found])}'?")
+    for number, step in enumerate(planning.steps(study, one), 1):
+        what = step.form or step.text or f"{step.condition} {step.repetition}"
+        about = f" about {step.condition}" if step.kind == "form" and step.condition else ""
+        print(f"{number:3}  {step.kind:11}  {what}{about}")
+    return 0
+
+
+def check(study, arguments):
+    from hapticgiant.study import expressions, planning, simulation, trials
+    from hapticgiant.sweep.campaign import explained
+    from hapticgiant.sweep.program import find_program
+
+    problems, notes = planning.problems_of(study), planning.notes_of(study)
+    design = study.design
+    print(f"{study.title}: {design.participants} participants, {len(study.conditions)} conditions {design.kind} "
+          f"people, {design.repetitions} trials of each, order {design.order}")
+    program = find_program()
+    known = trials.known_columns(program)
+    for name, measure in study.measures.items():
+        for column in expressions.names_of(expressions.parse(measure.expression)):
+            if column.partition("[")[0] not in known:
+                from hapticgiant.sweep.reader import StudyError, nearest
+
+                near = nearest(column.partition("[")[0], known)
+                raise StudyError(f"{study.place(f'measures.{name}')}: measures.{name}: no column is called '{column}', "
+                                 f"did you mean '{near}'?")
+    if not arguments.no_trials:
+        with tempfile.TemporaryDirectory(prefix="hapticgiant_study_") as work:
+            try:
+                measured = simulation.try_conditions(study, program, pathlib.Path(work))
+            except trials.TrialError as error:
+                print(explained(str(error), study), file=sys.stderr)
+                return 2
+        print("\na trial of each condition, by the first simulated person:")
+        for name in study.measures:
+            unit = study.measures[name].unit
+            values = "".join(f"{one.measures[name]:12.4g}" for one in measured.values())
+            print(f"  {name:24}{values}  {unit}")
+            for condition, one in measured.items():
+                if one.measures[name] != one.measures[name]:
+                    problems.append(f"measure {name} has no value in condition {condition}")
+        for condition, one in measured.items():
+            if one.exit_code:
+                problems.append(f"a trial of {condition} ends with exit code {one.exit_code}")
+            if why := trials.excluded(study, one.measures, one.exit_code):
+                problems.append(f"a trial of {condition} would be left out: {why}")
+        print(f"  {'':24}{''.join(f'{condition:>12}' for condition in measured)}")
+    found = planning.power(study, simulations=arguments.simulations)
+    if found:
+        print(f"\npower: share of {arguments.simulations} simulated studies with p < {study.alpha:g} [95 % interval]")
+    for one in found:
+        counts = "   ".join(f"{count}: {share:.2f}" for count, (share, _, _) in one.by_count.items())
+        share, low, high = one.by_count[design.participants]
+        print(f"  {one.outcome}, {one.test}: {share:.2f} [{low:.2f}, {high:.2f}]; by people {counts}; "
+              f"without an effect {one.false_alarms[0]:.3f}")
+        if high < planning.GOOD_POWER:
+            enough = [count for count, each in one.by_count.items() if each[0] >= planning.GOOD_POWER]
+            problems.append(f"too few people for {one.outcome}: power {share:.2f}, "
+                            + (f"with {enough[0]} it is {one.by_count[enough[0]][0]:.2f}" if enough
+                               else f"and not {planning.GOOD_POWER} with {max(one.by_count)} either"))
+    notes += [f"power for {test.outcome} is not known: simulation.expected.{test.outcome} is missing"
+              for test in study.tests if test.outcome not in {one.outcome for one in found}]
+    for each in notes:
+        print(f"\nnote: {each}")
+    for each in problems:
+        print(f"\nPROBLEM: {each}")
+    print(f"\n{len(problems)} problems" if len(problems) != 1 else "\n1 problem")
+    return 1 if problems else 0
+
+
+def run(arguments):
+    from hapticgiant.study import description, planning, simulation
+    from hapticgiant.study.folder import Folder
+    from hapticgiant.sweep.campaign import explained
+    from hapticgiant.sweep.program import find_program
+
+    study = description.load_study(arguments.study)
+    if arguments.command == "plan":
+        return show_plan(study, arguments.participant)
+    if arguments.command == "check":
+        return check(study, arguments)
+    if arguments.command == "preregistration":
+        print(planning.preregistration(study, planning.power(study, [study.design.participants], arguments.simulations)),
+              end="")
+        return 0
+    folder = Folder(study, arguments.out)
+    if arguments.command == "forget":
+        count = folder.forget(arguments.code)
+        print(f"{arguments.code}: {count} files deleted, tables made anew; reports of before are deleted: "
+              f"hapticgiant study report {arguments.study}")
+        return 0
+    if arguments.command == "report":
+        from hapticgiant.study import report
+
+        for file in report.write(folder):
+            print(f"  written    {file}")
+        return 0
+    played, before, faults = simulation.play(study, folder, find_program(), arguments.participants, arguments.jobs,
+                                             arguments.keep_recordings)
+    print(f"{played + before} trials of simulated people{f', {before} of them from before' if before else ''}"
+          f"{f', {len(faults)} without a result' if faults else ''}")
+    print(f"  folder     {folder.path}")
+    for fault in faults[:5]:
+        print(explained(fault, study), file=sys.stderr)
+    return 1 if faults else 0
+
+
+def main(words):
+    arguments = parser().parse_args(words)
+    needed = NEEDED | (NEEDED_BY_REPORT if arguments.command == "report" else {})
+    if packages := missing(needed):
+        print(f"study: {sys.executable} needs {', '.join(packages)}: pip install {' '.join(packages)}", file=sys.stderr)
+        return 2
+    from hapticgiant.study.expressions import ExpressionError
+    from hapticgiant.study.folder import FolderError
+    from hapticgiant.study.trials import TrialError
+    from hapticgiant.sweep.reader import StudyError
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, interrupt)
+    try:
+        return run(arguments)
+    except (StudyError, FolderError, ExpressionError, TrialError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    except BrokenPipeError:  # the reader has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        print(f"study: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("\nended; what has been played is kept, and the same command continues", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,167 @@
+"""The analysis of a study, from its tables: what `hapticgiant study report` prints.
+
+    python code/analysis.py        in the folder of a study; needs numpy, scipy, statsmodels
+
+Reads code/plan.json (what was planned), participants.csv, trials.csv and answers.csv. This file and
+inference.py beside it are all there is: HapticGiant is not needed.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import pathlib
+import sys
+
+import numpy as np
+
+if __package__:
+    from hapticgiant.study import inference
+else:
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+    import inference
+
+
+class Data:
+    """Values of a study that count, by outcome."""
+
+    def __init__(self, folder: pathlib.Path):
+        self.plan = json.loads((folder / "code" / "plan.json").read_text(encoding="utf-8"))
+        self.participants, self.trials, self.answers = (
+            self._table(folder / f"{name}.csv") for name in ("participants", "trials", "answers"))
+        self.left_out = {row["participant"] for row in self.participants if row["excluded"]}
+
+    @staticmethod
+    def _table(file):
+        with open(file, newline="", encoding="utf-8") as lines:
+            return list(csv.DictReader(lines))
+
+    def values(self, outcome: str) -> tuple[list[float], list[str], list[str]]:
+        """Values with their conditions and participants, without what is excluded."""
+        if "." in outcome:
+            form, item = outcome.split(".", 1)
+            rows = [(row, row["value"]) for row in self.answers
+                    if row["form"] == form and row["item"] == item and row["kind"] in ("answer", "score")]
+        else:
+            rows = [(row, row[outcome]) for row in self.trials if not row["excluded"]]
+        rows = [(row, float(value)) for row, value in rows if value and row["participant"] not in self.left_out]
+        rank = {name: i for i, name in enumerate(self.plan["conditions"])}
+        rows.sort(key=lambda each: rank.get(each[0]["condition"], -1))  # the order of study.yaml
+        return ([value for _, value in rows], [row["condition"] for row, _ in rows],
+                [row["participant"] for row, _ in rows])
+
+    def people(self, outcome: str) -> dict[str, np.ndarray]:
+        """Means of people by condition; "" where it was asked once."""
+        cells: dict[str, dict[str, list[float]]] = {}
+        for value, condition, person in zip(*self.values(outcome)):
+            cells.setdefault(condition, {}).setdefault(person, []).append(value)
+        return {condition: np.array([np.mean(each) for each in people.values()])
+                for condition, people in cells.items()}
+
+
+def describe(data: Data) -> list[dict]:
+    """Means of people by outcome and condition: count, mean, deviation, quartiles, ends."""
+    found = []
+    for outcome in data.plan["outcomes"]:
+        for condition, values in data.people(outcome).items():
+            low, middle, high = np.percentile(values, (25, 50, 75))
+            found.append({"outcome": outcome, "condition": condition or "once", "people": len(values),
+                          "mean": values.mean(), "sd": values.std(ddof=1) if len(values) > 1 else math.nan,
+                          "median": middle, "q1": low, "q3": high, "min": values.min(), "max": values.max()})
+    return found
+
+
+def tests(data: Data) -> list[tuple[str, inference.Result | str, float]]:
+    """Each planned test: outcome, result or why there is none, p corrected for all planned tests."""
+    plan, found = data.plan, []
+    for test in plan["tests"]:
+        values, conditions, people = data.values(test["outcome"])
+        missing = [name for name in plan["conditions"] if name not in conditions]
+        try:
+            if missing:
+                raise ValueError(f"no values in condition {', '.join(missing)}")
+            found.append(inference.run(test["test"], values, conditions, people, plan["alpha"], plan["correction"]))
+        except (ValueError, np.linalg.LinAlgError) as error:
+            found.append(str(error))
+    done = [each for each in found if not isinstance(each, str)]
+    corrected = iter(inference.adjusted([each.p for each in done], plan["correction"]))
+    return [(test["outcome"], each, math.nan if isinstance(each, str) else next(corrected))
+            for test, each in zip(plan["tests"], found)]
+
+
+def degrees(df) -> str:
+    return ", ".join(f"{each:.1f}".removesuffix(".0") for each in df)
+
+
+def test_rows(data: Data, found) -> list[list[str]]:
+    """The table of planned tests."""
+    rows = [["outcome", "test", "people", "statistic", "p", f"p, {data.plan['correction']}", "effect size"]]
+    for outcome, each, corrected in found:
+        if isinstance(each, str):
+            rows.append([outcome, f"none: {each}", "", "", "", "", ""])
+            continue
+        df = f"({degrees(each.df)})" if each.df else ""
+        rows.append([outcome, each.test, str(each.count), f"{each.statistic}{df} = {each.value:.3f}",
+                     inference.number(each.p), inference.number(corrected), f"{each.effect} = {each.size:.2f}"])
+    return rows
+
+
+def pair_rows(data: Data, found) -> list[list[str]]:
+    """The table of pairs of conditions."""
+    percent = f"{100 * (1 - data.plan['alpha']):g} %"
+    rows = [["outcome", "conditions", "difference", f"{percent} interval", "statistic", "p",
+             f"p, {data.plan['correction']}", "effect size"]]
+    for outcome, each, _ in found:
+        for pair in [] if isinstance(each, str) else each.comparisons:
+            df = "" if pair.df is None else f"({degrees([pair.df])})"
+            rows.append([outcome, f"{pair.second} - {pair.first}", f"{pair.estimate:.3g}",
+                         f"{pair.low:.3g} to {pair.high:.3g}", f"{pair.statistic}{df} = {pair.value:.3f}",
+                         inference.number(pair.p), inference.number(pair.p_adjusted), f"{pair.effect} = {pair.size:.2f}"])
+    return rows
+
+
+def assumption_rows(found) -> list[list[str]]:
+    """What was found of assumptions, and notes."""
+    rows = [["outcome", "what was found"]]
+    for outcome, each, _ in found:
+        if not isinstance(each, str):
+            rows += [[outcome, text] for text in each.assumptions + each.notes]
+            if each.variances:
+                rows.append([outcome, "deviations: " + ", ".join(f"{name} {math.sqrt(max(0, value)):.3g}"
+                                                                 for name, value in each.variances.items())])
+    return rows
+
+
+def description_rows(data: Data) -> list[list[str]]:
+    """The descriptive table."""
+    rows = [["outcome", "condition", "people", "mean", "sd", "median", "quartiles", "range"]]
+    for each in describe(data):
+        rows.append([each["outcome"], each["condition"], str(each["people"]), f"{each['mean']:.3g}",
+                     f"{each['sd']:.3g}", f"{each['median']:.3g}", f"{each['q1']:.3g} to {each['q3']:.3g}",
+                     f"{each['min']:.3g} to {each['max']:.3g}"])
+    return rows
+
+
+def exclusion_rows(data: Data) -> list[list[str]]:
+    """What is left out, and why."""
+    rows = [["participant", "trial", "why"]]
+    rows += [[row["participant"], "all", row["excluded"]] for row in data.participants if row["excluded"]]
+    rows += [[row["participant"], f"{row['condition']} {row['repetition']}", row["excluded"]]
+             for row in data.trials if row["excluded"]]
+    return rows
+
+
+def main() -> None:
+    data = Data(pathlib.Path(__file__).resolve().parents[1])
+    found = tests(data)
+    print(data.plan["people"])
+    for title, rows in (("tests", test_rows(data, found)), ("pairs", pair_rows(data, found)),
+                        ("assumptions and notes", assumption_rows(found)), ("means of people", description_rows(data)),
+                        ("left out", exclusion_rows(data))):
+        print(f"\n{title}")
+        csv.writer(sys.stdout, lineterminator="\n").writerows(rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,291 @@
+"""The folder of a study.
+
+    study.yaml                     as it was when the study began
+    dataset_description.json       who has made it, and whether people are simulated
+    WHAT_IS_STORED.md              for participants and ethics boards
+    sub-P01/sub-P01_task-door_run-1_trial.json    measures, events, hashes of one trial
+    sub-P01/sub-P01_task-door_run-1_recording.mcap
+    sub-P01/sub-P01_task-door_form-tlx_answers.json
+    trials.csv answers.csv participants.csv, .parquet   tidy tables, made of the files above
+    data_dictionary.csv            every column of the tables
+    hashes.sha256                  of all files: sha256sum -c hashes.sha256
+
+The files of sub-* are what was measured. Each is written once, whole, when its step ends: a study
+that is killed loses the step that is running. Tables are made of them anew whenever asked for.
+"""
+
+from __future__ import annotations
+
+import csv
+import fcntl
+import io
+import json
+import os
+import pathlib
+import shutil
+
+from hapticgiant.study import questionnaires, trials
+from hapticgiant.study.description import Study
+from hapticgiant.study.planning import Participant, Step, plan
+from hapticgiant.sweep.reader import nearest
+
+FORMAT = 1
+DESCRIPTION = "dataset_description.json"
+TABLES = ("participants", "trials", "answers")
+RUNNING = ".running"
+WITHDRAWN = "withdrawn.json"
+REPORTS = ("report.html", "report.tex", "report.json", "figures")
+STORED = """\
+# What is stored
+
+- A code for each participant ({codes}). No name, address, age, picture or voice is asked for or stored. Who
+  has which code is on no file of this folder.
+- Of each trial: condition, repetition, measures, names and times of events ({trial}).{recording}
+- Of each questionnaire: the answers, among them free texts as they were typed. A free text can tell who
+  somebody is: read them before the data are published.
+- Times of day are not stored in tables; recordings have the date in their metadata.
+
+`hapticgiant study forget CODE` deletes everything of one participant: files, rows of tables, and reports, which
+are made anew without them. The code stays in {withdrawn}, so that nobody gets it again.
+"""
+
+
+class FolderError(RuntimeError):
+    """A folder that cannot be used; the message says what to do."""
+
+
+class Folder:
+    """The folder of one study."""
+
+    def __init__(self, study: Study, path: str | os.PathLike | None = None):
+        self.study = study
+        self.path = pathlib.Path(path) if path is not None else study.file.with_suffix(".study")
+        self._lock = None
+
+    def exists(self) -> bool:
+        return (self.path / DESCRIPTION).exists()
+
+    def description(self) -> dict:
+        try:
+            return json.loads((self.path / DESCRIPTION).read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            raise FolderError(f"{self.path}: holds no study; hapticgiant study simulate makes one") from None
+
+    def begin(self, version: str, is_simulated: bool, model: str = "") -> None:
+        """Makes the folder, or checks that it is of this study; only one process may write there."""
+        self.path.mkdir(parents=True, exist_ok=True)
+        self._take()
+        description = {
+            "Name": self.study.title, "DatasetType": "raw", "HapticGiantFormat": FORMAT,
+            "Study": self.study.digest(), "Simulated": is_simulated, "Model": model,
+            "GeneratedBy": [{"Name": "HapticGiant", "Version": version}]}
+        if self.exists():
+            self.require(description)
+        else:
+            shutil.copyfile(self.study.file, self.path / "study.yaml")
+            self.write(self.path / DESCRIPTION, trials.dump(description))
+        shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # what a crash has left
+
+    def _take(self):
+        self._lock = open(self.path / ".lock", "w", encoding="utf-8")
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise FolderError(f"{self.path}: another program is writing there") from None
+
+    def require(self, wanted: dict) -> None:
+        """Raises FolderError where the folder is of another study or of other people."""
+        there = self.description()
+        if there["Study"] != wanted["Study"]:
+            raise FolderError(f"{self.path}: holds another study, or study.yaml has changed since it began: take "
+                              f"another --out, or {self.path / 'study.yaml'}, which is as it was")
+        if there["Simulated"] != wanted["Simulated"]:
+            kinds = {True: "simulated", False: "real"}
+            raise FolderError(f"{self.path}: its people are {kinds[there['Simulated']]}, and {kinds[wanted['Simulated']]} "
+                              "ones cannot be mixed with them: take another --out")
+
+    def write(self, file: pathlib.Path, text: str | bytes) -> None:
+        """Writes a file whole or not at all, and never one that is there."""
+        self._put(file, text)
+
+    def replace(self, file: pathlib.Path, text: str | bytes) -> None:
+        """The same for what is made of other files."""
+        self._put(file, text, replaces=True)
+
+    def _put(self, file, text, replaces=False):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        partial = file.with_name(f".{file.name}.{os.getpid()}")
+        data = text.encode() if isinstance(text, str) else text
+        with open(partial, "wb") as out:
+            out.write(data)
+            out.flush()
+            os.fsync(out.fileno())
+        if replaces:
+            os.replace(partial, file)
+            return
+        try:
+            os.link(partial, file)
+        except FileExistsError:
+            raise FolderError(f"{file}: is there already, and nothing is written twice") from None
+        finally:
+            partial.unlink()
+
+    def stem(self, code: str, step: Step) -> pathlib.Path:
+        """The beginning of the names of a step's files."""
+        task = f"_task-{step.condition}" if step.condition else ""
+        tail = f"_form-{step.form}" if step.kind == "form" else f"_run-{step.repetition}"
+        return self.path / f"sub-{code}" / f"sub-{code}{task}{tail}"
+
+    def file_of(self, code: str, step: Step) -> pathlib.Path:
+        stem = self.stem(code, step)
+        return stem.with_name(stem.name + ("_answers.json" if step.kind == "form" else "_trial.json"))
+
+    def withdrawn(self) -> list[str]:
+        try:
+            return json.loads((self.path / WITHDRAWN).read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return []
+
+    def participants(self) -> list[Participant]:
+        """Those that have files, in the order of the plan."""
+        return [each for each in plan(self.study) if (self.path / f"sub-{each.code}").is_dir()]
+
+    def forget(self, code: str) -> int:
+        """Deletes everything of one participant; how many files."""
+        self.description()
+        self._take()
+        codes = [each.code for each in self.participants()]
+        if code not in codes:
+            near = f", did you mean '{nearest(code, codes)}'?" if codes else ""
+            raise FolderError(f"{self.path}: has no participant '{code}'{near}")
+        folder = self.path / f"sub-{code}"
+        count = sum(1 for file in folder.rglob("*") if file.is_file())
+        # first the note: a crash in between must not let somebody play under this code again
+        self.replace(self.path / WITHDRAWN, trials.dump(sorted({*self.withdrawn(), code})))
+        shutil.rmtree(folder)
+        for name in REPORTS:
+            target = self.path / name
+            shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
+        self.tabulate()
+        return count
+
+    def rows(self) -> dict[str, list[dict]]:
+        """The tables, made of the files of the participants."""
+        study, found = self.study, {name: [] for name in TABLES}
+        for participant in self.participants():
+            folder, code, out = self.path / f"sub-{participant.code}", participant.code, 0
+            played = sorted((json.loads(file.read_text(encoding="utf-8")) for file in folder.glob("*_trial.json")),
+                            key=lambda each: each["position"])
+            for each in played:
+                why = trials.excluded(study, each["measures"], each["exit_code"])
+                out += bool(why)
+                found["trials"].append({
+                    "participant": code, "position": each["position"], "condition": each["condition"],
+                    "repetition": each["repetition"], "excluded": why, **each["measures"],
+                    "exit_code": each["exit_code"], "state_hash": each["state_hash"],
+                    "recording_sha256": each["recording_sha256"], "recording": each["recording"] or ""})
+            why = self._participant_excluded(len(played), out)
+            found["participants"].append({
+                "participant": code, "order": " ".join(participant.conditions), "trials": len(played),
+                "excluded_trials": out, "excluded": why})
+            for file in sorted(folder.glob("*_answers.json")):
+                each = json.loads(file.read_text(encoding="utf-8"))
+                common = {"participant": code, "condition": each["condition"], "form": each["form"]}
+                for kind, values in (("answer", each["answers"]), ("pair", each["pairs"]),
+                                     ("score", questionnaires.scores_of(study.forms[each["form"]], each["answers"],
+                                                                        each["pairs"]))):
+                    if kind == "score" and study.forms[each["form"]].kind == "own":
+                        continue
+                    for item, value in values.items():
+                        if kind == "score" and item in each["answers"]:
+                            continue
+                        is_number = isinstance(value, (int, float))
+                        found["answers"].append({**common, "kind": kind, "item": item,
+                                                 "value": float(value) if is_number else None,
+                                                 "text": "" if is_number else value})
+        return found
+
+    def _participant_excluded(self, count, excluded_trials):
+        import numpy as np
+
+        from hapticgiant.study import expressions
+
+        known = expressions.Trial({"trials": np.float64(count), "excluded_trials": np.float64(excluded_trials)})
+        return next((each.why for each in self.study.exclusions if each.kind == "participant"
+                     and expressions.evaluate(expressions.parse(each.expression), known)), "")
+
+    def tabulate(self) -> list[pathlib.Path]:
+        """Writes tables, data dictionary, what is stored, and hashes. Parquet where pyarrow is installed."""
+        from hapticgiant.sweep.table import columns_of
+
+        files, rows = [], self.rows()
+        for name in TABLES:
+            columns = columns_of(rows[name])
+            file = self.path / f"{name}.csv"
+            self.replace(file, _csv(columns))
+            files.append(file)
+            try:
+                import pyarrow
+                import pyarrow.parquet
+            except ImportError:
+                continue
+            sink = pyarrow.BufferOutputStream()
+            pyarrow.parquet.write_table(pyarrow.table({key: pyarrow.array(each) for key, each in columns.items()}), sink)
+            self.replace(file.with_suffix(".parquet"), sink.getvalue().to_pybytes())
+            files.append(file.with_suffix(".parquet"))
+        self.replace(self.path / "data_dictionary.csv", self._dictionary())
+        has_recordings = any(self.path.glob("sub-*/*.mcap"))
+        self.replace(self.path / "WHAT_IS_STORED.md", STORED.format(
+            codes=f"{plan(self.study)[0].code} ...", trial="sub-*/*_trial.json", withdrawn=WITHDRAWN,
+            recording="\n- Recordings (sub-*/*_recording.mcap): what the device has measured and done in each cycle."
+            if has_recordings else " Recordings are not kept."))
+        self.hash()
+        return files
+
+    def _dictionary(self):
+        lines = [("table", "column", "unit", "meaning")]
+        lines += [("participants", *each) for each in (
+            ("participant", "", "code"), ("order", "", "conditions in the order of the plan"),
+            ("trials", "", "trials that were played, without practice"),
+            ("excluded_trials", "", "of these left out by a criterion"),
+            ("excluded", "", "why all of the participant is left out; empty: counts"))]
+        lines += [("trials", *each) for each in (
+            ("participant", "", "code"), ("position", "", "place of the trial in the participant's plan, from 1"),
+            ("condition", "", "as in study.yaml"), ("repetition", "", "from 1"),
+            ("excluded", "", "why the trial is left out; empty: counts"),
+            *((m.name, m.unit, f"{m.what}: {m.expression}") for m in self.study.measures.values()),
+            ("exit_code", "", "of hapticgiant run: 0 as expected, 1 an event is missing or a limit was exceeded, 3 fault"),
+            ("state_hash", "", "of the last cycle; the same run has the same"),
+            ("recording_sha256", "", "of the recording that was measured"),
+            ("recording", "", "its file; empty: not kept"))]
+        lines += [("answers", *each) for each in (
+            ("participant", "", "code"), ("condition", "", "empty: asked once, at the end"),
+            ("form", "", "as in study.yaml"), ("kind", "", "answer, pair (winner of two TLX scales) or score"),
+            ("item", "", "see below"), ("value", "", "number"), ("text", "", "free text, or the winner of a pair"))]
+        for name, form in self.study.forms.items():
+            for item, each in form.items.items():
+                scale = "" if each.kind == "text" else f"; {each.low:g} to {each.high:g} by {each.step:g}"
+                lines.append((f"answers {name}", item, "", each.text.get("en", item) + scale))
+            lines += [(f"answers {name}", score, "", what) for score, what in form.scores.items()
+                      if score not in form.items]
+        return _rows_text(lines)
+
+    def hash(self) -> None:
+        """Writes hashes.sha256 of every file, in the form that sha256sum reads."""
+        lines = []
+        for file in sorted(self.path.rglob("*")):
+            inner = file.relative_to(self.path)
+            if not file.is_file() or any(part.startswith(".") for part in inner.parts) or inner.name == "hashes.sha256":
+                continue
+            lines.append(f"{trials.digest_of(file)}  {inner}\n")
+        self.replace(self.path / "hashes.sha256", "".join(lines))
+
+
+def _csv(columns):
+    return _rows_text([list(columns), *zip(*columns.values())])
+
+
+def _rows_text(rows):
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    return out.getvalue()

@@ -1,0 +1,347 @@
+"""Tests of one outcome between conditions, by scipy and statsmodels; no files, no names of people.
+
+Every test gives an estimate with its interval, an effect size, and what its assumptions look like.
+Which test is right is a matter of the design, not of the data: an assumption that looks bad is
+said, and a test that does without it stands beside.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+import warnings
+
+import numpy as np
+from scipy import stats
+
+
+@dataclasses.dataclass
+class Comparison:
+    """Two conditions: how far apart, how surely."""
+
+    first: str
+    second: str
+    statistic: str
+    value: float
+    p: float
+    estimate: float
+    """Second minus first: difference of means, or the Hodges-Lehmann estimate."""
+    low: float
+    high: float
+    effect: str
+    size: float
+    df: float | None = None
+    p_adjusted: float | None = None
+
+
+@dataclasses.dataclass
+class Result:
+    """A test of one outcome."""
+
+    test: str
+    count: int
+    """People."""
+    statistic: str = ""
+    value: float = math.nan
+    df: tuple[float, ...] = ()
+    p: float = math.nan
+    effect: str = ""
+    size: float = math.nan
+    comparisons: list[Comparison] = dataclasses.field(default_factory=list)
+    assumptions: list[str] = dataclasses.field(default_factory=list)
+    notes: list[str] = dataclasses.field(default_factory=list)
+    variances: dict[str, float] = dataclasses.field(default_factory=dict)
+
+
+def adjusted(values, method: str) -> list[float]:
+    """p values corrected for their number: holm, bonferroni or none."""
+    values = np.asarray(values, float)
+    count = len(values)
+    if method == "none" or count == 0:
+        return values.tolist()
+    if method == "bonferroni":
+        return np.minimum(1, values * count).tolist()
+    rising = np.argsort(values, kind="stable")
+    steps = np.maximum.accumulate(values[rising] * (count - np.arange(count)))
+    result = np.empty(count)
+    result[rising] = np.minimum(1, steps)
+    return result.tolist()
+
+
+def normality(values, what: str, alpha: float) -> str:
+    """What Shapiro and Wilk's test says, in words."""
+    values = np.asarray(values, float)
+    if len(values) < 3 or np.ptp(values) == 0:
+        return f"{what}: too few different values to judge whether they are normal"
+    value, p = stats.shapiro(values)
+    words = "no sign against normal" if p >= alpha else "NOT normal"
+    return f"{what}: {words} (Shapiro-Wilk W = {value:.3f}, p = {number(p)})"
+
+
+def number(value: float) -> str:
+    """Three digits behind the point; small ones as < 0.001."""
+    return "< 0.001" if 0 <= value < 0.001 else f"{value:.3f}"
+
+
+def paired_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
+    """Student's t of differences; effect size d_z, the mean difference over its deviation."""
+    difference = np.asarray(second, float) - np.asarray(first, float)
+    count, mean, deviation = len(difference), difference.mean(), difference.std(ddof=1)
+    if deviation == 0:
+        return Comparison(*names, "t", math.nan, 1.0 if mean == 0 else 0.0, mean, mean, mean, "d_z",
+                          math.nan, count - 1)
+    t = mean / (deviation / math.sqrt(count))
+    half = stats.t.ppf(1 - alpha / 2, count - 1) * deviation / math.sqrt(count)
+    return Comparison(*names, "t", t, 2 * stats.t.sf(abs(t), count - 1), mean, mean - half, mean + half,
+                      "d_z", mean / deviation, count - 1)
+
+
+def signed_rank_counts(count: int) -> np.ndarray:
+    """How many of 2^n signings give each sum of positive ranks."""
+    ways = np.zeros(count * (count + 1) // 2 + 1)
+    ways[0] = 1
+    for rank in range(1, count + 1):
+        ways[rank:] += ways[:-rank].copy()
+    return ways
+
+
+def signed_rank_p(difference) -> float:
+    """p of signed ranks: exact up to 49 without ties and zeros, else with correction of continuity."""
+    kept = difference[difference != 0]
+    if len(kept) == 0:
+        return 1.0
+    has_ties = len(np.unique(abs(kept))) < len(difference)
+    method = "exact" if not has_ties and len(kept) < 50 else "asymptotic"
+    return min(1.0, float(stats.wilcoxon(kept, correction=True, method=method).pvalue))
+
+
+def wilcoxon(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
+    """Wilcoxon's signed ranks: exact up to 49 differences without ties and zeros, else the normal
+    approximation with correction of continuity, zeros left out, as R's wilcox.test does.
+
+    Estimate and interval: Hodges and Lehmann; effect size: rank-biserial correlation.
+    """
+    difference = np.asarray(second, float) - np.asarray(first, float)
+    kept = difference[difference != 0]
+    count = len(kept)
+    if count == 0:
+        return Comparison(*names, "V", 0.0, 1.0, 0.0, 0.0, 0.0, "rank-biserial", 0.0)
+    ranks = stats.rankdata(abs(kept))
+    v = ranks[kept > 0].sum()
+    total = count * (count + 1) / 2
+    walsh = np.sort([(kept[i] + kept[j]) / 2 for i in range(count) for j in range(i, count)])
+    share = np.cumsum(signed_rank_counts(count)) / 2.0 ** count
+    at = max(1, int(np.searchsorted(share, alpha / 2 * (1 - 1e-12))))
+    return Comparison(*names, "V", v, signed_rank_p(difference), float(np.median(walsh)), walsh[at - 1],
+                      walsh[len(walsh) - at], "rank-biserial", (2 * v - total) / total)
+
+
+def welch_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
+    """Welch's t of two groups; effect size Hedges' g."""
+    a, b = np.asarray(first, float), np.asarray(second, float)
+    test = stats.ttest_ind(b, a, equal_var=False)
+    low, high = test.confidence_interval(1 - alpha)
+    pooled = math.sqrt(((len(a) - 1) * a.var(ddof=1) + (len(b) - 1) * b.var(ddof=1)) / (len(a) + len(b) - 2))
+    small = 1 - 3 / (4 * (len(a) + len(b)) - 9)
+    mean = b.mean() - a.mean()
+    return Comparison(*names, "t", test.statistic, test.pvalue, mean, low, high, "Hedges' g",
+                      small * mean / pooled if pooled > 0 else math.nan, test.df)
+
+
+def mann_whitney(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
+    """Mann and Whitney's U of the second group: exact without ties, else with correction of
+    continuity, as R's wilcox.test. Estimate: Hodges and Lehmann; effect size rank-biserial."""
+    a, b = np.asarray(first, float), np.asarray(second, float)
+    has_ties = len(np.unique(np.concatenate([a, b]))) < len(a) + len(b)
+    method = "exact" if not has_ties and max(len(a), len(b)) < 50 else "asymptotic"
+    test = stats.mannwhitneyu(b, a, method=method, use_continuity=True)
+    gaps = np.sort((b[:, None] - a[None, :]).ravel())
+    spread = math.sqrt(len(a) * len(b) * (len(a) + len(b) + 1) / 12)
+    at = max(1, int(len(gaps) / 2 - stats.norm.ppf(1 - alpha / 2) * spread))
+    return Comparison(*names, "U", test.statistic, test.pvalue, float(np.median(gaps)), gaps[at - 1],
+                      gaps[len(gaps) - at], "rank-biserial", 2 * test.statistic / len(gaps) - 1)
+
+
+def every_pair(groups: dict[str, np.ndarray], compare, alpha, correction) -> list[Comparison]:
+    """All pairs of conditions, corrected for their number."""
+    found = [compare(groups[a], groups[b], alpha, (a, b)) for a, b in itertools.combinations(groups, 2)]
+    for each, p in zip(found, adjusted([each.p for each in found], correction)):
+        each.p_adjusted = p
+    return found
+
+
+def friedman(groups: dict[str, np.ndarray], alpha=0.05, correction="holm") -> Result:
+    """Friedman's test over people (rows), post-hoc Wilcoxon of all pairs; effect size Kendall's W."""
+    columns = list(groups.values())
+    count = len(columns[0])
+    if all(np.ptp(row) == 0 for row in np.array(columns).T):
+        value, p = 0.0, 1.0
+    else:
+        value, p = stats.friedmanchisquare(*columns)
+    return Result("friedman", count, "chi2", value, (len(columns) - 1,), p, "Kendall's W",
+                  value / (count * (len(columns) - 1)), every_pair(groups, wilcoxon, alpha, correction))
+
+
+def repeated_anova(table: np.ndarray) -> tuple[float, tuple[float, float], float]:
+    """F, its degrees of freedom and p of conditions (columns) within people (rows)."""
+    rows, columns = table.shape
+    mean = table.mean()
+    between = rows * ((table.mean(axis=0) - mean) ** 2).sum() / (columns - 1)
+    rest = table - table.mean(axis=0) - table.mean(axis=1, keepdims=True) + mean
+    df = columns - 1, (rows - 1) * (columns - 1)
+    error = (rest ** 2).sum() / df[1]
+    f = between / error if error > 0 else math.nan
+    return f, df, float(stats.f.sf(f, *df))
+
+
+def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
+    """Mixed model by REML: condition fixed; people, and people x condition where trials repeat, random.
+
+    Tests use the degrees of freedom (people - 1)(conditions - 1), which are exact for balanced data
+    and stand in for Satterthwaite's otherwise. Effect size d: the difference over the deviation of a
+    single value.
+    """
+    from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
+
+    values = np.asarray(values, float)
+    names = list(dict.fromkeys(conditions))
+    code = np.array([names.index(each) for each in conditions])
+    persons = list(dict.fromkeys(people))
+    group = np.array([persons.index(each) for each in people])
+    fixed = np.eye(len(names))[code]  # a mean for each condition
+    cells = {(g, c) for g, c in zip(group.tolist(), code.tolist())}
+    repeats = len(values) > len(cells)
+    extra = {}
+    if repeats:
+        mats, columns = [], []
+        for person in range(len(persons)):
+            own = code[group == person]
+            kinds = np.unique(own)
+            mats.append((own[:, None] == kinds[None, :]).astype(float))
+            columns.append([names[kind] for kind in kinds])
+        extra = {"exog_vc": VCSpec(["person x condition"], [columns], [mats])}
+    scale = values.std(ddof=1) or 1.0
+    result = Result("mixed", len(persons))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        rows = np.argsort(group, kind="stable")
+        model = MixedLM(values[rows] / scale, fixed[rows], group[rows], exog_re=np.ones((len(values), 1)),
+                        **extra)
+        fit = model.fit(reml=True, method=["lbfgs", "bfgs", "cg"])
+    if not fit.converged:
+        result.notes.append("the fit of the mixed model has not converged")
+    means = fit.fe_params * scale
+    covariance = np.asarray(fit.cov_params())[:len(names), :len(names)] * scale ** 2
+    result.variances = {"person": float(fit.cov_re[0, 0]) * scale ** 2}
+    if repeats:
+        result.variances["person x condition"] = float(fit.vcomp[0]) * scale ** 2
+    result.variances["rest"] = float(fit.scale) * scale ** 2
+    deviation = math.sqrt(sum(result.variances.values()))
+    df = len(names) - 1, (len(persons) - 1) * (len(names) - 1)
+    contrast = np.hstack([-np.ones((len(names) - 1, 1)), np.eye(len(names) - 1)])
+    gap = contrast @ means
+    wald = gap @ np.linalg.solve(contrast @ covariance @ contrast.T, gap)
+    result.statistic, result.value, result.df = "F", wald / df[0], df
+    result.p = float(stats.f.sf(result.value, *df))
+    for i, j in itertools.combinations(range(len(names)), 2):
+        estimate = means[j] - means[i]
+        error = math.sqrt(covariance[i, i] + covariance[j, j] - 2 * covariance[i, j])
+        half = stats.t.ppf(1 - alpha / 2, df[1]) * error
+        result.comparisons.append(Comparison(
+            names[i], names[j], "t", estimate / error, 2 * stats.t.sf(abs(estimate / error), df[1]), estimate,
+            estimate - half, estimate + half, "d", estimate / deviation, df[1]))
+    for each, p in zip(result.comparisons, adjusted([c.p for c in result.comparisons], correction)):
+        each.p_adjusted = p
+    result.effect, result.size = "partial eta2", result.value * df[0] / (result.value * df[0] + df[1])
+    result.assumptions.append(normality(fit.resid, "residuals", alpha))
+    offsets = [float(np.atleast_1d(each)[0]) for each in fit.random_effects.values()]
+    result.assumptions.append(normality(offsets, "offsets of people", alpha))
+    if result.variances["person"] < 1e-6 * deviation ** 2:
+        result.notes.append("people do not differ in their mean (variance 0)")
+    return result
+
+
+def between(groups: dict[str, np.ndarray], test: str, alpha=0.05, correction="holm") -> Result:
+    """Independent groups: anova or kruskal with corrected pairs (Welch's t, Mann-Whitney)."""
+    columns = [np.asarray(each, float) for each in groups.values()]
+    count, kinds = sum(map(len, columns)), len(columns)
+    if test == "anova":
+        value, p = stats.f_oneway(*columns)
+        df = kinds - 1, count - kinds
+        result = Result(test, count, "F", value, df, p, "eta2", value * df[0] / (value * df[0] + df[1]),
+                        every_pair(groups, welch_t, alpha, correction))
+        result.assumptions = [normality(np.concatenate([c - c.mean() for c in columns]), "residuals", alpha),
+                              equal_spread(columns, alpha)]
+        return result
+    value, p = stats.kruskal(*columns)
+    return Result(test, count, "H", value, (kinds - 1,), p, "epsilon2", value / (count - 1),
+                  every_pair(groups, mann_whitney, alpha, correction))
+
+
+def equal_spread(columns, alpha) -> str:
+    """What Levene's test (about the median) says, in words."""
+    value, p = stats.levene(*columns, center="median")
+    words = "no sign against equal spread" if p >= alpha else "spread DIFFERS"
+    return f"groups: {words} (Levene W = {value:.3f}, p = {number(p)})"
+
+
+def run(test: str, values, conditions, people, alpha=0.05, correction="holm") -> Result:
+    """The test by its name, of values with their conditions and people.
+
+    Tests other than the mixed model take the mean of a person's trials of a condition. Within
+    people, those without a value in every condition are left out, which is noted.
+    """
+    names = list(dict.fromkeys(conditions))
+    cells: dict[tuple[str, str], list[float]] = {}
+    for value, condition, person in zip(values, conditions, people):
+        cells.setdefault((person, condition), []).append(float(value))
+    persons = list(dict.fromkeys(people))
+    is_within = test in ("paired_t", "wilcoxon", "friedman", "mixed")
+    complete = [p for p in persons if all((p, c) in cells for c in names)] if is_within else persons
+    if test == "mixed":
+        result = mixed(values, conditions, people, alpha, correction)
+        table = np.array([[np.mean(cells[p, c]) for c in names] for p in complete])
+        if len(names) > 2 and len(complete) > 2:
+            chi = friedman(dict(zip(names, table.T)), alpha, correction)
+            result.notes.append(f"without normality: Friedman chi2 = {chi.value:.3f}, p = {number(chi.p)}")
+        elif len(complete) > 2:
+            rank = wilcoxon(*table.T, alpha, names)
+            result.notes.append(f"without normality: Wilcoxon V = {rank.value:g}, p = {number(rank.p)}")
+        return result
+    groups = {c: np.array([np.mean(cells[p, c]) for p in complete if (p, c) in cells]) for c in names}
+    if min(map(len, groups.values())) < 2:
+        raise ValueError("fewer than two people have values in every condition")
+    if test == "friedman":
+        result = friedman(groups, alpha, correction)
+    elif test in ("anova", "kruskal"):
+        result = between(groups, test, alpha, correction)
+    else:
+        compare = {"paired_t": paired_t, "wilcoxon": wilcoxon, "welch_t": welch_t,
+                   "mann_whitney": mann_whitney}[test]
+        one = compare(*groups.values(), alpha, tuple(names))
+        one.p_adjusted = one.p
+        count = len(complete) if is_within else sum(map(len, groups.values()))
+        result = Result(test, count, one.statistic, one.value, () if one.df is None else (one.df,), one.p,
+                        one.effect, one.size, [one])
+        a, b = groups.values()
+        if test == "paired_t":
+            result.assumptions = [normality(b - a, "differences", alpha)]
+            rank = wilcoxon(a, b, alpha)
+            result.notes.append(f"without normality: Wilcoxon V = {rank.value:g}, p = {number(rank.p)}")
+        if test == "welch_t":
+            result.assumptions = [normality(each, name, alpha) for name, each in groups.items()]
+            rank = mann_whitney(a, b, alpha)
+            result.notes.append(f"without normality: Mann-Whitney U = {rank.value:g}, p = {number(rank.p)}")
+        if test == "wilcoxon":
+            skew = float(stats.skew(b - a)) if np.ptp(b - a) > 0 else 0.0
+            result.assumptions = [f"differences: skewness {skew:.2f}; signed ranks assume that they are "
+                                  "symmetric about their middle"]
+            if 2 / 2 ** count > alpha:
+                result.notes.append(f"with {count} people no p below {2 / 2 ** count:g} can come out, and the "
+                                    f"interval cannot reach {100 * (1 - alpha):g} %")
+    if len(cells) < len(list(values)):
+        result.notes.append("a person's trials of a condition are averaged")
+    if left := len(persons) - len(complete):
+        result.notes.append(f"{left} people without values in every condition are left out")
+    return result

@@ -1,0 +1,148 @@
+"""One trial: played by `hapticgiant run`, measured from its recording."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import hashlib
+import json
+import pathlib
+import shutil
+import subprocess
+
+import numpy as np
+
+from hapticgiant.study import expressions
+from hapticgiant.study.description import Study
+from hapticgiant.sweep.program import SUMMARY, Outcome, Program
+
+RUNNING = 3  # of the column `mode`
+ALWAYS = ("mode",)
+
+
+class TrialError(RuntimeError):
+    """A trial that has no result."""
+
+
+def command(study: Study, program: Program, condition: str, hand: dict[str, str], seed: int,
+            folder: pathlib.Path) -> list[str]:
+    """`hapticgiant run` with the simulated hand; the recording goes to the folder."""
+    return [*shown_command(study, program, condition, hand, seed), "--recordings", str(folder),
+            "--flight-recorder", "off", *SUMMARY]
+
+
+def shown_command(study: Study, program: Program, condition: str, hand: dict[str, str], seed: int) -> list[str]:
+    """The same as it can be typed."""
+    return [program.file, "run", *study.arguments(condition, hand), "--seed", str(seed), "--fast",
+            "--no-viewer"]
+
+
+@dataclasses.dataclass
+class Measured:
+    """What came of a trial."""
+
+    exit_code: int
+    state_hash: str
+    events: list[tuple[float, str]]
+    measures: dict[str, float]
+    recording: pathlib.Path
+    digest: str
+    """SHA-256 of the recording."""
+
+
+def columns_of(study: Study) -> list[str]:
+    """The recorded columns that measures read, without their index."""
+    names = {name.partition("[")[0] for measure in study.measures.values()
+             for name in expressions.names_of(expressions.parse(measure.expression))}
+    return sorted((names | set(ALWAYS)) - {"time_s"})
+
+
+def known_columns(program: Program) -> list[str]:
+    """The columns that a recording has."""
+    done = subprocess.run([program.file, "export", "--list-columns"], capture_output=True, text=True, check=True)
+    return [line.split()[0].removesuffix("[]") for line in done.stdout.splitlines() if line.strip()]
+
+
+def measure(study: Study, program: Program, outcome: Outcome, folder: pathlib.Path) -> Measured:
+    """The measures of a trial that has ended. Raises TrialError, ExpressionError."""
+    summary = outcome.summary()
+    if summary is None:
+        raise TrialError(outcome.why())
+    recording = next((file for file in folder.glob("*.mcap") if not file.is_symlink()), None)
+    if recording is None:
+        raise TrialError(f"no recording: {summary['recording_error'] or 'nothing was written'}")
+    table = folder / "columns"
+    done = subprocess.run([program.file, "export", recording, "--out", table, "--columns", *columns_of(study)],
+                          capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise TrialError(done.stderr.strip())
+    columns = _read_table(table.with_suffix(".csv"))
+    is_felt = columns["mode"] == RUNNING
+    columns = {name: values[is_felt] for name, values in columns.items()}
+    events = [(event["time_s"], event["name"]) for event in summary["events"]]
+    trial = expressions.Trial(columns, events, _numbers(summary))
+    measures = {}
+    for name, each in study.measures.items():
+        try:
+            measures[name] = expressions.evaluate(expressions.parse(each.expression), trial)
+        except expressions.ExpressionError as error:
+            raise expressions.ExpressionError(f"{study.place(f'measures.{name}')}: measures.{name}: {error}") from None
+    return Measured(outcome.code, summary["state_hash"], events, measures, recording, digest_of(recording))
+
+
+def digest_of(file: pathlib.Path) -> str:
+    """SHA-256 of a file."""
+    digest = hashlib.sha256()
+    with open(file, "rb") as data:
+        while block := data.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def _read_table(file):
+    with open(file, encoding="utf-8") as lines:
+        names = next(csv.reader(lines))
+        rows = np.loadtxt(lines, delimiter=",", ndmin=2)
+    return dict(zip(names, rows.T))
+
+
+def _numbers(summary):
+    found = {}
+
+    def add(path, value):
+        if isinstance(value, dict):
+            for key, inner in value.items():
+                add(f"{path}.{key}" if path else key, inner)
+        elif isinstance(value, (int, float)):
+            found[path] = float(value)
+
+    add("", summary)
+    return found | {"missing_events": float(len(summary["missing_events"]))}
+
+
+def excluded(study: Study, measures: dict[str, float], exit_code: int) -> str:
+    """Why a trial is left out; empty: it counts."""
+    known = {**{name: np.float64(np.nan if value is None else value) for name, value in measures.items()},
+             "exit_code": np.float64(exit_code)}
+    for each in study.exclusions:
+        if each.kind == "trial" and expressions.evaluate(expressions.parse(each.expression),
+                                                         expressions.Trial(known)):
+            return each.why
+    return ""
+
+
+def discard(folder: pathlib.Path) -> None:
+    """Deletes what a trial has left behind."""
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+def dump(value) -> str:
+    """JSON in which a measure without a number is null."""
+    def plain(x):
+        if isinstance(x, dict):
+            return {key: plain(each) for key, each in x.items()}
+        if isinstance(x, (list, tuple)):
+            return [plain(each) for each in x]
+        return None if isinstance(x, float) and not np.isfinite(x) else x
+
+    return json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False) + "\n"

@@ -1,0 +1,181 @@
+"""Parts of `hapticgiant study` that need no program: orders, expressions, scores, faults of study.yaml."""
+
+import collections
+import itertools
+import pathlib
+import tempfile
+import unittest
+
+import numpy as np
+import without_compiled_part  # noqa: F401
+from hapticgiant.study import description, expressions, order, people, planning, questionnaires
+from hapticgiant.sweep.reader import StudyError
+
+STUDY = """\
+conditions:
+  light: {twin.mass_scale: 1}
+  heavy: {twin.mass_scale: 2}
+fixed: {scenario: door}
+design: {kind: within, order: williams, participants: 16}
+questionnaires:
+  tlx: {kind: nasa_tlx, weighted: true}
+  sus: {kind: sus, after: end}
+measures:
+  peak_force_N: {}
+  half: {expression: "max(robot.w_h[0]) / 2", unit: N}
+exclusion:
+  - {trial: peak_force_N > 1000, why: too strong}
+analysis:
+  tests: [{outcome: peak_force_N}]
+simulation:
+  hand:
+    light: {"script.segments[0].fz_N": {mean: -30, sd: 2}}
+  expected:
+    peak_force_N: {light: 10, heavy: 11, between: 3, within: 1}
+"""
+
+
+def load(text):
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "study.yaml"
+        file.write_text(text)
+        return description.load_study(file)
+
+
+class Orders(unittest.TestCase):
+    def test_latin_squares_have_each_condition_once_at_each_place(self):
+        for count in range(2, 9):
+            for rows in (order.latin_square(count), order.williams(count)):
+                for line in rows:
+                    self.assertEqual(sorted(line), list(range(count)))
+                for column in zip(*rows):
+                    self.assertEqual(len(set(collections.Counter(column).values())), 1)
+
+    def test_in_a_williams_design_each_follows_each_equally_often(self):
+        for count in range(2, 9):
+            follows = collections.Counter(pair for row in order.williams(count) for pair in itertools.pairwise(row))
+            self.assertEqual(len(follows), count * (count - 1))
+            self.assertEqual(set(follows.values()), {1 + count % 2})
+
+    def test_every_order_is_balanced_after_its_block(self):
+        for kind, name in (("within", "latin_square"), ("within", "williams"), ("within", "full"),
+                           ("within", "block_random"), ("between", "block_random")):
+            for count in (2, 3, 4):
+                design = description.Design(kind, name, 0, 1, 0, 5)
+                design = description.Design(kind, name, 2 * order.rows_of(design, count), 1, 0, 5)
+                rows = order.orders(design, count)
+                if (kind, name) == ("within", "block_random"):  # of its places only the first is balanced
+                    rows = [row[:1] for row in rows]
+                self.assertEqual(order.imbalance(rows, count)[0], 0, name)
+
+    def test_another_seed_gives_another_order(self):
+        found = {str(order.orders(description.Design("within", "full", 24, 1, 0, seed), 4)) for seed in range(5)}
+        self.assertEqual(len(found), 5)
+
+
+class Expressions(unittest.TestCase):
+    def value(self, text, **columns):
+        columns = {name: np.array(values, float) for name, values in columns.items()}
+        events = [(1.0, "checkpoint 1"), (3.5, "checkpoint 2")]
+        return expressions.evaluate(expressions.parse(text), expressions.Trial(columns, events, {"a.b": 7}))
+
+    def test_values(self):
+        time = {"time_s": [0, 0.5, 1, 1.5, 2]}
+        for text, wanted in (
+                ("1 + 2 * 3 ** 2 - 8 / 4", 17), ("max(x) - min(x)", 4), ("rms(x - mean(x))", np.sqrt(2)),
+                ("path_length(x, x * 0)", 4), ("integral(x)", 4), ("integral(x >= 2)", 1.25), ("max(derivative(x))", 2), ("duration()", 2),
+                ("event('checkpoint 2') - first_event()", 2.5), ("events('checkpoint *')", 2), ("summary('a.b')", 7),
+                ("count(x >= 2 and x < 4)", 2), ("norm(3, 4)", 5), ("spells(x > 3.5 or x < 0.5, 0.6)", 2),
+                ("spells(x != 2, 1.1)", 1), ("last(x) % 3", 1)):
+            self.assertAlmostEqual(self.value(text, x=[0, 1, 2, 3, 4], **time), wanted, 12, text)
+        self.assertTrue(np.isnan(self.value("event('none')")))
+
+    def test_nothing_else_of_python_can_be_written(self):
+        for text in ("__import__('os')", "().__class__", "(lambda: 1)()", "[1][0]", "x if 1 else 2", "'a'", "f(x=1)",
+                     "max(x, key=1)", "{1}", "x := 1", "max.__class__(1)", "open('a')", "1 if", "x[0:1]", "x['a']",
+                     "event(x)", "True", "+".join(["1"] * 900), "-" * 200 + "1", "(" * 400, "1j"):
+            with self.assertRaises(expressions.ExpressionError, msg=text):
+                self.value(text, x=[1])
+
+    def test_huge_numbers_end_at_once(self):
+        self.assertEqual(self.value("9 ** 9 ** 9"), np.inf)
+
+    def test_a_value_per_sample_is_no_measure(self):
+        with self.assertRaisesRegex(expressions.ExpressionError, "value per sample"):
+            self.value("x + 1", x=[1, 2])
+        with self.assertRaisesRegex(expressions.ExpressionError, "did you mean 'x'"):
+            self.value("max(y)", x=[1, 2])
+
+
+class Scores(unittest.TestCase):
+    def test_sus(self):
+        """Odd items count from 1, even ones to 5, times 2.5 (Brooke 1996)."""
+        form = questionnaires.Form("sus", "end", questionnaires.sus_items(), {})
+        self.assertEqual(questionnaires.scores_of(form, dict.fromkeys(form.items, 3)), {"score": 50})
+        best = {name: 5 if i % 2 == 0 else 1 for i, name in enumerate(form.items)}
+        self.assertEqual(questionnaires.scores_of(form, best), {"score": 100})
+
+    def test_weighted_tlx(self):
+        """Each scale wins over those behind it: weights 5 4 3 2 1 0 (Hart and Staveland 1988: sum / 15)."""
+        form = load(STUDY).forms["tlx"]
+        answers = dict(zip(form.items, (30, 15, 60, 40, 30, 45)))
+        pairs = {f"{first}/{second}": first for first, second in form.pairs}
+        self.assertEqual(len(pairs), 15)
+        found = questionnaires.scores_of(form, answers, pairs)
+        self.assertAlmostEqual(found["weighted"], (5 * 30 + 4 * 15 + 3 * 60 + 2 * 40 + 1 * 30) / 15)
+        self.assertAlmostEqual(found["raw"], 220 / 6)
+
+
+class Power(unittest.TestCase):
+    def test_is_that_of_the_formula(self):
+        """R: power.t.test(n = 16, delta = 1, sd = sqrt(2), type = "paired")$power. Differences of two
+        answers that deviate by 1 deviate by sqrt(2)."""
+        found, = planning.power(load(STUDY), [16], 2000)
+        share, low, high = found.by_count[16]
+        self.assertEqual(found.test, "paired_t")
+        self.assertLess(abs(share - 0.7529793), 0.03)
+        self.assertLess(low, share)
+        self.assertLess(abs(found.false_alarms[0] - 0.05), 0.016)
+
+    def test_simulated_answers_stay_on_their_scale(self):
+        study = load(STUDY)
+        for code in ("P01", "P02", "P03"):
+            answers, pairs = people.answers_of(study, code, "tlx", "light")
+            self.assertEqual(answers, people.answers_of(study, code, "tlx", "light")[0])
+            self.assertTrue(all(0 <= each <= 100 and each % 5 == 0 for each in answers.values()))
+            self.assertEqual(len(pairs), 15)
+            self.assertTrue(all(winner in pair.split("/") for pair, winner in pairs.items()))
+
+
+class Faults(unittest.TestCase):
+    def test_have_place_rule_and_nearest_name(self):
+        for old, new, *messages in (
+                ("max(robot", "open(robot", ":11:", "no such function as 'open'"),
+                ("/ 2\"", "/ ().__class__\"", ":11:", "cannot be used here"),
+                ("outcome: peak", "outcome: peek", ":15:", "did you mean 'peak_force_N'"),
+                ("peak_force_N}]", "sus.score}]", ":15:", "asked once"),
+                ("peak_force_N}]", "peak_force_N, test: kruskal}]", ":15:", "not for a design within"),
+                ("williams", "wiliams", ":5:", "did you mean 'williams'"),
+                ("participants: 16", "participants: 0", ":5:", "expected a whole number from 1"),
+                ("trial: peak_force_N", "trial: peak", ":13:", "no such measure"),
+                ("scenario: door", "scenari: door", ":4:", "did you mean 'scenario'"),
+                ("scenario: door", "seed: 1", ":2:", "is drawn for each trial"),
+                ("light: {\"script", "ligt: {\"script", ":18:", "did you mean 'light'"),
+                ("peak_force_N: {light", "peak_force: {light", ":20:", "did you mean 'peak_force_N'"),
+                ("nasa_tlx", "nasa_tls", ":7:", "did you mean 'nasa_tlx'"),
+                ("peak_force_N: {}", "peak_force: {}", ":10:", "did you mean 'peak_force_N'"),
+                ("measures:", "measure:", ":9:", "did you mean 'measures'")):
+            self.assertIn(old, STUDY)
+            with self.assertRaises(StudyError) as caught:
+                load(STUDY.replace(old, new, 1))
+            for message in ("study.yaml", *messages):
+                self.assertIn(message, str(caught.exception))
+            self.assertEqual(len(str(caught.exception).splitlines()), 1)
+
+    def test_conditions_that_are_the_same(self):
+        self.assertIn("conditions light and heavy are the same",
+                      planning.problems_of(load(STUDY.replace("scale: 2", "scale: 1"))))
+
+
+if __name__ == "__main__":
+    unittest.main()
