@@ -139,7 +139,7 @@ class Installed:
         if is_in_it:
             check(done.returncode == 0 and "ROS_DOMAIN_ID" in done.stdout, f"bridge ros2: {done}")
         else:
-            check(done.returncode == 1 and done.stderr.count("\n") == 1 and "Debian package" in done.stderr,
+            check(done.returncode == 2 and done.stderr.count("\n") == 1 and "Debian package" in done.stderr,
                   f"bridge ros2 does not say where to get it: {done}")
 
     def test(self, program, has_figures):
