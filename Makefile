@@ -42,6 +42,9 @@
 #   make ros2    runs the bridge to ROS 2 against rclpy of Jazzy and Kilted, in environments of their own
 #                (240 MB each), and a robot of ROS 2 as a device. MINUTES=30 measures rates and losses for
 #                so long instead
+#   make pictures
+#                draws runs as other tools have them (pandas, LabRecorder, Jupyter, ROS 2) for docs/images, in
+#                the environments of make notebooks and make ros2
 #   make ros1    builds the ROS 1 bridge against Debian's ROS 1 and tests it by rospy and rviz under a
 #                virtual screen, in real time; as root it installs what is missing (300 MB).
 #                PICTURE=FILE.png keeps the picture of rviz
@@ -90,7 +93,7 @@ endef
 
 .PHONY: demo build wheel deb docs format clean \
   test test-wheel test-packages check headers lint audit sanitize sanitizer-set-up rtsan rtsan-tests fuzz \
-  franka foxglove ros2 ros1 notebooks sweep-engines soak soak-machines \
+  franka foxglove ros2 ros1 notebooks pictures sweep-engines soak soak-machines \
   bench bench-instructions experiments arms
 
 demo: build
@@ -175,6 +178,10 @@ notebooks: build
 
 ros2: build
 	@.venv/bin/python tests/ros2/ros2_test.py $(BUILD)/hapticgiant $(if $(MINUTES),--minutes $(MINUTES))
+
+pictures: build
+	@cmake --build $(BUILD) --target _core _core_stubs
+	@.venv/bin/python tools/draw_other_tools.py $(BUILD)/hapticgiant docs/images
 
 sweep-engines: build
 	@.venv/bin/python tests/sweep/engines_test.py $(BUILD)/hapticgiant

@@ -28,6 +28,9 @@ if(SKBUILD)
 endif()
 
 # What a wheel has from other wheels and from its Python package
+if(TARGET hapticgiant-ros2)  # not in a wheel, which would have to bring Fast DDS and OpenSSL, 15 MB
+  install(TARGETS hapticgiant-ros2 RUNTIME DESTINATION bin COMPONENT debian)
+endif()
 install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
   POST_INCLUDE_REGEXES "/cmeel[.]prefix/" POST_EXCLUDE_REGEXES "."
   LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)

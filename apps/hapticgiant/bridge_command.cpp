@@ -20,14 +20,16 @@ namespace fs = std::filesystem;
 
 /// A bridge is the program hapticgiant-NAME beside this one.
 struct BridgeFacts {
-  const char *name, *what, *needs;
+  const char *name, *what, *source;  // source: where one gets it
 };
 
 constexpr std::array kBridges = {
-    BridgeFacts{"ros2", "Shows a run to ROS 2, without ROS (docs/start/ros2.md).",
-                "Fast DDS 2 (Debian: libfastrtps-dev)"},
+    BridgeFacts{
+        "ros2", "Shows a run to ROS 2, without ROS (docs/start/ros2.md).",
+        "the Debian package of HapticGiant has it, a wheel has not; from source it is built "
+        "where there is Fast DDS 2 (Debian: libfastrtps-dev)"},
     BridgeFacts{"ros1", "Shows a run to ROS 1 and rviz (docs/start/ros1.md).",
-                "Debian's ROS 1 (bridges/ros1/build.sh)"},
+                "it is built from source where there is Debian's ROS 1, by bridges/ros1/build.sh"},
 };
 
 /// Becomes the bridge; returns only by an exception.
@@ -42,10 +44,8 @@ void become(const BridgeFacts& bridge, const std::vector<std::string>& arguments
   pointers.push_back(nullptr);
   ::execv(program.c_str(), pointers.data());
   if (errno != ENOENT) throw SetupError(program.string() + ": " + std::strerror(errno));
-  throw SetupError(fmt::format(
-      "bridge {}: off, since {} is missing; it is built where there is {}: install that "
-      "and build again",
-      bridge.name, program.string(), bridge.needs));
+  throw SetupError(fmt::format("bridge {}: off, since {} is missing: {}", bridge.name,
+                               program.string(), bridge.source));
 }
 
 }  // namespace

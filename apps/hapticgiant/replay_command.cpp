@@ -15,6 +15,7 @@
 #include "apps/hapticgiant/open_page.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
+#include "hg/live/link_file.h"
 #include "hg/page/recording_page.h"
 #include "hg/viewer_server/viewer_server.h"
 
@@ -38,6 +39,7 @@ void play(page::RecordingPage& show, viewer_server::ViewerServer& server,
   for (const recording::Event& event : show.run().events()) {
     server.announce_event(event.time_s, event.name, event.text);
   }
+  for (live::Message& message : show.live_descriptions()) server.latch_live(std::move(message));
   for (auto last = Clock::now(); !interrupted.load(); std::this_thread::sleep_for(kIdle)) {
     for (const viewer_server::Command& command : server.take_commands()) {
       server.answer(command, show.obey(command));
@@ -45,6 +47,9 @@ void play(page::RecordingPage& show, viewer_server::ViewerServer& server,
     const auto now = Clock::now();
     show.advance(std::chrono::duration<double>(now - std::exchange(last, now)).count());
     if (server.is_due()) server.publish(show.view());
+    if (!server.has_live_clients()) continue;
+    live::Batch batch = show.live_batch(server.live_wanted());
+    if (!batch.messages.empty()) server.publish_live(std::move(batch));
   }
 }
 
@@ -76,6 +81,8 @@ int replay(const ReplayArguments& arguments) {
   options.port = arguments.port;
   viewer_server::ViewerServer server(options, show.scene());
   present_page(server.url(), arguments.address, arguments.opens_browser);
+  const live::LinkFile link(live::live_address(server.url()));  // by which bridges find it
+  if (!link.problem().empty()) print_out("note        bridges need --live: {}\n", link.problem());
   print_out("stop        Ctrl-C\n");
   play(show, server, interrupted);
   return 0;

@@ -31,6 +31,27 @@ ParameterValue value_of(const json& values, const std::string& name) {
                                                       : ParameterValue{};
 }
 
+// an infinite end is null in JSON
+double end_of_range(const json& parameter, const char* name, double infinite) {
+  const auto found = parameter.find(name);
+  return found != parameter.end() && found->is_number() ? found->get<double>() : infinite;
+}
+
+ParameterDescriptor describe(const json& values, const std::string& name) {
+  ParameterDescriptor made = {.name = name, .type = value_of(values, name).type};
+  const json* found = find(values, name);
+  if (found == nullptr) return made;
+  if (const std::string unit = found->value("unit", ""); !unit.empty()) {
+    made.description = "in " + unit;
+  }
+  if (made.type == ParameterValue::kDouble && found->contains("max")) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    made.floating_point_range = {{.from_value = end_of_range(*found, "min", -kInfinity),
+                                  .to_value = end_of_range(*found, "max", kInfinity)}};
+  }
+  return made;
+}
+
 // whether a run has taken a value: JSON may have rounded it
 bool is_taken(const json& asked, const json& got) {
   if (!asked.is_number() || !got.is_number()) return asked == got;
@@ -205,9 +226,7 @@ void Parameters::answer(Waiting& waiting, const json& values, const std::string&
     }
     case Kind::kDescribe: {
       List<ParameterDescriptor> list;
-      for (const auto& name : waiting.names) {
-        list.items.push_back({.name = name, .type = value_of(values, name).type});
-      }
+      for (const auto& name : waiting.names) list.items.push_back(describe(values, name));
       return send(waiting, cdr_.encode(list));
     }
     case Kind::kList: {

@@ -92,8 +92,12 @@ Json service_part(std::string_view part, const std::string& schema) {
           {"schema", schema}};
 }
 
+// the range and the unit are additions of ours to the protocol
 Json parameter_json(const Parameter& parameter, double value) {
-  Json json = {{"name", parameter.name}};
+  Json json = {{"name", parameter.name},
+               {"min", parameter.min},
+               {"max", parameter.max},
+               {"unit", parameter.unit}};
   if (std::isfinite(value)) {
     json["value"] = value;
     json["type"] = "float64";

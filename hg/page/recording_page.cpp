@@ -11,6 +11,7 @@
 #include "hg/page/page_scene.h"
 #include "hg/scenario/names.h"
 #include "hg/scenario/recorded/recorded_scenario.h"
+#include "hg/scenario/recorded/robot_models.h"
 
 namespace hg::page {
 namespace {
@@ -79,7 +80,9 @@ RecordingPage::RecordingPage(const std::filesystem::path& file,
       run_(file, kFrame_s),
       scenario_(scenario_of(run_)),
       names_(scenario::part_names(scenario_)),
-      playback_(run_.duration_s()) {
+      playback_(run_.duration_s()),
+      live_(scenario::run_names(scenario_), scenario::link_tree(scenario_),
+            scenario_.device.model.rate_Hz, run_.start()) {
   if (!compare.empty()) {
     other_.emplace(compare, kFrame_s);
     require_alike(scenario_, scenario_of(*other_));
@@ -119,6 +122,30 @@ viewer_server::View RecordingPage::view() {
   return view;
 }
 
+live::Batch RecordingPage::live_batch(const live::Wanted& wanted) {
+  const std::size_t index = run_.at(playback_.position_s());
+  const bool is_new = live_sample_ != index || wanted_ != wanted;
+  wanted_ = wanted;
+  live_sample_ = index;
+  if (!is_new) return {};
+  run_.read(index, *sample_);
+  live_.observe(*sample_);
+  live::Batch batch = live_.batch(*sample_, wanted);
+  for (const recording::Event& event : run_.events()) {
+    if (event.time_s > live_s_ && event.time_s <= now_s()) {
+      batch.messages.push_back(live_.event(event.time_s, event.name, event.text));
+    }
+  }
+  live_s_ = now_s();
+  return batch;
+}
+
+std::vector<live::Message> RecordingPage::live_descriptions() {
+  return {
+      live_.description(live::Topic::kDeviceDescription, scenario::device_description(scenario_)),
+      live_.description(live::Topic::kTwinDescription, scenario::twin_description(scenario_))};
+}
+
 std::string RecordingPage::obey(const Command& command) {
   switch (command.name) {
     case CommandName::kPause:
@@ -146,7 +173,10 @@ std::string RecordingPage::obey(const Command& command) {
 std::string RecordingPage::seek(double time_s) {
   const double offset = time_s - run_.begin_s();
   const double nearest = std::clamp(offset, 0.0, playback_.duration_s());
-  if (std::abs(offset - nearest) < 1e-6 && playback_.seek(nearest)) return {};
+  if (std::abs(offset - nearest) < 1e-6 && playback_.seek(nearest)) {
+    live_s_ = now_s();
+    return {};
+  }
   return fmt::format("the recording has {:.3f} .. {:.3f} s", run_.begin_s(),
                      run_.begin_s() + playback_.duration_s());
 }

@@ -352,6 +352,11 @@ RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : f
   losses_ = taker.losses.since(start_ns(moments_.front().time_ns, begin_s_));
 }
 
+std::chrono::system_clock::time_point RecordedRun::start() const {
+  return std::chrono::system_clock::time_point(
+      std::chrono::nanoseconds(start_ns(moments_.front().time_ns, begin_s_)));
+}
+
 double RecordedRun::time_s(std::size_t index) const {
   return 1e-9 * static_cast<double>(moments_[index].time_ns - moments_.front().time_ns);
 }

@@ -2,6 +2,7 @@
 /// its topics.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -91,6 +92,8 @@ class RecordedRun {
   double duration_s() const { return time_s(size() - 1); }
   /// Run time at the first kept sample: a flight recording does not begin with its run.
   double begin_s() const noexcept { return begin_s_; }
+  /// Time zero of the run by the wall clock, as in the times of the file.
+  std::chrono::system_clock::time_point start() const;
   /// Index of the last kept sample up to `time_s`; of the first one for earlier times.
   std::size_t at(double time_s) const;
   /// Decodes a kept sample. Throws SetupError when its bytes are damaged.

@@ -133,6 +133,15 @@ class Installed:
             check(re.match("win", component) or re.search(rf"^{component} ", texts, re.MULTILINE),
                   f"{component}: its licence is not in the package")
 
+    def test_the_bridge(self, is_in_it):
+        done = subprocess.run([*self.command, "bridge", "ros2", "--help"], text=True,
+                              capture_output=True, **self.options())
+        if is_in_it:
+            check(done.returncode == 0 and "ROS_DOMAIN_ID" in done.stdout, f"bridge ros2: {done}")
+        else:
+            check(done.returncode == 2 and done.stderr.count("\n") == 1 and "Debian package" in done.stderr,
+                  f"bridge ros2 does not say where to get it: {done}")
+
     def test(self, program, has_figures):
         self.test_the_run_of_the_build(program)
         self.test_recordings(has_figures)
@@ -171,8 +180,10 @@ def test_wheel(program, wheel, work):
     tag = wheel.stem.rpartition("-")[2]
     check(f'constrains the platform tag to "{tag}"' in shown, f"auditwheel says another tag: {shown}")
     (work / "empty").mkdir()
-    Installed([work / "venv" / "bin" / "hapticgiant"], work / "empty", site / "hapticgiant", environment,
-              list((site / "hapticgiant.libs").iterdir())).test(program, has_figures=True)
+    installed = Installed([work / "venv" / "bin" / "hapticgiant"], work / "empty", site / "hapticgiant",
+                          environment, list((site / "hapticgiant.libs").iterdir()))
+    installed.test(program, has_figures=True)
+    installed.test_the_bridge(is_in_it=False)
     run(python, ROOT / "tests/packages/python_package_test.py", "--installed", cwd=work / "empty",
         env=environment)
 
@@ -201,6 +212,7 @@ def test_deb(program, package, work):
         command = ["chroot", system, "/usr/bin/env", "-C", "/empty", "hapticgiant"]
         installed = Installed(command, system / "empty", system / "usr", environment, libraries)
         installed.test(program, has_figures=False)
+        installed.test_the_bridge(is_in_it=True)
         recommended = re.search(r"Recommends: (.*)", run("dpkg-deb", "--info", package))[1].split(", ")
         timed("apt install of what it recommends", *install, *recommended, env=environment)
         installed.test_recordings(has_figures=True)

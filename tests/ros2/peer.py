@@ -130,6 +130,8 @@ def call(node, spinner):
     saw["before"] = caller.get(saw["parameters"])
     answer, _ = caller.call(DescribeParameters, "/hapticgiant/describe_parameters", names=saw["parameters"])
     saw["described"] = [[one.name, one.type] for one in answer.descriptors]
+    saw["ranges"] = [[[part.from_value, part.to_value, part.step] for part in one.floating_point_range]
+                     for one in answer.descriptors]
     finite = [[name, value] for name, (_, value) in zip(saw["parameters"], saw["before"])
               if 0 < abs(value) < 1e6]
     name, value = finite[0]

@@ -13,6 +13,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -252,7 +253,13 @@ class Bridge:
         self.assertEqual(saw["set"], [True, ""])
         self.assertAlmostEqual(saw["after"][0][1], 1.25 * saw["old"])
         self.assertFalse(saw["too_large"][0])
-        self.assertIn("must be", saw["too_large"][1])
+        told = re.search(r"must be a number of (\S+) \.\. (\S+)", saw["too_large"][1])
+        self.assertTrue(told, saw["too_large"])
+        ranges = dict(zip(saw["parameters"], saw["ranges"]))
+        self.assertEqual(ranges[saw["changed"]], [[float(told[1]), float(told[2]), 0.0]])
+        for name, (_, value) in zip(saw["parameters"], saw["before"]):
+            ((least, most, _),) = ranges[name]
+            self.assertTrue(least <= value <= most, f"{name}: {value} in {least} .. {most}")
         self.assertFalse(saw["unknown"][0])
         self.assertIn("no_such_parameter", saw["unknown"][1])
         self.assertEqual(saw["after_refusal"], saw["after"])

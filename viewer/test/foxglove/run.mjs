@@ -106,9 +106,10 @@ try {
   for (const topic of ["/tf", "/hapticgiant/events", "/hapticgiant/sample"]) tool.subscribe(topic);
   await eventually(() => tool.newest.get("/hapticgiant/sample")?.record.mode === 3, "the device runs");
   tool.client.fetchAsset("package://hapticgiant/twin.urdf", 1);
-  const twin = await eventually(() => tool.assets.get(1), "the URDF of the twin");
+  const twin = new TextDecoder().decode((await eventually(() => tool.assets.get(1), "the URDF of the twin")).data);
+  expect(twin.includes("twin/leaf"), "the URDF of the twin has its links");
 
-  const files = { "/": readFileSync(join(here, "viewer.html")), "/twin.urdf": Buffer.from(twin.data) };
+  const files = { "/": readFileSync(join(here, "viewer.html")), "/twin.urdf": twin };
   const server = await serve(files);
   const origin = `http://127.0.0.1:${server.address().port}`;
   const layout = JSON.parse(readFileSync(join(root, "examples/foxglove/hapticgiant.json"), "utf8"));
@@ -127,9 +128,6 @@ try {
   await page.goto(`${origin}/?live=${encodeURIComponent(live)}`);
   await change_parameter(page, tool);
   await eventually(async () => (await page.locator("canvas").count()) >= 5, "the 3D view and four plots");
-  await page.getByText("Problems").first().click();
-  const problems = await page.locator("[class*=problem], [class*=accordion], [class*=MuiAccordion]").allInnerTexts();
-  console.log(`problems that the viewer lists: ${problems.join(" | ").replaceAll("\n", " ")}`);
   await page.keyboard.press("["); // closes the bar at the left
   await page.waitForTimeout(12_000); // the plots fill
   const image = await page.screenshot({ path: picture });

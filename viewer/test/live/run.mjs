@@ -4,6 +4,8 @@
 //
 //   node test/live/run.mjs PROGRAM
 //
+// Then the recording is played for the same client.
+//
 // One run of the door with a person at the mouse: `hand` of this test is the only hand.
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -153,7 +155,9 @@ async function assets(tool) {
   expect(none.status === 1 && none.error.includes("no asset"), `no other file: ${none.error}`);
 }
 
-// Every message of the recording, decoded by what Foxglove uses.
+const facts = ({ record }) => `${record.state_hash} ${record.twin.q_a}`;
+
+// Every message of the recording, decoded by what Foxglove uses; the file, and its samples by time.
 async function recording(folder) {
   const [name] = readdirSync(folder).filter((file) => file.startsWith("door_"));
   const bytes = readFileSync(join(folder, name));
@@ -165,6 +169,7 @@ async function recording(folder) {
   const mcap = await McapIndexedReader.Initialize({ readable, decompressHandlers });
   const readers = new Map();
   const counts = new Map();
+  const samples = new Map();
   for (const channel of mcap.channelsById.values()) {
     const schema = mcap.schemasById.get(channel.schemaId);
     expect(schema.encoding === "ros2msg" && channel.messageEncoding === "cdr", `${channel.topic} is ROS 2`);
@@ -172,10 +177,35 @@ async function recording(folder) {
   }
   for await (const message of mcap.readMessages()) {
     const { topic } = mcap.channelsById.get(message.channelId);
-    readers.get(message.channelId).readMessage(message.data);
+    const content = readers.get(message.channelId).readMessage(message.data);
+    if (topic === "/hapticgiant/sample") samples.set(content.record.time_s, facts(content));
     counts.set(topic, (counts.get(topic) ?? 0) + 1);
   }
   for (const topic of RECORDED) expect(counts.get(topic) > 0, `${counts.get(topic)} recorded of ${topic}`);
+  return { file: join(folder, name), samples };
+}
+
+// The recording is played: its samples come again.
+async function replay({ file, samples }) {
+  const player = await start_program([process.argv[2], "replay", file, "--view", "--speed", "0.5",
+    "--no-browser"]);
+  const tool = new Tool(player.link, ["foxglove.websocket.v1"]);
+  await tool.greeted();
+  for (const topic of Object.keys(TOPICS)) tool.subscribe(topic);
+  await eventually(() => Object.keys(TOPICS).every((topic) => tool.newest.has(topic)), "every topic of a replay");
+  const first = tool.newest.get("/hapticgiant/sample");
+  const next = await eventually(() => {
+    const newest = tool.newest.get("/hapticgiant/sample");
+    return newest.record.time_s > first.record.time_s && newest;
+  }, "the replay goes on");
+  for (const sample of [first, next]) {
+    const { time_s } = sample.record;
+    expect(samples.get(time_s) === facts(sample), `at ${time_s} s as recorded: ${facts(sample)}`);
+  }
+  const refused = await tool.call("stop");
+  expect(!refused.success && refused.message.includes("recording"), `stop is refused: ${refused.message}`);
+  tool.close();
+  await player.stop();
 }
 
 const folder = mkdtempSync(join(tmpdir(), "hg_live_"));
@@ -193,7 +223,7 @@ try {
   tool.close();
   other.close();
   await program.stop();
-  await recording(folder);
+  await replay(await recording(folder));
 } catch (error) {
   expect(false, String(error.stack));
 }
