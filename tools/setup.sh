@@ -94,6 +94,11 @@ if [ "$purpose" = test ] || [ "$(id -u)" = 0 ]; then
   need libfastrtps-dev
 fi
 
+# The search for designs is built where pagmo is.
+if [ "$purpose" = test ] || [ "$(id -u)" = 0 ]; then
+  need libpagmo-dev
+fi
+
 if [ ${#missing[@]} -gt 0 ]; then
   if [ "$(id -u)" != 0 ]; then
     echo "setup: missing system packages; as root run:" >&2

@@ -47,6 +47,8 @@ SYSTEM = {
     "libcli11-dev": ("BSD-3-Clause", "headers"),
     "libfastrtps-dev": ("Apache-2.0", "linked dynamically by hapticgiant-ros2"),
     "libfmt-dev": ("MIT", "linked dynamically"),
+    "libpagmo-dev": ("LGPL-3.0-or-later OR GPL-3.0-or-later",
+                     "linked dynamically by hapticgiant-design"),
     "libsodium-dev": ("ISC", "linked dynamically"),
     "libyaml-cpp-dev": ("MIT", "linked dynamically"),
     "libzstd-dev": ("BSD-3-Clause", "linked dynamically"),
@@ -68,7 +70,7 @@ PROTOCOLS = {
     ("libfranka-common", "d96c221"): ("Apache-2.0", "layout of messages: hg/device/franka/protocol.h"),
 }
 SPDX_TEXT = "that of this name in the SPDX list"
-IMPLIED = ["g++", "libc6", "libfastrtps-dev", "rustc"]  # not in the list of setup.sh that libraries are in
+IMPLIED = ["g++", "libc6", "libfastrtps-dev", "libpagmo-dev", "rustc"]  # not in the list of setup.sh that libraries are in
 
 
 def system_names():

@@ -14,6 +14,7 @@
 #include "apps/hapticgiant/bus_command.h"
 #include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/commission_command.h"
+#include "apps/hapticgiant/design_search.h"
 #include "apps/hapticgiant/doctor_command.h"
 #include "apps/hapticgiant/experiment_command.h"
 #include "apps/hapticgiant/experiments/recording_commands.h"
@@ -123,6 +124,7 @@ int main(int argc, char** argv) {
   apps::add_haptify(app, exit_code);
   apps::add_tune(app, exit_code);
   apps::add_sweep(app);
+  apps::add_design_search(app);
   apps::refuse_empty_values(app);
 
   return apps::code_after_output(parse(app, argc, argv, exit_code));

@@ -1,10 +1,13 @@
 #include "apps/hapticgiant/python_program.h"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
 #include "hg/config/shipped_files.h"
+#include "hg/core/error.h"
 
 namespace hg::apps {
 
@@ -32,6 +35,19 @@ std::vector<std::string> python_program(const std::string& part) {
     words.insert(words.end(), {"-m", "hapticgiant." + part});
   }
   return words;
+}
+
+void become_python_program(const std::string& part, const std::vector<std::string>& arguments) {
+  std::error_code error;
+  const std::string program = fs::read_symlink("/proc/self/exe", error).string();
+  setenv("HAPTICGIANT_PROGRAM", program.c_str(), 1);
+  std::vector<std::string> words = python_program(part);
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  execvp(pointers[0], pointers.data());
+  throw SetupError(part + ": " + words[0] + " cannot be started");
 }
 
 }  // namespace hg::apps
