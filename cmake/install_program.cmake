@@ -36,8 +36,10 @@ install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
   LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)
 install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
   DESTINATION ${share}/python/hapticgiant COMPONENT debian)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/hapticgiant/report
-  ${PROJECT_SOURCE_DIR}/python/hapticgiant/imus
+foreach(part report sweep study imus design)
+  list(APPEND python_parts ${PROJECT_SOURCE_DIR}/python/hapticgiant/${part})
+endforeach()
+install(DIRECTORY ${python_parts}
   DESTINATION ${share}/python/hapticgiant COMPONENT debian PATTERN __pycache__ EXCLUDE)
 
 set(CPACK_GENERATOR DEB)

@@ -94,6 +94,9 @@ if [ "$purpose" = test ] || [ "$(id -u)" = 0 ]; then
   need libfastrtps-dev
 fi
 
+# The search for designs is built where pagmo is, which brings a lot.
+[ "$purpose" != test ] || need libpagmo-dev
+
 if [ ${#missing[@]} -gt 0 ]; then
   if [ "$(id -u)" != 0 ]; then
     echo "setup: missing system packages; as root run:" >&2

@@ -26,7 +26,8 @@ RUST = ROOT / "rust"
 
 # what a program that links all of it may be given away with
 ALLOWED = {"0BSD", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-2-Clause", "BSD-3-Clause",
-           "BSL-1.0", "GPL-3.0-only WITH GCC-exception-3.1", "ISC", "LGPL-2.1-or-later", "LGPL-2.1+", "MIT",
+           "BSL-1.0", "GPL-3.0-only WITH GCC-exception-3.1", "ISC", "LGPL-2.1-or-later", "LGPL-2.1+",
+           "LGPL-3.0-or-later", "MIT",
            "MPL-2.0", "Qhull", "Unicode-3.0", "Unicode-DFS-2016", "Unlicense", "Zlib"}
 # where the metadata of a wheel is wrong or says nothing
 CORRECTED = {"cmeel-console-bridge": "BSD-3-Clause", "cmeel-eigen": "MPL-2.0", "cmeel-qhull": "Qhull"}
@@ -47,6 +48,8 @@ SYSTEM = {
     "libcli11-dev": ("BSD-3-Clause", "headers"),
     "libfastrtps-dev": ("Apache-2.0", "linked dynamically by hapticgiant-ros2"),
     "libfmt-dev": ("MIT", "linked dynamically"),
+    "libpagmo-dev": ("LGPL-3.0-or-later OR GPL-3.0-or-later",
+                     "linked dynamically by hapticgiant-design"),
     "libsodium-dev": ("ISC", "linked dynamically"),
     "libyaml-cpp-dev": ("MIT", "linked dynamically"),
     "libzstd-dev": ("BSD-3-Clause", "linked dynamically"),
@@ -68,7 +71,7 @@ PROTOCOLS = {
     ("libfranka-common", "d96c221"): ("Apache-2.0", "layout of messages: hg/device/franka/protocol.h"),
 }
 SPDX_TEXT = "that of this name in the SPDX list"
-IMPLIED = ["g++", "libc6", "libfastrtps-dev", "rustc"]  # not in the list of setup.sh that libraries are in
+IMPLIED = ["g++", "libc6", "libfastrtps-dev", "libpagmo-dev", "rustc"]  # not in the list of setup.sh that libraries are in
 
 
 def system_names():

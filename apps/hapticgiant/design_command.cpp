@@ -14,6 +14,7 @@
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/python_program.h"
 #include "apps/hapticgiant/report.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
@@ -308,8 +309,21 @@ void add_person(CLI::App& command, DesignArguments& arguments) {
 void add_design(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "design",
-      "What a human arm can do, and how well a device serves it (docs/concepts/human_arm.md).");
-  command->require_subcommand(1);
+      "What a human arm can do, how well a device serves it, and the search for a better one "
+      "(docs/start/design.md).");
+  command->footer(
+      "`hapticgiant design FILE` searches for a device, from requirements to one that runs:\n"
+      "  hapticgiant design models/design/haptic_giant.yaml --quick --out my_giant\n"
+      "Its options: --out FOLDER, --seed N, --workers N, --quick, --no-feel.");
+  command->require_subcommand(0, 1);
+  command->allow_extras();  // of the search, which is Python's
+  command->callback([command] {
+    if (!command->get_subcommands().empty()) return;
+    if (!command->remaining().empty()) become_python_program("design", command->remaining());
+    throw SetupError(
+        "design: expected 'arm', 'measure', or the file of a design problem, such as "
+        "models/design/haptic_giant.yaml");
+  });
   const auto arguments = std::make_shared<DesignArguments>();
 
   CLI::App* arm = command->add_subcommand("arm", "The arm of a person: joints, reach, poses.");

@@ -1,0 +1,1 @@
+"""From requirements to a device that runs; docs/start/design.md."""
