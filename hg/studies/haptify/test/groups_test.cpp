@@ -16,8 +16,8 @@ TEST(Groups, EveryRunThatFailsSaysSo) {
                          add_peak, add_z_width, add_transparency, add_force_response, add_latency,
                          add_impacts, add_felt_mass, add_rotation, add_springs}) {
     Benchmark out;
-    const Progress progress;
-    add({scenario, options, progress, out, place});
+    studies::Runs runs;
+    add({scenario, options, runs, out, place});
     EXPECT_TRUE(out.has_failures);
     for (const auto& [name, measurement] : out.measurements.items()) {
       SCOPED_TRACE(name);
