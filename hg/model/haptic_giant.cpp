@@ -66,6 +66,9 @@ Vector6 assemble(const Wrist& wrist, double q1, double q2) noexcept {
   return q_m.unaryExpr([](double angle) { return wrap(angle); });
 }
 
+// Without the rounding of poses: lengths as they stand in the URDF.
+double to_nanometres(double length_m) { return std::round(1e9 * length_m) / 1e9; }
+
 }  // namespace
 
 std::string_view to_string(InverseStatus status) noexcept {
@@ -100,11 +103,11 @@ Lengths lengths_of(const ChainModel& chain, int handle) {
   const double folded_x = at(pi, 0, 0).x();
   const double level_z = at(0, pi / 2, 0).z();
   const double D6 = at(0, pi / 2, pi / 2).z() - level_z;
-  const Lengths lengths = {.L1 = (hanging.x() + folded_x) / 2,
-                           .L2 = (hanging.x() - folded_x) / 2,
-                           .D3 = -level_z,
-                           .L4 = level_z - hanging.z() - D6,
-                           .D6 = D6};
+  const Lengths lengths = {.L1 = to_nanometres((hanging.x() + folded_x) / 2),
+                           .L2 = to_nanometres((hanging.x() - folded_x) / 2),
+                           .D3 = to_nanometres(-level_z),
+                           .L4 = to_nanometres(level_z - hanging.z() - D6),
+                           .D6 = to_nanometres(D6)};
 
   // postures in which every joint and length counts
   constexpr double kSame = 1e-6;  // m and 1

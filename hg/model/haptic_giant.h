@@ -27,7 +27,7 @@ struct Lengths {
 };
 
 /// Lengths of a chain with two gantry joints and six manipulator joints, from poses of its frame
-/// `handle`; throws SetupError where the chain is not built as a HapticGiant.
+/// `handle`, rounded to 1 nm; throws SetupError where the chain is not built as a HapticGiant.
 Lengths lengths_of(const ChainModel& chain, int handle);
 
 /// Signs that select one of the eight solutions; the device works in (+, +, +).

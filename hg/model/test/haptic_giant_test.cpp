@@ -7,6 +7,7 @@
 
 #include "hg/model/chain_data.h"
 #include "hg/model/test/dh_reference.h"
+#include "hg/model/test/models.h"
 
 namespace hg::model::haptic_giant {
 namespace {
@@ -54,6 +55,17 @@ double angle_between(const Vector6& a, const Vector6& b) {
     largest = std::max(largest, std::abs(std::remainder(a[i] - b[i], 2 * pi)));
   }
   return largest;
+}
+
+TEST(HapticGiant, LengthsAreThoseOfTheUrdf) {
+  const ChainModel chain = haptic_giant_chain();
+  const Lengths lengths = lengths_of(chain, chain.frame("handle"));
+  const Lengths expected;
+  EXPECT_EQ(lengths.L1, expected.L1);
+  EXPECT_EQ(lengths.L2, expected.L2);
+  EXPECT_EQ(lengths.D3, expected.D3);
+  EXPECT_EQ(lengths.L4, expected.L4);
+  EXPECT_EQ(lengths.D6, expected.D6);
 }
 
 TEST(HapticGiant, PoseAndElbowEqualTableI) {
