@@ -24,6 +24,7 @@
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
+#include "hg/core/visible.h"
 #include "hg/recording/column_facts.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/recording/rosbag2.h"
@@ -38,6 +39,7 @@ using recording::Columns;
 
 constexpr double kTick_s = 1e-7;              // times are whole cycles up to rounding
 constexpr std::size_t kBlockBytes = 1 << 24;  // of rows that are written together
+constexpr double kMostRate_Hz = 1e9;
 constexpr char kTime[] = "time_s";
 
 struct ExportArguments {
@@ -62,6 +64,7 @@ class Part {
     // periods are counted, so that their rounding does not add up
     const double since_s = time_s - begin_s_ + kTick_s;
     if (since_s < static_cast<double>(periods_) * period_s_) return false;
+    // rates up to kMostRate_Hz and times up to centuries fit
     if (period_s_ > 0.0) periods_ = static_cast<std::uint64_t>(since_s / period_s_) + 1;
     return true;
   }
@@ -119,7 +122,7 @@ class Survey final : public Listener {
   Json finish(const ExportArguments& arguments, const recording::ReadResult& read) {
     take_block();
     if (rows_ == 0) throw SetupError(arguments.file + ": has no sample in that time");
-    Json facts = {{"file", fs::canonical(arguments.file).filename().string()},
+    Json facts = {{"file", visible(fs::canonical(arguments.file).filename().string())},
                   {"exported_by", std::string("hapticgiant ") + kVersion},
                   {"rows", rows_},
                   {"from_s", from_s_},
@@ -257,7 +260,8 @@ std::string place_of(const ExportArguments& arguments) {
     return name;
   }
   const fs::path out = arguments.out;
-  if (!out.has_filename())
+  const std::string name = out.filename().string();
+  if (name.empty() || name == "." || name == "..")
     throw SetupError("--out " + arguments.out + ": expected a name of files");
   for (const char* suffix : {".csv", ".parquet", ".h5", ".hdf5"}) {
     if (out.extension() == suffix) return fs::path(out).replace_extension().string();
@@ -275,7 +279,8 @@ int export_rosbag2(const ExportArguments& arguments) {
   if (!arguments.columns.empty() || arguments.rate_Hz) {
     throw SetupError("--columns, --rate: not possible with rosbag2, which has whole messages");
   }
-  recording::Rosbag2Plan plan = {.folder = place_of(arguments)};
+  watch_interruption();
+  recording::Rosbag2Plan plan = {.folder = place_of(arguments), .is_interrupted = was_interrupted};
   if (arguments.from_s) plan.from_s = *arguments.from_s - kTick_s;
   if (arguments.to_s) plan.to_s = *arguments.to_s - kTick_s;
   const recording::Rosbag2Result result = recording::write_rosbag2(arguments.file, plan);
@@ -296,7 +301,7 @@ int export_table(const ExportArguments& arguments) {
   std::vector<std::string> kept;
   for (const Json& column : facts["columns"]) kept.push_back(column["name"]);
 
-  ExportFiles files;
+  ExportFiles files(out + ".json");
   const std::unique_ptr<ExportTable> table =
       arguments.format == "csv"
           ? make_csv(files, out, facts, survey.events())
@@ -357,7 +362,8 @@ void add_export(CLI::App& app, int& exit_code) {
   command
       ->add_option("--rate", arguments->rate_Hz,
                    "rows per second: the first sample of each period; default: all samples")
-      ->check(number_that("more than 0", [](double v) { return v > 0.0 && std::isfinite(v); }));
+      ->check(number_that("more than 0 and at most 1e9",
+                          [](double v) { return v > 0.0 && v <= kMostRate_Hz; }));
   const auto is_time = number_that("a finite number", [](double v) { return std::isfinite(v); });
   command->add_option("--from", arguments->from_s, "run time of the first row, s")->check(is_time);
   command->add_option("--to", arguments->to_s, "run time that the rows end before, s")

@@ -1,14 +1,18 @@
 #include "apps/hapticgiant/export_table.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -18,7 +22,7 @@
 #include "apps/hapticgiant/report.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
-#include "hg/core/whole_file.h"
+#include "hg/core/visible.h"
 
 namespace hg::apps {
 namespace {
@@ -28,7 +32,58 @@ using Json = nlohmann::ordered_json;
 using recording::Column;
 using recording::Columns;
 
-std::string partial(const std::string& file) { return file + ".partial"; }
+constexpr std::uintmax_t kMostDictionary = 16u << 20u;  // bytes
+constexpr std::size_t kSearched = 1u << 20u;            // bytes at each end of a table
+
+bool is_dictionary(const std::string& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > kMostDictionary) {
+    return false;
+  }
+  const Json found = Json::parse(read_file(file, kMostDictionary), nullptr, false);
+  if (!found.is_object() || !found.contains("columns")) return false;
+  const auto by = found.find("exported_by");
+  return by != found.end() && by->is_string() &&
+         by->get_ref<const std::string&>().starts_with("hapticgiant ");
+}
+
+// Parquet has its schema at the end, HDF5 attributes anywhere, in small files near the beginning
+bool has_dictionary_inside(const std::string& file) {
+  std::ifstream bytes(file, std::ios::binary);
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  std::string text(kSearched, '\0');
+  for (const std::uintmax_t begin : {std::uintmax_t{0}, size > kSearched ? size - kSearched : 0}) {
+    bytes.clear();
+    bytes.seekg(static_cast<std::streamoff>(begin));
+    bytes.read(text.data(), static_cast<std::streamsize>(text.size()));
+    const std::string_view part(text.data(), static_cast<std::size_t>(bytes.gcount()));
+    if (part.find("exported_by") != std::string_view::npos) return true;
+  }
+  return false;
+}
+
+bool begins_with(const std::string& file, std::string_view beginning) {
+  std::ifstream bytes(file, std::ios::binary);
+  std::string found(beginning.size(), '\0');
+  bytes.read(found.data(), static_cast<std::streamsize>(found.size()));
+  return found == beginning;
+}
+
+// an empty file beside `file` that was not there before
+std::string new_partial(const std::string& file) {
+  std::string name = file + ".XXXXXX.partial";
+  constexpr int kSuffix = 8;  // letters of ".partial"
+  const int descriptor = mkostemps(name.data(), kSuffix, O_CLOEXEC);
+  if (descriptor < 0) {
+    throw SetupError(file + ": cannot be written: " + std::strerror(errno));
+  }
+  const OpenFile made(descriptor);
+  const mode_t mask = umask(0);
+  umask(mask);
+  (void)fchmod(descriptor, 0666 & ~mask);  // what it would have without mkostemps
+  return name;
+}
 
 class TextFile {
  public:
@@ -155,55 +210,72 @@ class PythonTable final : public ExportTable {
 
 }  // namespace
 
+ExportFiles::ExportFiles(const std::string& dictionary)
+    : has_dictionary_(is_dictionary(dictionary)) {}
+
 ExportFiles::~ExportFiles() {
   std::error_code ignored;
-  for (const std::string& file : files_) fs::remove(partial(file), ignored);
+  for (const Added& added : files_) fs::remove(added.partial, ignored);
 }
 
-std::string ExportFiles::add(const std::string& file, std::string_view beginning) {
-  check_writable(file, beginning);
+std::string ExportFiles::add(const std::string& file, ExportMark mark) {
   std::error_code error;
   const fs::file_type type = fs::symlink_status(file, error).type();
   if (type != fs::file_type::regular && type != fs::file_type::not_found) {
     throw SetupError(file + ": is no regular file, so that it cannot be replaced");
   }
-  files_.push_back(file);
-  return partial(file);
+  if (type == fs::file_type::regular) {
+    const bool is_export = mark == ExportMark::kDictionary ? has_dictionary_
+                           : mark == ExportMark::kBeside
+                               ? has_dictionary_ && begins_with(file, "time_s")
+                               : has_dictionary_inside(file);
+    if (!is_export) {
+      throw SetupError(file + ": exists already and is of no older export; it is not replaced");
+    }
+  }
+  files_.push_back({file, new_partial(file)});
+  return files_.back().partial;
 }
 
 std::vector<std::string> ExportFiles::keep() {
-  for (const std::string& file : files_) {
+  std::vector<std::string> names;
+  for (const Added& added : files_) {
     std::error_code error;
-    fs::rename(partial(file), file, error);
-    if (error) throw SetupError(file + ": could not be written: " + error.message());
+    fs::rename(added.partial, added.file, error);
+    if (error) throw SetupError(added.file + ": could not be written: " + error.message());
+    names.push_back(added.file);
   }
-  return std::exchange(files_, {});
+  files_.clear();
+  return names;
 }
 
 std::unique_ptr<ExportTable> make_csv(ExportFiles& files, const std::string& out, const Json& facts,
                                       const std::vector<messages::Event>& events) {
-  const std::string table = files.add(out + ".csv", "time_s");
-  TextFile events_file(files.add(out + ".events.csv", "time_s"));
+  const std::string table = files.add(out + ".csv", ExportMark::kBeside);
+  TextFile events_file(files.add(out + ".events.csv", ExportMark::kBeside));
   events_file.write("time_s,name,text\n");
   for (const messages::Event& event : events) {
     events_file.write(fmt::format("{},{},{}\n", event.time_s, cell(event.name), cell(event.text)));
   }
-  TextFile(files.add(out + ".json", kJson)).write(facts.dump(2) + "\n");
+  TextFile(files.add(out + ".json", ExportMark::kDictionary)).write(facts.dump(2) + "\n");
   return std::make_unique<CsvTable>(table, facts);
 }
 
 std::unique_ptr<ExportTable> make_python_table(ExportFiles& files, const std::string& format,
                                                const std::string& out, const Json& facts,
                                                const std::vector<messages::Event>& events) {
+  if (visible(out) != out) {
+    throw SetupError("--out " + out + ": expected a name in UTF-8 without control characters");
+  }
   Json head = {{"facts", facts}, {"events", Json::array()}};
   for (const messages::Event& event : events) {
     head["events"].push_back({event.time_s, event.name, event.text});
   }
   if (format == "parquet") {
-    head["file"] = fs::absolute(files.add(out + ".parquet", "PAR1"));
-    head["events_file"] = fs::absolute(files.add(out + ".events.parquet", "PAR1"));
+    head["file"] = fs::absolute(files.add(out + ".parquet", ExportMark::kInside));
+    head["events_file"] = fs::absolute(files.add(out + ".events.parquet", ExportMark::kInside));
   } else {
-    head["file"] = fs::absolute(files.add(out + ".h5", "\x89HDF"));
+    head["file"] = fs::absolute(files.add(out + ".h5", ExportMark::kInside));
   }
   return std::make_unique<PythonTable>(format, head);
 }

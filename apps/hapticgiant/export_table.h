@@ -4,7 +4,6 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "hg/messages/event.h"
@@ -12,23 +11,35 @@
 
 namespace hg::apps {
 
-/// Files of one export. Each is written under a name of its own and gets its final one when all of
-/// them are whole; otherwise none is left.
+/// What shows that a file is of an older export, which may be replaced.
+enum class ExportMark {
+  kDictionary,  ///< JSON of an object with exported_by
+  kBeside,      ///< a table that begins with time_s; the dictionary is beside it
+  kInside,      ///< Parquet or HDF5 with the dictionary inside
+};
+
+/// Files of one export. Each is written under a name of its own, which no other file has, and gets
+/// its final one when all of them are whole; otherwise none is left.
 class ExportFiles {
  public:
-  ExportFiles() = default;
+  /// `dictionary`: the JSON file that is or would be beside tables of this name
+  explicit ExportFiles(const std::string& dictionary);
   ~ExportFiles();
   ExportFiles(const ExportFiles&) = delete;
   ExportFiles& operator=(const ExportFiles&) = delete;
 
-  /// Adds a file and returns the name to write it under. `beginning` is how files of its kind
-  /// begin: one that begins otherwise is never replaced. Throws SetupError.
-  std::string add(const std::string& file, std::string_view beginning);
+  /// Adds a file and returns the name to write it under: an empty file is there. A file without
+  /// the mark is never replaced. Throws SetupError.
+  std::string add(const std::string& file, ExportMark mark);
   /// Gives all files their names, and returns these. Throws SetupError.
   std::vector<std::string> keep();
 
  private:
-  std::vector<std::string> files_;
+  struct Added {
+    std::string file, partial;
+  };
+  std::vector<Added> files_;
+  bool has_dictionary_;  // of an older export
 };
 
 class ExportTable {

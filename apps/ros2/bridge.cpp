@@ -31,6 +31,7 @@ namespace {
 constexpr std::chrono::milliseconds kTick(20), kBetweenTries(500);
 constexpr std::chrono::seconds kPatience(3);
 constexpr std::size_t kMostCalls = 64;
+constexpr std::string_view kStop = "/hapticgiant/stop";
 constexpr std::string_view kTrigger = "std_srvs/srv/Trigger";
 constexpr std::string_view kEvent = "hapticgiant_msgs/msg/Event";
 constexpr std::string_view kText = "std_msgs/msg/String";
@@ -250,11 +251,19 @@ void Bridge::look_at_ros() {
     while (offered.service->take(request)) {
       if (!is_open_ || offered.id == 0) {
         refuse(name, request, "no run is connected");
-      } else if (calls_.size() >= kMostCalls) {
+        continue;
+      }
+      // a stop is never refused: it overtakes what waits
+      const bool is_stop = name == kStop;
+      if (!is_stop && calls_.size() >= kMostCalls) {
         refuse(name, request, "too many requests wait");
+        continue;
+      }
+      calls_[++called_] = {name, request, Clock::now()};
+      if (is_stop) {
+        client_->call_at_once(offered.id, called_, request.message);
       } else {
-        client_->call(offered.id, ++called_, request.message);
-        calls_[called_] = {name, request, Clock::now()};
+        client_->call(offered.id, called_, request.message);
       }
     }
   }

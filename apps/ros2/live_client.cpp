@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/error.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/status.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
 #include <cstring>
@@ -15,6 +17,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "hg/core/error.h"
 
@@ -27,6 +30,7 @@ namespace websocket = beast::websocket;
 using nlohmann::json;
 
 constexpr std::size_t kMostWaiting = 256;         // messages to the run
+constexpr std::size_t kMostSaid = 200;            // of an HTTP answer
 constexpr std::size_t kMostBytes = 64u << 20u;    // of one message from the run
 constexpr std::chrono::seconds kPatience(5);      // for a run that says nothing at all
 constexpr std::byte kMessage{1}, kResponse{3};    // from the server
@@ -58,6 +62,8 @@ class Connection final : public LiveClient, public std::enable_shared_from_this<
   void withdraw(std::uint32_t topic) override;
   void publish(std::uint32_t topic, std::span<const std::byte> message) override;
   void call(std::uint32_t service, std::uint32_t call, std::span<const std::byte> request) override;
+  void call_at_once(std::uint32_t service, std::uint32_t call,
+                    std::span<const std::byte> request) override;
   void send(const json& message) override;
   std::uint64_t dropped() const override { return dropped_; }
 
@@ -65,13 +71,18 @@ class Connection final : public LiveClient, public std::enable_shared_from_this<
   struct Waiting {
     std::string bytes;
     bool is_text;
+    std::uint32_t call = 0;  // number; 0: no call
+    bool is_urgent = false;
   };
   void open();
+  std::string refusal(beast::error_code error) const;
   void read();
   void take_text(std::string_view text);
   void take_channels(const json& channels);
   void take_services(const json& services);
   void take_bytes(std::span<const std::byte> bytes);
+  static std::string call_bytes(std::uint32_t service, std::uint32_t call,
+                                std::span<const std::byte> request);
   void push(Waiting waiting);
   void write();
   void end(const std::string& why);
@@ -79,9 +90,11 @@ class Connection final : public LiveClient, public std::enable_shared_from_this<
   LiveListener* listener_;  // null: abandoned, or closed
   asio::ip::tcp::resolver resolver_;
   websocket::stream<beast::tcp_stream> socket_;
+  websocket::response_type response_;  // to the handshake
   beast::flat_buffer buffer_;
   LiveAddress address_;
   std::deque<Waiting> waiting_;
+  Waiting writing_;
   std::map<std::uint32_t, LiveChannel> channels_;  // by id, also the id of our subscription
   std::map<std::uint32_t, LiveService> services_;
   std::uint32_t offers_ = 0;
@@ -115,14 +128,24 @@ void Connection::open() {
   socket_.read_message_max(kMostBytes);
   const bool is_v6 = address_.host.find(':') != std::string::npos;
   const std::string host = is_v6 ? "[" + address_.host + "]" : address_.host;
-  socket_.async_handshake(host + ":" + address_.port, address_.target,
+  socket_.async_handshake(response_, host + ":" + address_.port, address_.target,
                           [self = shared_from_this()](auto error) {
-                            if (error == websocket::error::upgrade_declined) {
-                              return self->end("the token is that of another run, or wrong");
-                            }
-                            if (error) return self->end(error.message());
+                            if (error) return self->end(self->refusal(error));
                             self->read();
                           });
+}
+
+std::string Connection::refusal(beast::error_code error) const {
+  if (error != websocket::error::upgrade_declined) return error.message();
+  const int status = response_.result_int();
+  if (response_.result() == beast::http::status::forbidden) {
+    return "the token is that of another run, or wrong (HTTP 403)";
+  }
+  const std::string_view reason(response_.reason().data(), response_.reason().size());
+  std::string said = response_.body().substr(0, kMostSaid);
+  std::ranges::replace(said, '\n', ' ');
+  return fmt::format("expected a run there, got HTTP {} {}{}{}", status, reason,
+                     said.empty() ? "" : ": ", said);
 }
 
 void Connection::abandon() {
@@ -240,6 +263,24 @@ void Connection::publish(std::uint32_t topic, std::span<const std::byte> message
 
 void Connection::call(std::uint32_t service, std::uint32_t call,
                       std::span<const std::byte> request) {
+  push({call_bytes(service, call, request), false, call});
+}
+
+void Connection::call_at_once(std::uint32_t service, std::uint32_t call,
+                              std::span<const std::byte> request) {
+  std::vector<std::uint32_t> overtaken;
+  std::erase_if(waiting_, [&](const Waiting& one) {
+    if (one.call == 0 || one.is_urgent) return false;
+    overtaken.push_back(one.call);
+    return true;
+  });
+  waiting_.push_front({call_bytes(service, call, request), false, call, true});
+  for (const std::uint32_t each : overtaken) listener_->failed(each, "a stop came after it");
+  if (!is_writing_) write();
+}
+
+std::string Connection::call_bytes(std::uint32_t service, std::uint32_t call,
+                                   std::span<const std::byte> request) {
   constexpr std::string_view kEncoding = "cdr";
   std::string bytes(1, kOwnRequest);
   append(bytes, service);
@@ -247,10 +288,13 @@ void Connection::call(std::uint32_t service, std::uint32_t call,
   append(bytes, static_cast<std::uint32_t>(kEncoding.size()));
   bytes += kEncoding;
   append(bytes, request);
-  push({std::move(bytes), false});
+  return bytes;
 }
 
-void Connection::send(const json& message) { push({message.dump(), true}); }
+// names of others may hold any bytes: what is not UTF-8 is replaced, and then found nowhere
+void Connection::send(const json& message) {
+  push({message.dump(-1, ' ', false, json::error_handler_t::replace), true});
+}
 
 void Connection::push(Waiting waiting) {
   if (waiting_.size() >= kMostWaiting) {
@@ -264,11 +308,12 @@ void Connection::push(Waiting waiting) {
 void Connection::write() {
   if (waiting_.empty() || listener_ == nullptr) return;
   is_writing_ = true;
-  socket_.text(waiting_.front().is_text);
-  socket_.async_write(asio::buffer(waiting_.front().bytes),
+  writing_ = std::move(waiting_.front());
+  waiting_.pop_front();
+  socket_.text(writing_.is_text);
+  socket_.async_write(asio::buffer(writing_.bytes),
                       [self = shared_from_this()](auto error, std::size_t) {
                         self->is_writing_ = false;
-                        self->waiting_.pop_front();
                         if (!error) self->write();  // else: reading ends, too, and says why
                       });
 }

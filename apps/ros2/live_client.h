@@ -65,6 +65,10 @@ class LiveClient {
   virtual void publish(std::uint32_t topic, std::span<const std::byte> message) = 0;
   virtual void call(std::uint32_t service, std::uint32_t call,
                     std::span<const std::byte> request) = 0;
+  /// A call that is never dropped and overtakes all that waits. Calls that it overtakes are not
+  /// made any more: the listener learns that they failed, so that none of them undoes it.
+  virtual void call_at_once(std::uint32_t service, std::uint32_t call,
+                            std::span<const std::byte> request) = 0;
   virtual void send(const nlohmann::json& message) = 0;
   /// Messages that were not sent, because the run did not take them in time
   virtual std::uint64_t dropped() const = 0;

@@ -1,7 +1,10 @@
 /// The program `hapticgiant-ros2`: connects a run with ROS 2, in a process of its own and without
 /// ROS.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -29,6 +32,31 @@ bool is_local_by_environment() {
          (range != nullptr && std::string(range) == "LOCALHOST");
 }
 
+// CLI::Range lets NaN pass
+CLI::Validator number_within(double least, double most) {
+  return {[least, most](std::string& text) {
+            double number = 0.0;
+            const bool is_number = CLI::detail::lexical_cast(text, number);
+            if (is_number && number >= least && number <= most) return std::string();
+            return fmt::format("expected a number from {:g} to {:g}, got {}", least, most, text);
+          },
+          fmt::format("NUMBER in [{:g} - {:g}]", least, most)};
+}
+
+// makes /NAME of a name of ROS 2
+CLI::Validator ros_name(const char* example) {
+  return {[example](std::string& text) {
+            const std::string bare = text.starts_with('/') ? text.substr(1) : text;
+            if (!hg::ros2::is_name(bare)) {
+              return fmt::format("'{}' is no name of ROS 2 (letters, digits, _ and /): {}", text,
+                                 example);
+            }
+            text = "/" + bare;
+            return std::string();
+          },
+          ""};
+}
+
 // options of a robot as a device
 CLI::App* add_device(CLI::App& app, hg::ros2::RobotOptions& robot) {
   CLI::App* device = app.add_subcommand(
@@ -36,38 +64,49 @@ CLI::App* add_device(CLI::App& app, hg::ros2::RobotOptions& robot) {
   device->add_option("--joints", robot.joints, "names of the joints, in the order of the device")
       ->delimiter(',')
       ->required();
+  const CLI::Validator is_topic = ros_name("for example /joint_states");
   device->add_option("--name", robot.name, "name of the device, as in its device.yaml")
       ->capture_default_str();
   device->add_option("--rate-hz", robot.rate_Hz, "rate of the loop, Hz")
-      ->check(CLI::Range(1.0, 10000.0))
+      ->check(number_within(1.0, 10000.0))
       ->capture_default_str();
   device->add_option("--listen", robot.listen, "HOST:PORT for the controller")
       ->capture_default_str();
   device->add_option("--key-file", robot.key_file, "secret that controllers must have, too");
   device->add_flag("--effort", robot.has_torques, "command efforts instead of velocities");
   device->add_option("--states", robot.states, "topic of the robot's sensor_msgs/JointState")
+      ->transform(is_topic)
       ->capture_default_str();
-  device->add_option("--wrench", robot.wrench,
-                     "topic of the force/torque sensor, geometry_msgs/WrenchStamped: what the user "
-                     "does to the handle");
+  device
+      ->add_option("--wrench", robot.wrench,
+                   "topic of the force/torque sensor, geometry_msgs/WrenchStamped: what the user "
+                   "does to the handle")
+      ->transform(is_topic);
   device->add_option("--commands", robot.commands, "topic of a std_msgs/Float64MultiArray")
+      ->transform(is_topic)
       ->capture_default_str();
   CLI::Option* dead_man =
-      device->add_option("--dead-man", robot.dead_man,
-                         "topic of the switch of the handle, std_msgs/Bool, 10 Hz or more");
+      device
+          ->add_option("--dead-man", robot.dead_man,
+                       "topic of the switch of the handle, std_msgs/Bool, 10 Hz or more")
+          ->transform(is_topic);
   device->add_flag("--without-dead-man", robot.has_no_dead_man, "the handle has no such switch")
       ->excludes(dead_man);
   device->add_option("--gain", robot.gain, "1/s, of the position error, for velocities")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(number_within(0.0, 1000.0))
       ->capture_default_str();
   device
       ->add_option("--silence", robot.silence_s,
                    "s; after so long without a state or wrench the run gets a fault")
-      ->check(CLI::Range(0.001, 1.0))
+      ->check(number_within(0.001, 1.0))
       ->capture_default_str();
   device->add_flag("--simulated", robot.is_simulated, "no machine moves: no start test is needed");
   device->fallthrough();  // for the options of every node
   device->callback([&robot] {
+    for (auto joint = robot.joints.begin(); joint != robot.joints.end(); ++joint) {
+      if (std::find(robot.joints.begin(), joint, *joint) == joint) continue;
+      throw CLI::ValidationError("--joints", "names '" + *joint + "' twice");
+    }
     if (robot.dead_man.empty() && !robot.has_no_dead_man) {
       throw CLI::ValidationError("device", "expected --dead-man TOPIC or --without-dead-man");
     }
@@ -97,7 +136,8 @@ int main(int argc, char** argv) try {
   app.add_option("--domain", options.node.domain, "domain of ROS 2; default: ROS_DOMAIN_ID, or 0")
       ->envname("ROS_DOMAIN_ID")
       ->check(CLI::Range(0, kLastDomain));
-  app.add_option("--namespace", options.node.space, "namespace of all topics, for example left");
+  app.add_option("--namespace", options.node.space, "namespace of all topics, for example left")
+      ->transform(ros_name("for example left"));
   app.add_flag("--local", options.node.is_local,
                "this computer only; also ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST");
   app.add_flag("--view", options.is_view, "topics out of the run only: nothing can change it");
@@ -109,6 +149,11 @@ int main(int argc, char** argv) try {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
   if (device->parsed()) {
+    if (!options.live.empty() || options.is_view) {
+      return fail(kBadInput,
+                  "--live, --view: not possible with device, which connects with no run: a run "
+                  "connects with it (hapticgiant run ... --device-address)");
+    }
     robot.node = options.node;
     robot.node.name += "_device";
     hg::ros2::run_robot(robot, stop);

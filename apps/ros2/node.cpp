@@ -200,9 +200,7 @@ class Node::Impl {
     publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
     subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);
     info_.gid = gid_of(participant_->guid());
-    const std::size_t last = options.space.find_last_not_of('/');
-    const std::size_t first = options.space.find_first_not_of('/');
-    if (first != std::string::npos) space_ = "/" + options.space.substr(first, last - first + 1);
+    space_ = options.space;
     info_.node_entities_info_seq = {
         {.node_namespace = space_.empty() ? "/" : space_, .node_name = options.name}};
     info_writer_ =
@@ -423,6 +421,20 @@ class DdsService final : public Service {
 };
 
 }  // namespace
+
+bool is_name(std::string_view text) noexcept {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  char before = '/';
+  for (const char c : text) {
+    const bool is_digit = c >= '0' && c <= '9';
+    if (c == '/' || is_digit ? before == '/' : !is_letter(c)) return false;
+    if (c == '_' && before == '_') return false;
+    before = c;
+  }
+  return before != '/';
+}
 
 Node::Node(const NodeOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Node::~Node() = default;

@@ -20,10 +20,15 @@ using Bytes = std::span<const std::byte>;
 
 struct NodeOptions {
   std::string name = "hapticgiant";
-  std::string space;      ///< namespace, for example "lab/left"; empty: the root
+  std::string space;      ///< namespace, for example "/lab/left"; empty: the root
   int domain = 0;         ///< 0..232
   bool is_local = false;  ///< other programs on this computer only
 };
+
+/// Whether this is a name of ROS 2, or several with / between them: letters, digits and single _,
+/// no digit first, "lab/left". Source:
+/// https://design.ros2.org/articles/topic_and_service_names.html
+bool is_name(std::string_view text) noexcept;
 
 /// How a topic is sent. All are reliable, so that reliable and best-effort subscribers match.
 enum class Delivery {

@@ -16,6 +16,9 @@ constexpr std::size_t kMostWaiting = 64;
 constexpr std::chrono::seconds kPatience(2);
 constexpr std::string_view kId = "ros2-";
 constexpr std::string_view kNoRun = "no run is connected";
+// a run takes values one by one, so that it could refuse the second after the first
+constexpr std::string_view kOneOnly =
+    "expected one parameter: several cannot be set as one; nothing is changed";
 constexpr std::string_view kUnlimited = "unlimited";  // of the live interface
 
 const json* find(const json& values, const std::string& name) {
@@ -174,6 +177,11 @@ void Parameters::pass_on(const Send& send) {
       if (!decode(waiting)) continue;  // not the bytes of such a request
       if (!send || waiting_.size() >= kMostWaiting) {
         answer(waiting, json::array(), std::string(send ? "too many requests wait" : kNoRun));
+        continue;
+      }
+      if (kind == Kind::kSetAtomically && waiting.changes.size() > 1) {
+        answer(waiting, json::array(), std::string(kOneOnly));
+        waiting = {.kind = kind};
         continue;
       }
       send(question(waiting, std::string(kId) + std::to_string(++asked_)));

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "apps/ros2/messages.h"
+#include "apps/ros2/speeds.h"
 #include "hg/core/error.h"
 #include "hg/core/histogram.h"
 #include "hg/core/monotonic_clock.h"
@@ -74,12 +75,14 @@ class Robot final : public device::Device {
   Robot(Node& node, const RobotOptions& options)
       : options_(options),
         period_s_(1.0 / options.rate_Hz),
+        q_(VectorM::Zero(static_cast<Eigen::Index>(options.joints.size()))),
+        dq_(q_),
+        tau_(q_),
+        speeds_(0.5 * period_s_),
         commands_(
             node.publish(options.commands, "std_msgs/msg/Float64MultiArray", Delivery::kStream)),
         states_(node, options.states, "sensor_msgs/msg/JointState",
                 [this](const messages::JointState& state) { take(state); }) {
-    const auto n = static_cast<Eigen::Index>(options.joints.size());
-    q_ = dq_ = tau_ = VectorM::Zero(n);
     command_.data.assign(options.joints.size(), 0.0);
     if (!options.wrench.empty()) {
       wrenches_ = std::make_unique<Taken<messages::WrenchStamped>>(
@@ -200,7 +203,10 @@ class Robot final : public device::Device {
     const std::lock_guard lock(mutex_);
     VectorM q = q_, dq = dq_, tau = tau_;
     const std::int64_t now = now_ns();
-    const double since = state_ns_ > 0 ? seconds(now - state_ns_) : 0.0;
+    const double gap = state_ns_ > 0 ? seconds(now - state_ns_) : 0.0;
+    const std::int64_t stamp = 1'000'000'000 * std::int64_t{state.header.stamp.sec} +
+                               std::int64_t{state.header.stamp.nanosec};
+    bool has_speeds = true;
     for (std::size_t i = 0; i < options_.joints.size(); ++i) {
       const auto found = std::ranges::find(state.name, options_.joints[i]);
       const auto at = static_cast<std::size_t>(found - state.name.begin());
@@ -209,16 +215,25 @@ class Robot final : public device::Device {
       q[joint] = state.position[at];
       if (at < state.velocity.size() && std::isfinite(state.velocity[at])) {
         dq[joint] = state.velocity[at];
-      } else if (since > 0.0) {
-        dq[joint] = (q[joint] - q_[joint]) / since;
+      } else {
+        has_speeds = false;
       }
       if (at < state.effort.size() && std::isfinite(state.effort[at]))
         tau[joint] = state.effort[at];
     }
+    if (!has_speeds && speeds_.see(q, stamp, now)) {
+      for (std::size_t i = 0; i < options_.joints.size(); ++i) {
+        const auto at = static_cast<std::size_t>(std::ranges::find(state.name, options_.joints[i]) -
+                                                 state.name.begin());
+        const auto joint = static_cast<Eigen::Index>(i);
+        const bool is_given = at < state.velocity.size() && std::isfinite(state.velocity[at]);
+        if (!is_given) dq[joint] = speeds_.speeds()[joint];
+      }
+    }
     q_ = q;
     dq_ = dq;
     tau_ = tau;
-    if (since > 0.0) gaps_.add(since);
+    if (gap > 0.0) gaps_.add(gap);
     state_ns_ = now;
     answered_ = sent_;
     timespec wall{};
@@ -250,6 +265,7 @@ class Robot final : public device::Device {
   double period_s_;
   mutable std::mutex mutex_;  // the robot's side is threads of the DDS
   VectorM q_, dq_, tau_;
+  Speeds speeds_;
   Vector6 w_S_ = Vector6::Zero();
   std::int64_t state_ns_ = 0, wrench_ns_ = 0, hand_ns_ = 0;
   std::uint64_t samples_ = 0, answered_ = 0, sent_ = 0, other_clock_ = 0;

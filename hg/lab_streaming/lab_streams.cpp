@@ -98,6 +98,8 @@ class LabStreams::Sender {
  private:
   void run();
   void send(const Item& item);
+  void append(const Item& item);
+  void send_early();
   void flush();
   void send_markers();
 
@@ -174,7 +176,7 @@ StreamCounts LabStreams::Sender::close() {
     thread_.join();
   }
   StreamCounts counts = counts_;
-  counts.dropped = items_.dropped() + lost_markers_;
+  counts.dropped = items_.dropped() + lost_markers_ + markers_.size();  // of a run without a sample
   return counts;
 }
 
@@ -183,6 +185,7 @@ void LabStreams::Sender::run() {
   for (bool is_last = false; !is_last;) {
     is_last = is_closing_;
     while (items_.pop(item)) send(item);
+    if (is_last && clock_.finish()) send_early();  // shorter than what the offset is taken over
     flush();
     send_markers();
     if (!is_last) std::this_thread::sleep_for(kPoll);
@@ -207,15 +210,20 @@ void LabStreams::Sender::send(const Item& item) {
     waiting_.push_back(item);
     return;
   }
-  const auto append = [&](const Item& each) {
-    times_s_.push_back(each.time_s + clock_.offset_s());
-    chunk_.insert(chunk_.end(), each.values.begin(),
-                  each.values.begin() + static_cast<std::ptrdiff_t>(channels_));
-    if (times_s_.size() >= kMostAtOnce) flush();
-  };
+  send_early();
+  append(item);
+}
+
+void LabStreams::Sender::append(const Item& item) {
+  times_s_.push_back(item.time_s + clock_.offset_s());
+  chunk_.insert(chunk_.end(), item.values.begin(),
+                item.values.begin() + static_cast<std::ptrdiff_t>(channels_));
+  if (times_s_.size() >= kMostAtOnce) flush();
+}
+
+void LabStreams::Sender::send_early() {
   for (const Item& early : waiting_) append(early);
   waiting_.clear();
-  append(item);
 }
 
 void LabStreams::Sender::flush() {

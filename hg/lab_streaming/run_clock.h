@@ -30,6 +30,15 @@ class RunClock {
     return true;
   }
 
+  /// The run has ended: takes the offset from what has been seen. Returns true when it has just
+  /// been taken; a run without a sample has none.
+  bool finish() noexcept {
+    if (is_known_ || !(least_s_ < std::numeric_limits<double>::infinity())) return false;
+    offset_s_ = least_s_;
+    is_known_ = true;
+    return true;
+  }
+
   bool is_known() const noexcept { return is_known_; }
   double offset_s() const noexcept { return offset_s_; }  ///< clock minus run time
 

@@ -2,15 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <string>
 #include <system_error>
 
 #include "hg/core/error.h"
+#include "hg/core/visible.h"
 #include "hg/core/whole_file.h"
 #include "hg/recording/mcap_file.h"
 
@@ -18,6 +24,12 @@ namespace hg::recording {
 namespace {
 
 namespace fs = std::filesystem;
+
+void check_interruption(const Rosbag2Plan& plan) {
+  if (plan.is_interrupted != nullptr && plan.is_interrupted()) {
+    throw SetupError("export: interrupted, nothing is written");
+  }
+}
 
 // Counts the messages within a part of a run, and writes them into a file of their own if told to.
 class Copy final : public MessageListener {
@@ -45,6 +57,7 @@ class Copy final : public MessageListener {
   }
   void message(std::string_view topic, std::uint64_t time_ns,
                std::span<const std::byte> bytes) override {
+    check_interruption(plan_);
     const double time_s =
         1e-9 * static_cast<double>(static_cast<std::int64_t>(time_ns - start_ns_));
     const auto place = topics_.find(topic);
@@ -114,11 +127,24 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-// Removes a folder unless it is kept.
+// A new folder beside the one that it becomes; removed unless it is kept.
 struct Draft {
   fs::path folder;
   bool is_kept = false;
 
+  explicit Draft(const fs::path& final_folder) {
+    if (final_folder.has_parent_path()) make_folder(final_folder.parent_path().string());
+    std::string name = final_folder.string() + ".partial.XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) {
+      throw SetupError(final_folder.string() + ": cannot be written: " + std::strerror(errno));
+    }
+    folder = name;
+    const mode_t mask = umask(0);
+    umask(mask);
+    (void)chmod(name.c_str(), 0777 & ~mask);  // what it would have without mkdtemp
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
   ~Draft() {
     std::error_code ignored;
     if (!is_kept) fs::remove_all(folder, ignored);
@@ -131,6 +157,11 @@ void link_or_copy(const fs::path& from, const fs::path& to, bool& is_link) {
   is_link = !error;
   if (is_link) return;
   if (!fs::copy_file(from, to, error) || error) {
+    std::error_code ignored;  // the library calls a full disk an input/output error
+    const bool is_full =
+        error == std::errc::io_error &&
+        fs::space(to.parent_path(), ignored).available < fs::file_size(from, ignored);
+    if (is_full) error = std::make_error_code(std::errc::no_space_on_device);
     throw SetupError(to.string() + ": could not be written: " + error.message());
   }
 }
@@ -141,23 +172,23 @@ Rosbag2Result write_rosbag2(const fs::path& recording, const Rosbag2Plan& plan) 
   if (std::error_code error; fs::exists(fs::symlink_status(plan.folder, error))) {
     throw SetupError(plan.folder.string() + ": exists already, expected the name of a new folder");
   }
+  const std::string folder_name = plan.folder.filename().string();
+  if (visible(folder_name) != folder_name ||
+      folder_name.find_first_of("\n\t") != std::string::npos) {
+    throw SetupError(plan.folder.string() +
+                     ": expected a name in UTF-8 without control characters, for metadata.yaml");
+  }
   const bool is_part = std::isfinite(plan.from_s) || std::isfinite(plan.to_s);
   Copy survey(plan, {});
   const ReadResult read = read_messages(recording, survey);
   if (survey.count() == 0) throw SetupError(recording.string() + ": has no message in that time");
 
-  Draft draft{plan.folder.string() + ".partial"};
-  std::error_code error;
-  if (fs::exists(draft.folder, error)) {
-    draft.is_kept = true;
-    throw SetupError(draft.folder.string() + ": is left from before, remove it");
-  }
-  make_folder(draft.folder.string());
+  Draft draft(plan.folder);
   Rosbag2Result result{.messages = survey.count(),
                        .topics = survey.topics(),
                        .is_complete = read.is_complete,
                        .losses = read.losses};
-  const std::string name = plan.folder.filename().string() + "_0.mcap";
+  const std::string name = folder_name + "_0.mcap";
   if (read.is_whole() && !is_part) {
     link_or_copy(recording, draft.folder / name, result.is_link);
   } else {
@@ -166,6 +197,8 @@ Rosbag2Result write_rosbag2(const fs::path& recording, const Rosbag2Plan& plan) 
     copy.finish();
   }
   write_whole_file((draft.folder / "metadata.yaml").string(), survey.metadata_text(quoted(name)));
+  check_interruption(plan);
+  std::error_code error;
   fs::rename(draft.folder, plan.folder, error);
   if (error) throw SetupError(plan.folder.string() + ": could not be written: " + error.message());
   draft.is_kept = true;

@@ -15,6 +15,7 @@ struct Rosbag2Plan {
   std::filesystem::path folder;  ///< must not exist; made with its content, or not at all
   double from_s = -std::numeric_limits<double>::infinity();  ///< first moment
   double to_s = std::numeric_limits<double>::infinity();     ///< moment after the last one
+  bool (*is_interrupted)() noexcept = nullptr;  ///< asked all the time; true: nothing is written
 };
 
 struct Rosbag2Result {
@@ -27,7 +28,8 @@ struct Rosbag2Result {
 
 /// Writes the folder. A whole recording is linked, or copied where that is not possible; of a part,
 /// and of one that is damaged or cut off, the intact messages are written into a complete file.
-/// Throws SetupError: as read_recording(), the folder exists, cannot be written, or would be empty.
+/// Throws SetupError: as read_recording(), the folder exists, cannot be written or described in
+/// YAML, or would be empty; or it was interrupted.
 Rosbag2Result write_rosbag2(const std::filesystem::path& recording, const Rosbag2Plan& plan);
 
 }  // namespace hg::recording

@@ -207,6 +207,11 @@ std::vector<Part> parts_of(const ScenarioOptions& options, const config::Scenari
   return parts;
 }
 
+constexpr char kKnownFilesOnly[] =
+    "; --set reads no file that the scenario did not read without it: change the file that names "
+    "it, "
+    "or give --twin or --device";
+
 // A fault "FILE:LINE:COLUMN: ITEM: WHAT" in a file with changed values, as one of these values:
 // before them there was none.
 std::string as_change(const std::string& fault, const std::vector<Part>& parts) {
@@ -216,7 +221,9 @@ std::string as_change(const std::string& fault, const std::vector<Part>& parts) 
     if (place == std::string::npos) continue;
     const std::string rest = fault.substr(place + 2);
     const bool has_item = rest.find(": ") < rest.find(' ');
-    return fmt::format("--set {}{}{}", part.name, has_item ? "." : ": ", rest);
+    std::string text = fmt::format("--set {}{}{}", part.name, has_item ? "." : ": ", rest);
+    if (rest.find(": no such file, got ") != std::string::npos) text += kKnownFilesOnly;
+    return text;
   }
   return fault;
 }

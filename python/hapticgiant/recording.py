@@ -6,6 +6,7 @@ import array
 import fnmatch
 import os
 import typing
+import warnings
 
 import numpy as np
 
@@ -15,6 +16,9 @@ if typing.TYPE_CHECKING:
     import pandas
     import xarray
 
+_MAGIC = b"\x89MCAP0\r\n"
+_MOST_BYTES = 1 << 30  # of a record; a damaged length is larger
+_CHUNK_HEAD = 1 + 8 + 3 * 8 + 4 + 4 + 8  # bytes of a chunk besides its data and compression's name
 _SAMPLES, _EVENTS = "/hapticgiant/sample", "/hapticgiant/events"
 
 
@@ -40,11 +44,13 @@ class Recording(dict):
     """Columns of a run as arrays, by name: (rows), or (rows, entries).
 
     events: those that were recorded. metadata: texts about the run by name: "version", "rate_Hz".
-    configuration: the files that describe the run, by name. All are empty for run().
+    configuration: the files that describe the run, by name. losses: a text for each part of the
+    file that is damaged and left out. All are empty for run().
     """
 
-    def __init__(self, columns=(), *, run=(), limits=(), events=(), configuration=()):
+    def __init__(self, columns=(), *, run=(), limits=(), events=(), configuration=(), losses=()):
         super().__init__(columns)
+        self.losses: list[str] = list(losses)
         self.events: list[Event] = list(events)
         self.metadata: dict[str, str] = dict(run)
         self.configuration: dict[str, str] = dict(configuration)
@@ -157,6 +163,27 @@ def _append(message, path, columns):
             columns[here].values.extend(items)
 
 
+class _Loss:
+    """A chunk that is damaged, with what its index says that it held."""
+
+    def __init__(self, place):
+        self.place, self.times = place, []
+
+    def text(self, start_ns):
+        if not self.times:
+            return f"chunk at byte {self.place} is damaged and left out"
+        first, last = (1e-9 * (end(self.times) - start_ns) for end in (min, max))
+        return (f"chunk at byte {self.place} is damaged: {len(self.times)} samples from {first:.3f} "
+                f"to {last:.3f} s are lost")
+
+
+def _is_complete(stream) -> bool:
+    """Whether the file ends as one that was completed."""
+    stream.seek(0, os.SEEK_END)
+    stream.seek(max(0, stream.tell() - len(_MAGIC)))
+    return stream.read() == _MAGIC
+
+
 class _Reader:
     """Takes the records of a file, one by one."""
 
@@ -164,37 +191,66 @@ class _Reader:
         self.columns = {name: _Column(like) for name, like in _core.empty_columns().items()}
         self.count = 0
         self.events, self.metadata, self.configuration = [], {}, {}
+        self.losses = []
 
     def read(self, stream):
-        """Everything in a recording; of one that a crash cut short, what is there."""
+        """Everything in a recording; of one that a crash cut short, what is there.
+
+        A chunk whose bytes have changed is left out. Raises any exception for other damage.
+        """
         try:
             from mcap import records
             from mcap.exceptions import EndOfFile
-            from mcap.stream_reader import StreamReader
+            from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
             from mcap_ros2.decoder import DecoderFactory
         except ImportError as error:
             raise ImportError("read_recording needs: pip install hapticgiant[recording]") from error
         factory = DecoderFactory()
         schemas, takers = {}, {}
+        loss = None  # of the chunk before
+
+        def take_content(record):
+            if isinstance(record, records.Message):
+                if record.channel_id in takers:
+                    decode, take = takers[record.channel_id]
+                    take(decode(record.data))
+            elif isinstance(record, records.Schema):
+                schemas[record.id] = record
+            elif isinstance(record, records.Channel):
+                take = {_SAMPLES: self.take_sample, _EVENTS: self.take_event}.get(record.topic)
+                if take and record.id not in takers:
+                    schema = schemas[record.schema_id]
+                    takers[record.id] = factory.decoder_for(record.message_encoding, schema), take
+
         try:
-            for record in StreamReader(stream).records:
-                if isinstance(record, records.Message):
-                    if record.channel_id in takers:
-                        decode, take = takers[record.channel_id]
-                        take(decode(record.data))
-                elif isinstance(record, records.Schema):
-                    schemas[record.id] = record
-                elif isinstance(record, records.Channel):
-                    take = {_SAMPLES: self.take_sample, _EVENTS: self.take_event}.get(record.topic)
-                    if take and record.id not in takers:
-                        schema = schemas[record.schema_id]
-                        takers[record.id] = factory.decoder_for(record.message_encoding, schema), take
+            for record in StreamReader(stream, emit_chunks=True, validate_crcs=True,
+                                       record_size_limit=_MOST_BYTES).records:
+                if isinstance(record, records.Chunk):
+                    loss = None
+                    try:
+                        content = breakup_chunk(record, validate_crc=True)
+                    except Exception:  # of the codec, the checksum or what it holds
+                        loss = _Loss(stream.tell() - _CHUNK_HEAD - len(record.compression)
+                                     - len(record.data))
+                        self.losses.append(loss)
+                        continue
+                    for item in content:
+                        take_content(item)
+                elif isinstance(record, records.MessageIndex):
+                    if loss and takers.get(record.channel_id, (None, None))[1] == self.take_sample:
+                        loss.times += [time for time, _ in record.records]
                 elif isinstance(record, records.Metadata):
                     self.metadata[record.name] = list(record.metadata.items())
                 elif isinstance(record, records.Attachment):
                     self.configuration[record.name] = record.data.decode(errors="replace")
+                else:
+                    take_content(record)
+        except CRCValidationError:
+            if not self.losses:  # which explain it
+                raise
         except EndOfFile:
-            return
+            if _is_complete(stream):
+                raise
 
     def take_sample(self, sample):
         _append(sample, "", self.columns)
@@ -210,20 +266,27 @@ def read_recording(file: str | os.PathLike) -> Recording:
     """Every cycle of an MCAP recording: the same columns, shapes and types as run().
 
     Fields unknown to this version are left out; those that the recording does not have are
-    NaN or 0. Raises SetupError where the file is not a recording.
+    NaN or 0. Damaged chunks are left out: each is a warning and a text in `losses`. Raises
+    SetupError where the file is not a recording or damaged outside of chunks; `hapticgiant export`
+    reads more of such files.
     """
-    try:
-        from mcap.exceptions import McapError
-    except ImportError:
-        McapError = ()
     reader = _Reader()
     try:
         with open(file, "rb") as stream:
             reader.read(stream)
-    except (OSError, McapError) as error:
-        raise _core.SetupError(f"{os.fspath(file)}: cannot be read as a recording: {error}") from error
+    except ImportError:
+        raise
+    except Exception as error:  # damaged bytes give errors of any kind
+        why = str(error) or type(error).__name__
+        raise _core.SetupError(f"{os.fspath(file)}: cannot be read as a recording: {why}") from error
+    start_ns = int(dict(reader.metadata.get("run", ())).get("start_ns", 0))
+    losses = [loss.text(start_ns) for loss in reader.losses]
+    for loss in losses:
+        warnings.warn(f"{os.fspath(file)}: {loss}", stacklevel=2)
+    if reader.count == 0 and losses:
+        raise _core.SetupError(f"{os.fspath(file)}: what describes its samples is damaged")
     if reader.count == 0:
         raise _core.SetupError(f"{os.fspath(file)}: no messages on {_SAMPLES}, so not a recording")
     return Recording({name: column.to_numpy() for name, column in reader.columns.items()},
                      run=reader.metadata.get("run", ()), limits=reader.metadata.get("limits", ()),
-                     events=reader.events, configuration=reader.configuration)
+                     events=reader.events, configuration=reader.configuration, losses=losses)

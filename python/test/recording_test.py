@@ -5,6 +5,9 @@ HG_RECORDING: a recording of the door by the program; without it what needs one 
 
 import importlib.util
 import os
+import pathlib
+import re
+import tempfile
 import unittest
 
 import numpy as np
@@ -84,6 +87,37 @@ class Tables(unittest.TestCase):
         first = recorded.to_xarray(["twin.q_a", "robot.w_h"]).isel(time_s=slice(0, 100))
         np.testing.assert_array_equal(
             first["robot.w_h"], self.door.to_xarray(["robot.w_h"])["robot.w_h"][:100])
+
+
+@needs_recording
+class Damage(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.file = pathlib.Path(folder.name) / "damaged.mcap"
+        self.bytes = bytearray(pathlib.Path(RECORDING).read_bytes())
+
+    def test_a_chunk_with_a_wrong_bit_is_left_out_and_told(self):
+        whole = hg.read_recording(RECORDING)
+        self.assertEqual(whole.losses, [])
+        self.bytes[len(self.bytes) // 2] ^= 1
+        self.file.write_bytes(self.bytes)
+        with self.assertWarnsRegex(UserWarning, "chunk at byte [0-9]+ is damaged: [0-9]+ samples"):
+            read = hg.read_recording(self.file)
+        lost = int(re.search(r"(\d+) samples", read.losses[0])[1])
+        self.assertEqual(len(read["time_s"]) + lost, len(whole["time_s"]))
+        same = np.isin(whole["time_s"], read["time_s"])
+        np.testing.assert_array_equal(read["robot.w_h"], whole["robot.w_h"][same])
+
+    def test_other_damage_is_one_error_that_names_the_file(self):
+        place = self.bytes.index(b"rate_Hz")  # a name in the metadata
+        length = self.bytes.index(b"\x06", 8) + 1  # of the first chunk
+        for at in (place, length + 5):
+            changed = bytearray(self.bytes)
+            changed[at] ^= 1
+            self.file.write_bytes(changed)
+            with self.assertRaisesRegex(hg.SetupError, "damaged.mcap: cannot be read"):
+                hg.read_recording(self.file)
 
 
 class Facts(unittest.TestCase):

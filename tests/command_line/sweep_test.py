@@ -197,6 +197,31 @@ class Sweep(TemporaryFolder):
                 self.assertEqual(len(err.splitlines()), 1, err)
         self.sweep(self.study, "--again")
 
+    def test_again_deletes_no_file_of_others(self):
+        self.sweep(self.study)
+        mine = {"results.docx": "mine", "manifest_of_cargo.jsonl": "mine\n", "notes.txt": "mine"}
+        for name, text in mine.items():
+            (self.out / name).write_text(text)
+        self.sweep(self.study, "--again")
+        for name, text in mine.items():
+            self.assertEqual((self.out / name).read_text(), text)
+        other = self.folder / "other"
+        other.mkdir()
+        for name in ("results.csv", "study.json", "manifest.jsonl"):
+            (other / name).write_text("mine\n")
+            for words in ([], ["--again"]):
+                if name == "study.json" and not words:
+                    continue  # is refused as a damaged one
+                _, err = self.sweep(self.study, "--out", other, *words, code=2)
+                self.assertIn("take another --out", err)
+            self.assertEqual((other / name).read_text(), "mine\n")
+            (other / name).unlink()
+
+    def test_an_option_is_no_value(self):
+        self.study.write_text('fixed:\n  scenario: "--help"\n')
+        _, err = self.sweep(self.study, code=2)
+        self.assertIn(":2:13: scenario: expected a value, got the option '--help'", err)
+
     def test_a_second_sweep_in_the_folder_is_refused_and_forgets_nothing(self):
         slow = 'case "$*" in *0.6*) sleep 1;; esac'
         first = self.start_with(slow, self.study, "--jobs", 1)

@@ -11,9 +11,11 @@ import os
 import pathlib
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -133,6 +135,21 @@ class Csv(Export):
         self.assertEqual((self.folder / "door.csv").read_text(), "my own notes\n")
         self.assertFalse(list(self.folder.glob("*.partial")))
 
+    def test_files_of_others_with_such_beginnings_are_kept(self):
+        for name, text in (("door.json", '{"name": "door", "columns": 3}\n'),
+                           ("door.csv", "time_s,mine\n0,1\n"),
+                           ("door.events.csv", "time_s,mine\n0,1\n"),
+                           ("door.csv.partial", "mine\n")):
+            file = self.folder / name
+            file.write_text(text)
+            code = 0 if name.endswith(".partial") else 2
+            said = self.export(DOOR, "--columns", "mode", "--to", "0.01", code=code)
+            self.assertEqual(file.read_text(), text)
+            if code:
+                self.assertIn(f"{name}: exists already and is of no older export", said)
+                self.assertEqual(list(self.folder.iterdir()), [file])
+                file.unlink()
+
 
 class BadInput(Export):
     def test_has_one_clear_error_and_leaves_nothing(self):
@@ -145,6 +162,7 @@ class BadInput(Export):
                 (DOOR, ["--from", "2", "--to", "1"], "--to: must be later than --from"),
                 (DOOR, ["--from", "100"], "has no sample in that time"),
                 (DOOR, ["--rate", "0"], "more than 0"),
+                (DOOR, ["--rate", "1e308"], "at most 1e9"),
                 (DOOR, ["--format", "excel"], "excel"),
                 (DOOR, ["--format", "rosbag2", "--rate", "10"], "not possible with rosbag2"),
                 (DOOR, ["--format", "rosbag2", "--from", "100"], "no message in that time"),
@@ -152,9 +170,23 @@ class BadInput(Export):
                 (nothing, [], "does not exist")):
             self.assertIn(message, self.export(file, *options, code=2))
             self.is_empty()
+        for out, options, message in ((".", [], "expected a name of files"),
+                                      (self.folder / "a\nb", ["--format", "rosbag2"],
+                                       "without control characters")):
+            code, _, err = run("export", DOOR, "--out", out, *options)
+            self.assertEqual(code, 2)
+            self.assertIn(message, err)
+            self.is_empty()
         code, _, err = run("export")
         self.assertEqual(code, 2)
         self.assertIn("file", err)
+
+    def test_a_file_name_that_is_not_utf8_is_one_of_files(self):
+        file = self.folder / os.fsdecode(b"door\xff.mcap")
+        shutil.copy(DOOR, file)
+        self.export(file, "--columns", "mode", "--to", "0.01")
+        facts = json.loads((self.folder / "door.json").read_text())
+        self.assertEqual(facts["file"], "door\\xff.mcap")
 
     def test_a_missing_library_is_named_before_anything_is_read(self):
         python = self.folder / "python"
@@ -176,6 +208,21 @@ class BadInput(Export):
         self.assertEqual(done.returncode, 2, done.stdout)
         self.assertIn("could not be written", done.stderr)
         self.is_empty()
+
+
+class Interrupted(Export):
+    def test_rosbag2_leaves_nothing_and_the_next_export_works(self):
+        with subprocess.Popen([PROGRAM, "export", DOOR, "--format", "rosbag2", "--from", "0.001",
+                               "--out", self.folder / "door"], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as export:
+            while export.poll() is None and not any(self.folder.iterdir()):
+                time.sleep(0.001)
+            export.send_signal(signal.SIGINT)
+        self.assertIn(export.returncode, (0, 2))  # 0: it was faster
+        self.assertEqual(list(self.folder.glob("*.partial*")), [])
+        shutil.rmtree(self.folder / "door", ignore_errors=True)
+        (self.folder / "door.partial").mkdir()  # of somebody else
+        self.export(DOOR, "--format", "rosbag2", "--to", "0.1")
 
 
 class Damaged(Export):

@@ -106,6 +106,13 @@ class Streams(TemporaryFolder):
                             ("torque.z", "Nm"), ("twin.hinge", "rad")):
             self.assertEqual(units[label], unit)
 
+    def test_a_run_that_ends_before_the_clock_is_known_is_sent_nevertheless(self):
+        out, err = self.start("--duration", "0.05").communicate(timeout=60)
+        samples = recorded.samples((self.folder / "latest.mcap").resolve())
+        sent = re.search(r"lab streams +(\d+) samples, (\d+) markers$", out, re.MULTILINE)
+        self.assertTrue(sent, out + err)
+        self.assertEqual(int(sent[1]), len(samples), out)
+
     def test_without_the_library_no_run_begins(self):
         run = self.start(PYLSL_LIB=str(self.folder / "none.so"))
         out, err = run.communicate(timeout=60)

@@ -10,6 +10,8 @@ import contextlib
 import os
 import pathlib
 import random
+import socket
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -60,16 +62,57 @@ class Dds(unittest.TestCase):
         self.assertIn("messages out  /joint_states", between.interrupt())
 
 
+class Alone(unittest.TestCase):
+    """Without a DDS of others."""
+
+    def program(self, *arguments):
+        return subprocess.run([ros2_test.PROGRAM, "bridge", "ros2", *arguments], capture_output=True,
+                              text=True, timeout=ros2_test.PATIENCE)
+
+    def test_bad_input_is_refused_with_its_reason(self):
+        device = ["device", "--without-dead-man", "--joints"]
+        arm = [*device, ros2_test.JOINTS]
+        for arguments, message in (
+                ([*arm, "--silence", "nan"], "--silence: expected a number from 0.001 to 1, got nan"),
+                ([*arm, "--rate-hz", "nan"], "--rate-hz: expected a number from 1 to 10000"),
+                ([*arm, "--gain", "nan"], "--gain: expected a number from 0 to 1000"),
+                ([*device, "a,a,b,c,d,e"], "--joints: names 'a' twice"),
+                ([*arm, "--states", "joint states"], "no name of ROS 2"),
+                (["--namespace", "my robot!"], "no name of ROS 2"),
+                (["--view", *arm], "not possible with device"),
+                (["--live", "ws://localhost:1/", *arm], "not possible with device")):
+            done = self.program(*arguments)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertIn(message, done.stderr)
+
+    def test_an_answer_that_is_no_run_is_told_as_it_came(self):
+        for status, message in ((b"404 Not Found", "got HTTP 404 Not Found: a page"),
+                                (b"403 Forbidden", "the token is that of another run, or wrong")):
+            with socket.create_server(("127.0.0.1", 0)) as server, contextlib.ExitStack() as stack:
+                bridge = stack.enter_context(ros2_test.Program(
+                    [ros2_test.PROGRAM, "bridge", "ros2", "--local", "--domain", "199", "--live",
+                     f"ws://127.0.0.1:{server.getsockname()[1]}/live?token=x"]))
+                server.settimeout(ros2_test.PATIENCE)
+                connection, _ = server.accept()
+                with connection:
+                    connection.recv(65536)
+                    connection.sendall(b"HTTP/1.1 " + status + b"\r\nContent-Length: 6\r\n\r\na page")
+                    bridge.wait_for(message)
+                bridge.interrupt()
+
+
 def main():
     ros2_test.PROGRAM = pathlib.Path(sys.argv[1]).resolve()
     if not ros2_test.PROGRAM.with_name("hapticgiant-ros2").exists():
         print("skipped: hapticgiant-ros2 was not built (Debian: libfastrtps-dev)")
         return SKIPPED
+    load = unittest.TestLoader().loadTestsFromTestCase
+    if not unittest.TextTestRunner(verbosity=2).run(load(Alone)).wasSuccessful():
+        return 1
     if why := make_environment(VENV, ROOT / "tools" / "requirements-dds.txt"):
         print("skipped: no Cyclone DDS:", why)
         return SKIPPED
-    suite = unittest.TestLoader().loadTestsFromTestCase(Dds)
-    return not unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful()
+    return not unittest.TextTestRunner(verbosity=2).run(load(Dds)).wasSuccessful()
 
 
 if __name__ == "__main__":

@@ -142,7 +142,10 @@ void Bridge::take(const std::string& topic, const std::string& type) {
 void Bridge::serve(const std::string& service) {
   const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> call =
       [this, service](auto&, auto& response) { return trigger(service, response); };
-  services_.push_back(node_.advertiseService(relative(service), call));
+  auto options = ros::AdvertiseServiceOptions::create<std_srvs::Trigger>(
+      relative(service), call, ros::VoidConstPtr(), nullptr);
+  if (service == kStop) options.callback_queue = &stops_;
+  services_.push_back(node_.advertiseService(options));
 }
 
 // On a thread of ROS: waits for the answer of the program.
@@ -221,6 +224,8 @@ void Bridge::note_diagnostics(const diagnostic_msgs::DiagnosticArray& diagnostic
 bool Bridge::run() {
   ros::AsyncSpinner spinner(2);  // a service that waits leaves one for topics
   spinner.start();
+  ros::AsyncSpinner stops(1, &stops_);  // a stop waits for no other service
+  stops.start();
   std::thread watch([this] { watch_master(); });  // a master may be far away, and slow
   tick();
   context_.run();

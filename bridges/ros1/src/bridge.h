@@ -7,6 +7,7 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <std_srvs/Trigger.h>
@@ -64,6 +65,7 @@ class Bridge {
   std::map<std::string, std::function<void(Bytes)>> handlers_;  ///< by topic
   std::vector<Publication> publications_;
   std::vector<ros::Subscriber> subscribers_;
+  ros::CallbackQueue stops_;  ///< of the service that waits for no other
   std::vector<ros::ServiceServer> services_;
   ros::Publisher clock_, markers_topic_;
   Settings settings_;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstring>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -114,6 +115,7 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
   }
 
   void call(const std::string& service, Bytes request, OnAnswer on_answer) {
+    const bool is_stop = service == kStop;
     const auto found = services_.find(service);
     if (found == services_.end()) {
       return on_answer({false, "the program has no service " + service, {}});
@@ -126,7 +128,8 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
     bytes += "cdr";
     bytes.append(request);
     calls_[last_id_] = std::move(on_answer);
-    send(std::move(bytes), false);
+    if (is_stop) overtake();
+    send(std::move(bytes), false, last_id_, is_stop);
   }
 
   void fetch(const std::string& uri, OnAnswer on_answer) {
@@ -134,9 +137,31 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
     send_json({{"op", "fetchAsset"}, {"uri", uri}, {"requestId", last_id_}});
   }
 
-  void send_json(const json& message) { send(message.dump(), true); }
+  // names of others may hold any bytes: what is not UTF-8 is replaced, and then found nowhere
+  void send_json(const json& message) {
+    send(message.dump(-1, ' ', false, json::error_handler_t::replace), true);
+  }
 
  private:
+  struct Out {
+    std::string bytes;
+    bool is_text = false;
+    std::uint32_t call = 0;  // number; 0: no call
+    bool is_stop = false;
+  };
+
+  // A call that waits when a stop comes is not made any more: it could undo the stop.
+  void overtake() {
+    std::vector<std::uint32_t> overtaken;
+    for (auto one = out_.begin(); one != out_.end();) {
+      const bool is_kept = one->call == 0 || one->is_stop;
+      if (!is_kept) overtaken.push_back(one->call);
+      one = is_kept ? std::next(one) : out_.erase(one);
+    }
+    for (const std::uint32_t id : overtaken)
+      answer(calls_, id, {false, "a stop came after it", {}});
+  }
+
   beast::tcp_stream& stream() { return socket_.next_layer(); }
 
   void shake_hands() {
@@ -272,17 +297,26 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
     if (auto request = requests.extract(id)) request.mapped()(answer);
   }
 
-  void send(std::string bytes, bool is_text) {
-    out_.emplace_back(std::move(bytes), is_text);
-    if (out_.size() == 1) write();
+  // A stop goes out before all that waits.
+  void send(std::string bytes, bool is_text, std::uint32_t call = 0, bool is_stop = false) {
+    Out out{std::move(bytes), is_text, call, is_stop};
+    if (is_stop) {
+      out_.push_front(std::move(out));
+    } else {
+      out_.push_back(std::move(out));
+    }
+    if (!is_writing_) write();
   }
 
   void write() {
-    socket_.text(out_.front().second);
-    socket_.async_write(asio::buffer(out_.front().first),
+    is_writing_ = true;
+    writing_ = std::move(out_.front());
+    out_.pop_front();
+    socket_.text(writing_.is_text);
+    socket_.async_write(asio::buffer(writing_.bytes),
                         [self = shared_from_this()](error_code error, std::size_t) {
                           if (error) return self->end(error.message());
-                          self->out_.pop_front();
+                          self->is_writing_ = false;
                           if (!self->out_.empty()) self->write();
                         });
   }
@@ -291,7 +325,9 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
   websocket::stream<beast::tcp_stream> socket_;
   websocket::response_type response_;
   beast::flat_buffer buffer_;
-  std::deque<std::pair<std::string, bool>> out_;  // the first is being written
+  std::deque<Out> out_;  // waits
+  Out writing_;
+  bool is_writing_ = false;
   std::map<std::uint32_t, std::string> subscriptions_;
   std::map<std::string, std::uint32_t> services_;
   std::map<std::uint32_t, OnAnswer> calls_, fetches_;

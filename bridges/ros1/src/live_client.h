@@ -19,6 +19,9 @@ namespace hapticgiant {
 
 using Bytes = std::string_view;
 
+/// The service whose calls overtake all others: those that still wait fail.
+inline constexpr const char* kStop = "/hapticgiant/stop";
+
 /// Answer of a service or of fetch().
 struct Answer {
   bool is_ok = false;

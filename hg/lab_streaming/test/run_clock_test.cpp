@@ -49,5 +49,14 @@ TEST(RunClock, IgnoresShiftsThatAreLatenessOfTheComputer) {
   EXPECT_NEAR(clock.offset_s(), 10.0, 1e-9);
 }
 
+TEST(RunClock, OfARunThatEndsEarlyIsTakenFromWhatThereIs) {
+  RunClock clock;
+  EXPECT_FALSE(clock.finish());  // no sample, no offset
+  see(clock, 0, 50, 1234.5);
+  EXPECT_TRUE(clock.finish());
+  EXPECT_NEAR(clock.offset_s(), 1234.5, 1e-9);
+  EXPECT_FALSE(clock.finish());
+}
+
 }  // namespace
 }  // namespace hg::lab_streaming

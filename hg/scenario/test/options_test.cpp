@@ -71,6 +71,10 @@ TEST(Options, AValueThatDoesNotFitIsRefusedAsTheOneThatWasSet) {
             "device, simulation, twin, script");
   EXPECT_EQ(message("scenario.events[99].name=x"),
             "--set scenario.events[99].name: 'events' has 8 entries");
+  EXPECT_EQ(
+      message("twin.urdf=/etc/passwd"),
+      "--set twin.urdf: no such file, got '/etc/passwd'; --set reads no file that the scenario "
+      "did not read without it: change the file that names it, or give --twin or --device");
   EXPECT_EQ(message("twin.mass_scale.x=1"), "--set twin.mass_scale: must be a number, got a map");
 }
 

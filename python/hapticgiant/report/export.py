@@ -71,6 +71,7 @@ class Parquet:
         events = pyarrow.table({"time_s": pyarrow.array(times, pyarrow.float64()),
                                 "name": pyarrow.array(names, pyarrow.string()),
                                 "text": pyarrow.array(texts, pyarrow.string())})
+        events = events.replace_schema_metadata({"exported_by": facts["exported_by"]})
         pyarrow.parquet.write_table(events, head["events_file"])
 
     def write(self, rows):

@@ -12,11 +12,13 @@ import fcntl
 import json
 import os
 import pathlib
+import re
 import sys
 
 HEADER = "study.json"
 KEYS = {"format", "title", "runs", "study", "version", "program", "files"}  # of the header
-LINES = "manifest*.jsonl"
+LINES = re.compile(r"manifest(\.\d+of\d+)?\.jsonl")
+TABLES = ("results.parquet", "results.csv", "repeat.sh")
 
 
 class SweepError(RuntimeError):
@@ -34,9 +36,10 @@ class Folder:
         try:
             header = json.loads((self.path / HEADER).read_text(encoding="utf-8"))
         except FileNotFoundError:
-            if any(file.stat().st_size for file in self.path.glob(LINES)):
+            if self._has_runs():
                 raise SweepError(f"{self.path} has runs, but no {HEADER} that says of which study: "
                                  "--again forgets them") from None
+            self._refuse_files_of_others()
             return None
         except ValueError:
             header = None
@@ -60,7 +63,7 @@ class Folder:
     def records(self) -> dict[int, dict]:
         """By number of the run, of all shards; of several lines about a run one with a result."""
         records = {}
-        for file in sorted(self.path.glob(LINES)):
+        for file in self._manifests():
             with open(file, encoding="utf-8", errors="replace") as lines:
                 for number, line in enumerate(lines, 1):
                     if not line.endswith("\n"):
@@ -75,18 +78,42 @@ class Folder:
 
     def forget(self) -> None:
         """Deletes everything of the sweep, and nothing else. Raises BlockingIOError while another
-        process writes there."""
+        process writes there, SweepError where the files are of no sweep."""
+        if not self._has_header() and not self._has_runs():
+            self._refuse_files_of_others()
         with contextlib.ExitStack() as stack:
-            files = list(self.path.glob(LINES))
+            files = self._manifests()
             for file in files:
                 descriptor = os.open(file, os.O_RDWR)
                 stack.callback(os.close, descriptor)
                 _lock(descriptor)
             for file in files:
                 file.unlink()
-            for pattern in ("results.*", "repeat.sh", HEADER):  # last: see header()
-                for file in self.path.glob(pattern):
-                    file.unlink()
+            for name in (*TABLES, HEADER):  # last: see header()
+                (self.path / name).unlink(missing_ok=True)
+
+    def _manifests(self):
+        return sorted(file for file in self.path.glob("manifest*.jsonl")
+                      if LINES.fullmatch(file.name))
+
+    def _has_header(self):
+        try:
+            header = json.loads((self.path / HEADER).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return False
+        return isinstance(header, dict) and KEYS <= header.keys()
+
+    def _has_runs(self):
+        for file in self._manifests():
+            with open(file, encoding="utf-8", errors="replace") as lines:
+                if any(_read(line) for line in lines):
+                    return True
+        return False
+
+    def _refuse_files_of_others(self):
+        for file in (*self._manifests(), *(self.path / name for name in (*TABLES, HEADER))):
+            if file.is_file() and file.stat().st_size:
+                raise SweepError(f"{file}: is of no sweep and would be replaced: take another --out")
 
 
 def _read(line):

@@ -151,6 +151,11 @@ class Reader:
             if "." not in name and name not in OPTIONS:
                 self.fault(key, name, f"no such option, did you mean '{nearest(name, OPTIONS)}'? "
                                       f"They are {', '.join(OPTIONS)}")
+        for key, value in result.items():
+            for one in value.value if isinstance(value, self.nodes.SequenceNode) else [value]:
+                words = self.words(one)
+                if key in OPTIONS and words.startswith("-") and isinstance(value_of(words), str):
+                    self.fault(one, key, f"expected a value, got the option '{words}'")
         return result
 
     def number(self, node, item):

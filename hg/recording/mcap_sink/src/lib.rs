@@ -7,7 +7,8 @@ mod read;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::ffi::{c_char, c_void, CStr, CString};
+use std::ffi::{c_char, c_void, CStr, CString, OsStr};
+use std::os::unix::ffi::OsStrExt;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::path::Path;
 
@@ -38,7 +39,7 @@ struct OpenFile {
 }
 
 impl mcap_sink {
-    fn open(path: &str) -> Result<OpenFile, Failure> {
+    fn open(path: &Path) -> Result<OpenFile, Failure> {
         let options = WriteOptions::new()
             .profile("ros2")
             .library("hapticgiant")
@@ -46,7 +47,7 @@ impl mcap_sink {
             .compression_level(ZSTD_LEVEL)
             .compression_threads(0)
             .disable_seeking(true);
-        let (file, handle) = FailFastFile::create(Path::new(path))?;
+        let (file, handle) = FailFastFile::create(path)?;
         Ok(OpenFile { writer: options.create(NoSeek::new(file))?, handle })
     }
 
@@ -82,6 +83,11 @@ unsafe fn text<'a>(pointer: *const c_char) -> Cow<'a, str> {
     CStr::from_ptr(pointer).to_string_lossy()
 }
 
+/// Names of files are bytes, not always UTF-8.
+unsafe fn path_of<'a>(pointer: *const c_char) -> &'a Path {
+    Path::new(OsStr::from_bytes(CStr::from_ptr(pointer).to_bytes()))
+}
+
 unsafe fn bytes<'a>(data: *const u8, size: usize) -> &'a [u8] {
     if size == 0 {
         &[]
@@ -99,9 +105,9 @@ pub extern "C" fn mcap_sink_available() -> bool {
 /// `path` is a zero-terminated string.
 #[no_mangle]
 pub unsafe extern "C" fn mcap_sink_open(path: *const c_char) -> *mut mcap_sink {
-    let path = text(path);
+    let path = path_of(path);
     let mut sink = Box::new(mcap_sink { open: None, error: CString::default() });
-    match catch_unwind(|| mcap_sink::open(&path).map_err(|failure| root_cause(&*failure))) {
+    match catch_unwind(|| mcap_sink::open(path).map_err(|failure| root_cause(&*failure))) {
         Ok(Ok(file)) => sink.open = Some(file),
         Ok(Err(message)) => sink.fail(message),
         Err(_) => sink.fail("the MCAP library panicked".to_string()),
@@ -255,7 +261,7 @@ pub unsafe extern "C" fn mcap_sink_read(
     error: *mut c_char,
     error_size: usize,
 ) -> bool {
-    let path = text(path);
+    let path = path_of(path);
     let hand_over = |item: Item| {
         let (kind, name, time_ns, data): (_, _, _, &[u8]) = match item {
             Item::Channel { topic, schema } => (0, topic, 0, schema),
@@ -270,7 +276,7 @@ pub unsafe extern "C" fn mcap_sink_read(
         take(context, kind, name.as_ptr(), name.len(), time_ns, data.as_ptr(), data.len());
     };
     let result = catch_unwind(AssertUnwindSafe(|| {
-        read(Path::new(&*path), hand_over).map_err(|failure| root_cause(&*failure))
+        read(path, hand_over).map_err(|failure| root_cause(&*failure))
     }));
     let message = match result {
         Ok(Ok(())) => return true,
