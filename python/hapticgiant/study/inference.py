@@ -84,6 +84,25 @@ def number(value: float) -> str:
     return "< 0.001" if 0 <= value < 0.001 else f"{value:.3f}"
 
 
+def rounded(values, scale: float) -> np.ndarray:
+    """To 12 digits of the scale: equal sums in another order are equal, so that ranks see their ties."""
+    if not 0 < scale < math.inf:
+        return np.asarray(values, float)
+    return np.round(np.asarray(values, float), min(290, 11 - math.floor(math.log10(scale))))
+
+
+def for_ranks(columns) -> list[np.ndarray]:
+    """Columns rounded to 12 digits of the largest of all their values."""
+    scale = max((float(np.max(np.abs(each))) for each in columns if len(each)), default=0.0)
+    return [rounded(each, scale) for each in columns]
+
+
+def differences(first, second) -> np.ndarray:
+    """Second minus first, rounded to 12 digits of the largest value of both."""
+    a, b = np.asarray(first, float), np.asarray(second, float)
+    return rounded(b - a, float(np.max(np.abs([a, b]), initial=0)))
+
+
 def paired_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     """Student's t of differences; effect size d_z, the mean difference over its deviation."""
     difference = np.asarray(second, float) - np.asarray(first, float)
@@ -122,7 +141,7 @@ def wilcoxon(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
 
     Estimate and interval: Hodges and Lehmann; effect size: rank-biserial correlation.
     """
-    difference = np.asarray(second, float) - np.asarray(first, float)
+    difference = differences(first, second)
     kept = difference[difference != 0]
     count = len(kept)
     if count == 0:
@@ -152,7 +171,7 @@ def welch_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
 def mann_whitney(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     """Mann and Whitney's U of the second group: exact without ties, else with correction of
     continuity, as R's wilcox.test. Estimate: Hodges and Lehmann; effect size rank-biserial."""
-    a, b = np.asarray(first, float), np.asarray(second, float)
+    a, b = for_ranks([first, second])
     has_ties = len(np.unique(np.concatenate([a, b]))) < len(a) + len(b)
     method = "exact" if not has_ties and max(len(a), len(b)) < 50 else "asymptotic"
     test = stats.mannwhitneyu(b, a, method=method, use_continuity=True)
@@ -173,7 +192,7 @@ def every_pair(groups: dict[str, np.ndarray], compare, alpha, correction) -> lis
 
 def friedman(groups: dict[str, np.ndarray], alpha=0.05, correction="holm") -> Result:
     """Friedman's test over people (rows), post-hoc Wilcoxon of all pairs; effect size Kendall's W."""
-    columns = list(groups.values())
+    columns = for_ranks(groups.values())
     count = len(columns[0])
     if all(np.ptp(row) == 0 for row in np.array(columns).T):
         value, p = 0.0, 1.0
@@ -254,9 +273,14 @@ def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
     for each, p in zip(result.comparisons, adjusted([c.p for c in result.comparisons], correction)):
         each.p_adjusted = p
     result.effect, result.size = "partial eta2", result.value * df[0] / (result.value * df[0] + df[1])
-    result.assumptions.append(normality(fit.resid, "residuals", alpha))
-    offsets = [float(np.atleast_1d(each)[0]) for each in fit.random_effects.values()]
-    result.assumptions.append(normality(offsets, "offsets of people", alpha))
+    try:
+        offsets = [float(np.atleast_1d(each)[0]) for each in fit.random_effects.values()]
+    except (ValueError, np.linalg.LinAlgError):  # a variance of 0: nothing is predicted, the test stands
+        offsets = None
+    result.assumptions.append(normality((values - fixed @ means)[rows] if offsets is None else fit.resid, "residuals",
+                                        alpha))
+    if offsets is not None:
+        result.assumptions.append(normality(offsets, "offsets of people", alpha))
     if result.variances["person"] < 1e-6 * deviation ** 2:
         result.notes.append("people do not differ in their mean (variance 0)")
     return result
@@ -274,7 +298,7 @@ def between(groups: dict[str, np.ndarray], test: str, alpha=0.05, correction="ho
         result.assumptions = [normality(np.concatenate([c - c.mean() for c in columns]), "residuals", alpha),
                               equal_spread(columns, alpha)]
         return result
-    value, p = stats.kruskal(*columns)
+    value, p = stats.kruskal(*for_ranks(columns))
     return Result(test, count, "H", value, (kinds - 1,), p, "epsilon2", value / (count - 1),
                   every_pair(groups, mann_whitney, alpha, correction))
 

@@ -168,14 +168,14 @@ def _share(study, test, count, simulations, dice, differs):
 def _p_value(test, groups):
     """The p value of the whole test, of means of people by condition; as the report computes it."""
     if test == "wilcoxon":
-        return inference.signed_rank_p(groups[1] - groups[0])
+        return inference.signed_rank_p(inference.differences(*groups))
     if test in ("paired_t", "welch_t", "mann_whitney"):
         return getattr(inference, test)(*groups).p
     if test == "mixed":  # for balanced data the same
         return inference.repeated_anova(np.array(groups).T)[2]
     if test == "friedman":
-        return stats.friedmanchisquare(*groups).pvalue
-    return (stats.f_oneway if test == "anova" else stats.kruskal)(*groups).pvalue
+        return stats.friedmanchisquare(*inference.for_ranks(groups)).pvalue
+    return stats.f_oneway(*groups).pvalue if test == "anova" else stats.kruskal(*inference.for_ranks(groups)).pvalue
 
 
 DESCRIBED = {
