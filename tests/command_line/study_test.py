@@ -136,7 +136,7 @@ class Simulated(Study):
         again = subprocess.run([PROGRAM, *words, "--no-recording"], capture_output=True, text=True)
         self.assertIn(trial["state_hash"], again.stdout)
 
-        if importlib.util.find_spec("statsmodels"):
+        if importlib.util.find_spec("jinja2"):
             self.study("report")
             for name, begin in (("report.html", "<h1>Simulated people"), ("report.tex", "% THE PEOPLE OF THIS")):
                 self.assertIn(begin, (self.out / name).read_text())

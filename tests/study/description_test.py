@@ -5,6 +5,7 @@ import itertools
 import pathlib
 import tempfile
 import unittest
+import warnings
 
 import numpy as np
 import without_compiled_part  # noqa: F401
@@ -171,6 +172,22 @@ class Faults(unittest.TestCase):
             for message in ("study.yaml", *messages):
                 self.assertIn(message, str(caught.exception))
             self.assertEqual(len(str(caught.exception).splitlines()), 1)
+
+    def test_too_few_people_for_ranks(self):
+        ranks = STUDY.replace("outcome: peak_force_N}", "outcome: peak_force_N, test: wilcoxon}")
+        fewest = ranks.replace("participants: 16", "participants: 6")
+        self.assertEqual(planning.problems_of(load(fewest)), [])  # 2 / 2^6 < 0.05
+        self.assertIn("peak_force_N: signed ranks of 6 people cannot give p below 0.03125", planning.problems_of(
+            load(fewest.replace("analysis:", "analysis:\n  alpha: 0.01"))))
+        groups = ranks.replace("within, order: williams, participants: 16", "between, participants: 6")
+        groups = groups.replace("wilcoxon", "mann_whitney").replace("sus, after: end", "sus")
+        self.assertIn("peak_force_N: ranks of 6 people cannot give p below 0.1", planning.problems_of(load(groups)))
+
+    def test_power_of_too_few_people_warns_of_nothing(self):
+        groups = STUDY.replace("within, order: williams, participants: 16", "between, participants: 2")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(planning.power(load(groups), [2], 10)[0].by_count[2][0], 0)
 
     def test_conditions_that_are_the_same(self):
         self.assertIn("conditions light and heavy are the same",

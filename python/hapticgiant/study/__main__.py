@@ -22,7 +22,7 @@ if not __package__:
     sys.modules["hapticgiant"] = _package
 
 NEEDED = {"yaml": "pyyaml", "numpy": "numpy", "scipy": "scipy"}
-NEEDED_BY_REPORT = {"statsmodels": "statsmodels", "matplotlib": "matplotlib", "jinja2": "jinja2"}
+NEEDED_BY_REPORT = {"matplotlib": "matplotlib", "jinja2": "jinja2"}
 
 
 def positive(text):
