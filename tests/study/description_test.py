@@ -9,7 +9,7 @@ import warnings
 
 import numpy as np
 import without_compiled_part  # noqa: F401
-from hapticgiant.study import description, expressions, order, people, planning, questionnaires
+from hapticgiant.study import description, expressions, folder, order, people, planning, questionnaires, trials
 from hapticgiant.sweep.reader import StudyError
 
 STUDY = """\
@@ -94,12 +94,18 @@ class Expressions(unittest.TestCase):
     def test_nothing_else_of_python_can_be_written(self):
         for text in ("__import__('os')", "().__class__", "(lambda: 1)()", "[1][0]", "x if 1 else 2", "'a'", "f(x=1)",
                      "max(x, key=1)", "{1}", "x := 1", "max.__class__(1)", "open('a')", "1 if", "x[0:1]", "x['a']",
-                     "event(x)", "True", "+".join(["1"] * 900), "-" * 200 + "1", "(" * 400, "1j"):
+                     "event(x)", "True", "max(x, x)", "sqrt(x, x)", "sum(abs(x, x))", "rms(x, x)", "+".join(["1"] * 900), "-" * 200 + "1", "(" * 400, "1j"):
             with self.assertRaises(expressions.ExpressionError, msg=text):
                 self.value(text, x=[1])
 
     def test_huge_numbers_end_at_once(self):
         self.assertEqual(self.value("9 ** 9 ** 9"), np.inf)
+
+    def test_columns_stay_as_they_were_recorded(self):
+        columns = {name: np.array(values) for name, values in (("x", [-1.0, 2]), ("y", [0.0, 0]))}
+        with self.assertRaisesRegex(expressions.ExpressionError, "abs: expected 1 argument, got 2"):
+            expressions.evaluate(expressions.parse("max(abs(x, y))"), expressions.Trial(columns))
+        np.testing.assert_array_equal(columns["y"], [0, 0])
 
     def test_a_value_per_sample_is_no_measure(self):
         with self.assertRaisesRegex(expressions.ExpressionError, "value per sample"):
@@ -165,6 +171,12 @@ class Faults(unittest.TestCase):
                 ("peak_force_N: {light", "peak_force: {light", ":20:", "did you mean 'peak_force_N'"),
                 ("nasa_tlx", "nasa_tls", ":7:", "did you mean 'nasa_tlx'"),
                 ("peak_force_N: {}", "peak_force: {}", ":10:", "did you mean 'peak_force_N'"),
+                ("trial: peak_force_N > 1000", "trial: duration() > 1", ":13:", "duration() is of the samples of a trial: make it"),
+                ("trial: peak_force_N > 1000", "trial: half - event('locked') > 1", ":13:", "event() is of the samples"),
+                ("trial: peak_force_N > 1000", "trial: path_length(half)", ":13:", "exclusion.trial: path_length"),
+                ("  half:", "  excluded:", ":11:", "is the name of a column of trials.csv"),
+                ("  half:", "  recording_sha256:", ":11:", "is the name of a column of trials.csv"),
+                ("  half:", "  tlx:", ":11:", "is the name of a questionnaire"),
                 ("measures:", "measure:", ":9:", "did you mean 'measures'")):
             self.assertIn(old, STUDY)
             with self.assertRaises(StudyError) as caught:
@@ -172,6 +184,22 @@ class Faults(unittest.TestCase):
             for message in ("study.yaml", *messages):
                 self.assertIn(message, str(caught.exception))
             self.assertEqual(len(str(caught.exception).splitlines()), 1)
+
+    def test_a_measure_without_a_value_leaves_no_trial_out(self):
+        study = load(STUDY.replace("trial: peak_force_N > 1000", "trial: peak_force_N - half"))
+        self.assertEqual(trials.excluded(study, {"peak_force_N": 2.0, "half": 1.0}, 0), "too strong")
+        self.assertEqual(trials.excluded(study, {"peak_force_N": None, "half": 1.0}, 0), "")
+        self.assertEqual(trials.excluded(study, {"peak_force_N": 1.0, "half": 1.0}, 0), "")
+
+    def test_the_columns_of_trials_are_those_that_no_measure_may_have(self):
+        study = load(STUDY)
+        with tempfile.TemporaryDirectory() as path:
+            there = folder.Folder(study, path)
+            (pathlib.Path(path) / "sub-P01").mkdir()
+            (pathlib.Path(path) / "sub-P01" / "a_trial.json").write_text(trials.dump({
+                "position": 1, "condition": "light", "repetition": 1, "measures": dict.fromkeys(study.measures, 1.0),
+                "exit_code": 0, "state_hash": "", "recording_sha256": "", "recording": None}))
+            self.assertEqual(set(there.rows()["trials"][0]), {*description.TRIAL_COLUMNS, *study.measures})
 
     def test_too_few_people_for_ranks(self):
         ranks = STUDY.replace("outcome: peak_force_N}", "outcome: peak_force_N, test: wilcoxon}")

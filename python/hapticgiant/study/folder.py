@@ -206,13 +206,11 @@ class Folder:
         return found
 
     def _participant_excluded(self, count, excluded_trials):
-        import numpy as np
-
         from hapticgiant.study import expressions
 
-        known = expressions.Trial({"trials": np.float64(count), "excluded_trials": np.float64(excluded_trials)})
+        known = {"trials": count, "excluded_trials": excluded_trials}
         return next((each.why for each in self.study.exclusions if each.kind == "participant"
-                     and expressions.evaluate(expressions.parse(each.expression), known)), "")
+                     and expressions.is_true(each.expression, known)), "")
 
     def tabulate(self) -> list[pathlib.Path]:
         """Writes tables, data dictionary, what is stored, and hashes. Parquet where pyarrow is installed."""

@@ -79,6 +79,8 @@ def measure(study: Study, program: Program, outcome: Outcome, folder: pathlib.Pa
     columns = _read_table(table.with_suffix(".csv"))
     is_felt = columns["mode"] == RUNNING
     columns = {name: values[is_felt] for name, values in columns.items()}
+    for values in columns.values():
+        values.setflags(write=False)
     events = [(event["time_s"], event["name"]) for event in summary["events"]]
     trial = expressions.Trial(columns, events, _numbers(summary))
     measures = {}
@@ -122,11 +124,9 @@ def _numbers(summary):
 
 def excluded(study: Study, measures: dict[str, float], exit_code: int) -> str:
     """Why a trial is left out; empty: it counts."""
-    known = {**{name: np.float64(np.nan if value is None else value) for name, value in measures.items()},
-             "exit_code": np.float64(exit_code)}
+    known = {**{name: np.nan if value is None else value for name, value in measures.items()}, "exit_code": exit_code}
     for each in study.exclusions:
-        if each.kind == "trial" and expressions.evaluate(expressions.parse(each.expression),
-                                                         expressions.Trial(known)):
+        if each.kind == "trial" and expressions.is_true(each.expression, known):
             return each.why
     return ""
 
