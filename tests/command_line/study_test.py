@@ -156,7 +156,8 @@ class Simulated(Study):
         self.hashes_are_right()
         self.study("simulate", "--participants", 2)  # the code is not given to anybody else
         self.assertFalse((self.out / "sub-P01").exists())
-        self.assertIn("did you mean 'P02'", self.study("forget", "P01", code=2)[1])
+        self.assertIn("P01: 0 files deleted", self.study("forget", "P01")[0])
+        self.assertIn("did you mean 'P02'", self.study("forget", "P03", code=2)[1])
 
     def test_a_killed_study_continues_and_nothing_is_written_twice(self):
         process = subprocess.Popen([PROGRAM, "study", "simulate", self.file, "--jobs", "1"],

@@ -201,6 +201,34 @@ class Faults(unittest.TestCase):
                 "exit_code": 0, "state_hash": "", "recording_sha256": "", "recording": None}))
             self.assertEqual(set(there.rows()["trials"][0]), {*description.TRIAL_COLUMNS, *study.measures})
 
+    def test_one_is_forgotten_although_the_study_has_changed(self):
+        with tempfile.TemporaryDirectory() as path:
+            file = pathlib.Path(path) / "study.yaml"
+            file.write_text(STUDY)
+            there = folder.Folder(study := description.load_study(file))
+            there.begin("1", True)
+            for code in ("P01", "P02"):
+                for step in planning.steps(study, planning.Participant(code, ("light", "heavy"))):
+                    if step.kind == "form":
+                        answers, pairs = people.answers_of(study, code, step.form, step.condition)
+                        there.write(there.file_of(code, step), trials.dump({
+                            "condition": step.condition, "form": step.form, "answers": answers, "pairs": pairs}))
+            there.tabulate()
+            there._lock.close()
+            out = file.with_suffix(".study")
+            partial, running = out / "sub-P02" / ".sub-P01_trial.json.77", out / ".running" / "3" / "P01"
+            running.mkdir(parents=True)
+            partial.write_text("")
+            for old, new in (("  tlx: {kind: nasa_tlx, weighted: true}\n", ""), ("kind: within", "kind: wthin")):
+                file.write_text(STUDY.replace(old, new))
+                there = folder.Folder.as_it_was(file, None)
+                self.assertEqual(there.forget("P01"), 3 if new == "" else 0)  # the second time it finishes
+                self.assertNotIn("P01,", (out / "answers.csv").read_text())
+                self.assertIn("P02,light,tlx", (out / "answers.csv").read_text())
+                self.assertFalse(partial.exists() or running.exists() or (out / "sub-P01").exists())
+                (out / "answers.csv").write_text("P01,")
+                there._lock.close()
+
     def test_too_few_people_for_ranks(self):
         ranks = STUDY.replace("outcome: peak_force_N}", "outcome: peak_force_N, test: wilcoxon}")
         fewest = ranks.replace("participants: 16", "participants: 6")

@@ -154,6 +154,11 @@ def run(arguments):
     from hapticgiant.sweep.campaign import explained
     from hapticgiant.sweep.program import find_program
 
+    if arguments.command == "forget":
+        count = Folder.as_it_was(arguments.study, arguments.out).forget(arguments.code)
+        print(f"{arguments.code}: {count} files deleted, tables made anew; reports of before are deleted: "
+              f"hapticgiant study report {arguments.study}")
+        return 0
     study = description.load_study(arguments.study)
     if arguments.command == "plan":
         return show_plan(study, arguments.participant)
@@ -164,11 +169,6 @@ def run(arguments):
               end="")
         return 0
     folder = Folder(study, arguments.out)
-    if arguments.command == "forget":
-        count = folder.forget(arguments.code)
-        print(f"{arguments.code}: {count} files deleted, tables made anew; reports of before are deleted: "
-              f"hapticgiant study report {arguments.study}")
-        return 0
     if arguments.command == "report":
         from hapticgiant.study import report
 
