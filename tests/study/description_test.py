@@ -3,6 +3,7 @@
 import collections
 import itertools
 import pathlib
+import re
 import tempfile
 import unittest
 import warnings
@@ -228,6 +229,15 @@ class Faults(unittest.TestCase):
                 self.assertFalse(partial.exists() or running.exists() or (out / "sub-P01").exists())
                 (out / "answers.csv").write_text("P01,")
                 there._lock.close()
+
+    def test_an_index_beyond_the_end_of_a_column(self):
+        known = {"robot.w_h": True, "joint.q": True, "cycle": False}
+        trials.require_columns(load(STUDY.replace("  peak_force_N: {}\n", "  peak_force_N: {}\n  q: {expression: 'max(joint.q[6])'}\n")),
+                               known)
+        for column, message in (("robot.w_h[6]", "the indices 0 to 5"), ("robot.w_h", "as 'robot.w_h[0]'"),
+                                ("cycle[0]", "without an index"), ("robot.w_j[0]", "did you mean 'robot.w_h'")):
+            with self.assertRaisesRegex(StudyError, f":11:.*measures.half: .*{re.escape(message)}"):
+                trials.require_columns(load(STUDY.replace("robot.w_h[0]", column)), known)
 
     def test_too_few_people_for_ranks(self):
         ranks = STUDY.replace("outcome: peak_force_N}", "outcome: peak_force_N, test: wilcoxon}")

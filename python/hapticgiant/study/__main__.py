@@ -86,7 +86,7 @@ def show_plan(study, code):
 
 
 def check(study, arguments):
-    from hapticgiant.study import expressions, planning, simulation, trials
+    from hapticgiant.study import planning, simulation, trials
     from hapticgiant.sweep.campaign import explained
     from hapticgiant.sweep.program import find_program
 
@@ -95,15 +95,7 @@ def check(study, arguments):
     print(f"{study.title}: {design.participants} participants, {len(study.conditions)} conditions {design.kind} "
           f"people, {design.repetitions} trials of each, order {design.order}")
     program = find_program()
-    known = trials.known_columns(program)
-    for name, measure in study.measures.items():
-        for column in expressions.names_of(expressions.parse(measure.expression)):
-            if column.partition("[")[0] not in known:
-                from hapticgiant.sweep.reader import StudyError, nearest
-
-                near = nearest(column.partition("[")[0], known)
-                raise StudyError(f"{study.place(f'measures.{name}')}: measures.{name}: no column is called '{column}', "
-                                 f"did you mean '{near}'?")
+    trials.require_columns(study, trials.known_columns(program))
     if not arguments.no_trials:
         with tempfile.TemporaryDirectory(prefix="hapticgiant_study_") as work:
             try:
