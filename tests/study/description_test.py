@@ -95,7 +95,8 @@ class Expressions(unittest.TestCase):
     def test_nothing_else_of_python_can_be_written(self):
         for text in ("__import__('os')", "().__class__", "(lambda: 1)()", "[1][0]", "x if 1 else 2", "'a'", "f(x=1)",
                      "max(x, key=1)", "{1}", "x := 1", "max.__class__(1)", "open('a')", "1 if", "x[0:1]", "x['a']",
-                     "event(x)", "True", "max(x, x)", "sqrt(x, x)", "sum(abs(x, x))", "rms(x, x)", "+".join(["1"] * 900), "-" * 200 + "1", "(" * 400, "1j"):
+                     "event(x)", "True",
+                     "max(x, x)", "sqrt(x, x)", "sum(abs(x, x))", "rms(x, x)", "+".join(["1"] * 900), "-" * 200 + "1", "(" * 400, "1j"):
             with self.assertRaises(expressions.ExpressionError, msg=text):
                 self.value(text, x=[1])
 
@@ -172,7 +173,8 @@ class Faults(unittest.TestCase):
                 ("peak_force_N: {light", "peak_force: {light", ":20:", "did you mean 'peak_force_N'"),
                 ("nasa_tlx", "nasa_tls", ":7:", "did you mean 'nasa_tlx'"),
                 ("peak_force_N: {}", "peak_force: {}", ":10:", "did you mean 'peak_force_N'"),
-                ("trial: peak_force_N > 1000", "trial: duration() > 1", ":13:", "duration() is of the samples of a trial: make it"),
+                ("trial: peak_force_N > 1000", "trial: duration() > 1", ":13:",
+                 "duration() is of the samples of a trial: make it"),
                 ("trial: peak_force_N > 1000", "trial: half - event('locked') > 1", ":13:", "event() is of the samples"),
                 ("trial: peak_force_N > 1000", "trial: path_length(half)", ":13:", "exclusion.trial: path_length"),
                 ("  half:", "  excluded:", ":11:", "is the name of a column of trials.csv"),
@@ -230,10 +232,15 @@ class Faults(unittest.TestCase):
                 (out / "answers.csv").write_text("P01,")
                 there._lock.close()
 
+    def test_carry_over_is_told_as_a_count(self):
+        text = STUDY.replace("  heavy:", "  middle: {twin.mass_scale: 1.5}\n  heavy:").replace("order: williams", "order: latin_square")
+        text = text.replace("{light: 10,", "{light: 10, middle: 10,").replace("participants: 16", "participants: 3")
+        self.assertRegex(planning.notes_of(load(text))[0], "^one condition follows another 2 times more often than it follows a third")
+
     def test_an_index_beyond_the_end_of_a_column(self):
         known = {"robot.w_h": True, "joint.q": True, "cycle": False}
-        trials.require_columns(load(STUDY.replace("  peak_force_N: {}\n", "  peak_force_N: {}\n  q: {expression: 'max(joint.q[6])'}\n")),
-                               known)
+        trials.require_columns(load(STUDY.replace("  peak_force_N: {}\n", "  peak_force_N: {}\n  q: {expression: 'max(joint.q[6])'}\n"
+                                                  )), known)
         for column, message in (("robot.w_h[6]", "the indices 0 to 5"), ("robot.w_h", "as 'robot.w_h[0]'"),
                                 ("cycle[0]", "without an index"), ("robot.w_j[0]", "did you mean 'robot.w_h'")):
             with self.assertRaisesRegex(StudyError, f":11:.*measures.half: .*{re.escape(message)}"):
