@@ -173,7 +173,9 @@ void run(const Arguments& arguments) {
                           {"torque_Nm", problem.requirements.torque},
                           {"moving_mass_kg", problem.requirements.moving_mass},
                           {"price", problem.requirements.price},
-                          {"clear_share", problem.requirements.clear_share}};
+                          {"clear_share", problem.requirements.clear_share},
+                          {"clearance_m", problem.requirements.clearance},
+                          {"walk_m2", problem.requirements.walk_area}};
   json["chosen"] = {{"variables", search::to_json(problem, chosen)},
                     {"score", search::to_json(score)}};
   json["base"] = {{"name", problem.base.device.name},

@@ -6,31 +6,58 @@
 #include <mutex>
 #include <pagmo/algorithm.hpp>
 #include <pagmo/algorithms/gaco.hpp>
-#include <pagmo/algorithms/ihs.hpp>
 #include <pagmo/algorithms/nsga2.hpp>
 #include <pagmo/algorithms/sga.hpp>
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
 #include <pagmo/utils/multi_objective.hpp>
+#include <system_error>
 #include <thread>
 #include <tuple>
 #include <utility>
+
+#include "hg/core/error.h"
 
 namespace hg::search {
 namespace {
 
 constexpr unsigned kEpochs = 10;  // exchanges between islands
 
-// The problem as pagmo wants it.
+// The problem as pagmo wants it: without variables that are kept, which its algorithms refuse.
 struct UserProblem {
   Problem problem;
 
-  pagmo::vector_double fitness(const pagmo::vector_double& x) const { return problem.evaluate(x); }
+  bool is_free(std::size_t i) const { return problem.lower[i] < problem.upper[i]; }
+  pagmo::vector_double reduced(const pagmo::vector_double& x) const {
+    pagmo::vector_double result;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (is_free(i)) result.push_back(x[i]);
+    }
+    return result;
+  }
+  pagmo::vector_double full(const pagmo::vector_double& x) const {
+    pagmo::vector_double result = problem.lower;
+    auto next = x.begin();
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      if (is_free(i)) result[i] = *next++;
+    }
+    return result;
+  }
+
+  pagmo::vector_double fitness(const pagmo::vector_double& x) const {
+    return problem.evaluate(full(x));
+  }
   std::pair<pagmo::vector_double, pagmo::vector_double> get_bounds() const {
-    return {problem.lower, problem.upper};
+    return {reduced(problem.lower), reduced(problem.upper)};
   }
   pagmo::vector_double::size_type get_nobj() const { return problem.objectives; }
-  pagmo::vector_double::size_type get_nix() const { return problem.integers; }
+  pagmo::vector_double::size_type get_nix() const {
+    pagmo::vector_double::size_type count = 0;
+    for (std::size_t i = problem.lower.size() - problem.integers; i < problem.lower.size(); ++i) {
+      count += is_free(i) ? 1 : 0;
+    }
+    return count;
+  }
   pagmo::thread_safety get_thread_safety() const { return pagmo::thread_safety::constant; }
   // pagmo wants it of every problem; islands are never sent anywhere
   template <class Archive>
@@ -49,16 +76,13 @@ pagmo::algorithm make(Algorithm algorithm, unsigned generations, unsigned popula
                       unsigned seed) {
   switch (algorithm) {
     case Algorithm::kGenetic:
-      return pagmo::algorithm(pagmo::sga(generations, 0.9, 15.0, 0.1, 20.0, 3, "sbx", "polynomial",
-                                         "tournament", seed));
+      break;
     case Algorithm::kAntColony:
       return pagmo::algorithm(pagmo::gaco(generations, std::min(13u, population), 1.0, 0.0, 0.01, 1,
                                           7, 100'000, 100'000, 0.0, false, seed));
-    case Algorithm::kHarmony:
-      break;
   }
-  // one evaluation per generation: as many evaluations as the others have
-  return pagmo::algorithm(pagmo::ihs(generations * population, 0.85, 0.35, 0.99, 1e-5, 1.0, seed));
+  return pagmo::algorithm(
+      pagmo::sga(generations, 0.9, 15.0, 0.1, 20.0, 3, "sbx", "polynomial", "tournament", seed));
 }
 
 // Runs all tasks on some threads; throws what a task threw, the first by number.
@@ -75,7 +99,12 @@ void in_parallel(unsigned workers, std::size_t tasks, const std::function<void(s
     }
   };
   std::vector<std::thread> threads;
-  for (unsigned i = 1; i < workers; ++i) threads.emplace_back(work);
+  const std::size_t most = std::min<std::size_t>(workers, tasks);
+  try {
+    while (threads.size() + 1 < most) threads.emplace_back(work);
+  } catch (const std::system_error&) {
+    // fewer threads than wanted do the same
+  }
   work();
   for (std::thread& thread : threads) thread.join();
   for (const std::exception_ptr& error : errors) {
@@ -91,7 +120,8 @@ std::vector<pagmo::population> first_populations(const Problem& problem, const O
         i == 0 ? std::min<std::size_t>(options.start.size(), options.population) : 0;
     islands[i] = pagmo::population(pagmo::problem(UserProblem{problem}), options.population - given,
                                    seed_of(options.seed, island, 0));
-    for (std::size_t k = 0; k < given; ++k) islands[i].push_back(options.start[k]);
+    for (std::size_t k = 0; k < given; ++k)
+      islands[i].push_back(UserProblem{problem}.reduced(options.start[k]));
   });
   return islands;
 }
@@ -110,6 +140,10 @@ void exchange(std::vector<pagmo::population>& islands) {
   }
 }
 
+void refuse_without_choice(const Problem& problem) {
+  if (problem.lower == problem.upper) throw SetupError("design: no variable is free");
+}
+
 }  // namespace
 
 std::string to_string(Algorithm algorithm) {
@@ -118,14 +152,13 @@ std::string to_string(Algorithm algorithm) {
       return "sga";
     case Algorithm::kAntColony:
       return "gaco";
-    case Algorithm::kHarmony:
-      return "ihs";
   }
   return "unknown";
 }
 
 Best minimise(const Problem& problem, const std::vector<Algorithm>& algorithms,
               const Options& options) {
+  refuse_without_choice(problem);
   std::vector<pagmo::population> islands = first_populations(problem, options);
   const unsigned generations = std::max(1u, options.generations / kEpochs);
   Best best;
@@ -143,7 +176,7 @@ Best minimise(const Problem& problem, const std::vector<Algorithm>& algorithms,
       best.progress.push_back({to_string(algorithm_of(i)), static_cast<int>(i),
                                islands[i].get_problem().get_fevals(), value});
       if (!best.x.empty() && value >= best.value) continue;
-      best.x = islands[i].get_x()[index];
+      best.x = UserProblem{problem}.full(islands[i].get_x()[index]);
       best.value = value;
       best.algorithm = to_string(algorithm_of(i));
     }
@@ -154,6 +187,7 @@ Best minimise(const Problem& problem, const std::vector<Algorithm>& algorithms,
 }
 
 std::vector<FrontPoint> front(const Problem& problem, const Options& options) {
+  refuse_without_choice(problem);
   std::vector<pagmo::population> islands = first_populations(problem, options);
   const unsigned generations = std::max(1u, options.generations / kEpochs);
   for (unsigned epoch = 1; epoch <= kEpochs; ++epoch) {
@@ -170,7 +204,9 @@ std::vector<FrontPoint> front(const Problem& problem, const Options& options) {
     points.insert(points.end(), island.get_x().begin(), island.get_x().end());
   }
   std::vector<FrontPoint> result;
-  const auto add = [&](std::size_t i) { result.push_back({points[i], values[i]}); };
+  const auto add = [&](std::size_t i) {
+    result.push_back({UserProblem{problem}.full(points[i]), values[i]});
+  };
   if (values.size() < 2) {
     add(0);
     return result;

@@ -24,8 +24,8 @@ struct Problem {
   std::function<std::vector<double>(const Point&)> evaluate;
 };
 
-/// Algorithms for one objective; kGenetic is pagmo's sga, kAntColony its gaco, kHarmony its ihs.
-enum class Algorithm { kGenetic, kAntColony, kHarmony };
+/// Algorithms for one objective; kGenetic is pagmo's sga, kAntColony its gaco.
+enum class Algorithm { kGenetic, kAntColony };
 
 std::string to_string(Algorithm algorithm);
 

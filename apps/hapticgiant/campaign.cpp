@@ -56,6 +56,16 @@ std::map<std::size_t, json> results_in(const fs::path& folder) {
   return results;
 }
 
+// A folder may have a study of another kind, written by hand.
+void refuse_other_study(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return;
+  std::ifstream text(file);
+  const json study = json::parse(text, nullptr, false);
+  if (study.is_object() && study.contains("command") && study.contains("parts")) return;
+  throw SetupError(file.string() + ": is another study; --sweep needs a folder of its own");
+}
+
 std::vector<std::string> sweep_program() {
   setenv("HAPTICGIANT_PROGRAM", fs::read_symlink("/proc/self/exe").c_str(), 1);  // plays the runs
   return python_program("sweep");
@@ -96,6 +106,7 @@ bool play_campaign(const Campaign& campaign, const CampaignOptions& options) {
   fs::create_directories(folder, error);
   if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
   const fs::path study = folder / "study.yaml";
+  refuse_other_study(study);
   json files = json::array();
   for (const config::Scenario& it : campaign.scenarios) {
     files.push_back(scenario::hash_of(it.sources));

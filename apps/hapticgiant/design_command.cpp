@@ -304,6 +304,15 @@ void add_person(CLI::App& command, DesignArguments& arguments) {
       ->capture_default_str();
 }
 
+// `design FILE --out arm` is no `design arm`.
+void refuse_search_words(const CLI::App& design) {
+  if (design.remaining().empty()) return;
+  throw SetupError(
+      fmt::format("design: '{}' before 'arm' or 'measure'; where it is the file of a problem, give "
+                  "its folder another name, such as ./arm",
+                  design.remaining().front()));
+}
+
 }  // namespace
 
 void add_design(CLI::App& app) {
@@ -334,7 +343,10 @@ void add_design(CLI::App& app) {
   arm->add_option("--picture", arguments->picture,
                   "draw reach, speeds and ranges of the joints to this SVG file");
   arm->footer("Example:\n  hapticgiant design arm --person female,5 --picture arm.svg");
-  arm->callback([arguments] { run_arm(*arguments); });
+  arm->callback([arguments, command] {
+    refuse_search_words(*command);
+    run_arm(*arguments);
+  });
 
   CLI::App* measure = command->add_subcommand(
       "measure", "How well a device serves a person's arm: coverage, force, mass, first mode.");
@@ -359,7 +371,10 @@ void add_design(CLI::App& app) {
       "Examples:\n"
       "  hapticgiant design measure haptic_giant\n"
       "  hapticgiant design measure my_device.yaml --person female,5 --json measures.json");
-  measure->callback([arguments] { run_measure(*arguments); });
+  measure->callback([arguments, command] {
+    refuse_search_words(*command);
+    run_measure(*arguments);
+  });
 }
 
 }  // namespace hg::apps

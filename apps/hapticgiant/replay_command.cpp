@@ -47,7 +47,10 @@ void play(page::RecordingPage& show, viewer_server::ViewerServer& server,
     const auto now = Clock::now();
     show.advance(std::chrono::duration<double>(now - std::exchange(last, now)).count());
     if (server.is_due()) server.publish(show.view());
-    if (!server.has_live_clients()) continue;
+    if (!server.has_live_clients()) {
+      show.forget_live();
+      continue;
+    }
     live::Batch batch = show.live_batch(server.live_wanted());
     if (!batch.messages.empty()) server.publish_live(std::move(batch));
   }

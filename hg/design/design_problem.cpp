@@ -17,7 +17,8 @@ namespace {
 
 using config::Need;
 
-constexpr double kFaultViolation = 10.0;  // of variables that make no device
+// Of variables that make no device; a requirement counts 1 at most.
+constexpr double kFaultViolation = 10.0;
 
 constexpr std::array<config::Choice<Sex>, 2> kSexes = {
     {{"female", Sex::kFemale}, {"male", Sex::kMale}}};
@@ -55,6 +56,7 @@ void read_search(config::Loader& loader, SearchOptions& out) {
   whole("population", out.population, 8, 2000, "candidates per island");
   loader.rule(out.population % 4 == 0, "population", "must be a multiple of 4");
   whole("generations", out.generations, 10, 10000, "of each island");
+  loader.rule(out.generations % 10 == 0, "generations", "must be a multiple of 10");
   whole("islands", out.islands, 1, 64, "that exchange their best");
   whole("poses", out.poses, 20, 100000, "of the hand that each candidate is judged with");
   whole("seed", out.seed, 0, 1000000000, "the same seed gives the same design");
@@ -106,6 +108,9 @@ DesignProblem load_problem(const std::filesystem::path& path) {
                                  terms = names_of(kTerms);
   load_file(file, [&](config::Loader& loader) {
     loader.words("name", name, "name of the device", Need::kRequired);
+    const bool is_plain = name.find_first_of("\"\\\n\r<>&") == std::string::npos &&
+                          name.find("--") == std::string::npos;
+    loader.rule(is_plain, "name", "must be one line without \" \\ < > & and --");
     loader.path("base", base, "device whose structure is kept", Need::kRequired);
     loader.path("catalogue", catalogue, "joint sizes", Need::kRequired);
     std::size_t count = 0;
@@ -213,9 +218,13 @@ DesignScore Judge::operator()(const DesignVariables& variables) const {
       sum += problem_.weights[i];
     }
     score.capability /= sum;
-    score.violation = force + torque + excess(score.moving_mass, needed.moving_mass) +
-                      excess(score.price, needed.price) +
-                      missing(score.clear_share, needed.clear_share);
+    score.violation = 0.0;
+    for (const double broken :
+         {force, torque, excess(score.moving_mass, needed.moving_mass),
+          excess(score.price, needed.price), missing(score.clear_share, needed.clear_share),
+          missing(walk, needed.walk_area)}) {
+      score.violation += std::min(1.0, broken);
+    }
   } catch (const SetupError& error) {
     score.fault = error.what();
     score.violation = kFaultViolation;

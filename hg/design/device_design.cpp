@@ -250,6 +250,12 @@ DesignBase load_base(const std::filesystem::path& device, const Catalogue& catal
   base.texts.push_back({base.device.simulation_file.generic_string(), simulation});
 
   base.variables.lengths = model::haptic_giant::lengths_of(model.chain, model.handle);
+  const model::haptic_giant::Lengths reference;
+  const model::haptic_giant::Lengths& lengths = base.variables.lengths;
+  if (lengths.L1 != reference.L1 || lengths.L2 != reference.L2 || lengths.D3 != reference.D3 ||
+      lengths.L4 != reference.L4 || lengths.D6 != reference.D6) {
+    refuse("must have the links of models/haptic_giant, whose masses are known");
+  }
   base.variables.mount_height = -base.device.floor_z;
   for (int i = 0; i < kDesignJoints; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -337,7 +343,7 @@ DeviceDesign make_device(const DesignBase& base, const Catalogue& catalogue,
   device.set("virtual_joints[0].ddq_max_rad_per_s2",
              std::min(sum.ddq_max, three_digits(ddq_max[3] + ddq_max[4])));
 
-  constexpr double kLowest = 0.02, kHighest = 0.01;  // m of reserve at the ends of the height
+  constexpr double kLowest = 0.02, kHighest = 0.01;  // m; the box ends there, as the base's
   for (int k = 0; k < 2; ++k) {
     const CartesianLimit& limit = old.cartesian_limits[static_cast<std::size_t>(k)];
     const std::string item = fmt::format("cartesian_limits[{}].", k);

@@ -39,6 +39,8 @@ class RecordingPage {
   /// by a jump; none while both sample and `wanted` are those of the last call. Their times are
   /// those of the recording: they go back where the playback does.
   live::Batch live_batch(const live::Wanted& wanted);
+  /// The next live_batch() has the present sample in any case: all clients have gone.
+  void forget_live() { wanted_.reset(); }
   /// The URDFs, for each client that comes.
   std::vector<live::Message> live_descriptions();
   /// Executes a command; returns the reason for a refusal, empty = executed.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/design/optimiser.h"
+#include "hg/core/error.h"
 #include "hg/design/design_problem.h"
 
 namespace hg::search {
@@ -95,6 +96,26 @@ TEST(Search, TheFrontOfASeedIsTheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(one[i].x, two[i].x);
     EXPECT_EQ(one[i].values, two[i].values);
   }
+}
+
+TEST(Search, AVariableWithEqualBoundsIsKept) {
+  Problem one = grid().problem(1), two = grid().problem(2);
+  for (Problem* problem : {&one, &two}) {
+    problem->lower[0] = problem->upper[0] = 2.0;
+    problem->lower[3] = problem->upper[3] = 1.0;
+  }
+  const Best best = minimise(one, {Algorithm::kGenetic, Algorithm::kAntColony}, options(1));
+  ASSERT_EQ(best.x.size(), 4u);
+  EXPECT_EQ(best.x[0], 2.0);
+  EXPECT_EQ(best.x[3], 1.0);
+  EXPECT_EQ(best.value, grid()(best.x)[0]);
+  for (const FrontPoint& point : front(two, options(1))) {
+    ASSERT_EQ(point.x.size(), 4u);
+    EXPECT_EQ(point.x[0], 2.0);
+    EXPECT_EQ(point.x[3], 1.0);
+  }
+  one.upper = one.lower;
+  EXPECT_THROW(minimise(one, {Algorithm::kGenetic}, options(1)), SetupError);
 }
 
 TEST(Search, NoPointOfTheFrontBeatsAnother) {

@@ -14,7 +14,7 @@ TERMS = {"pose": "poses", "velocity": "speed", "turn_velocity": "speed of turnin
          "acceleration": "acceleration", "turn_acceleration": "acceleration of turning",
          "force": "force", "torque": "torque", "walk": "room to walk"}
 LENGTHS = ("L1", "L2", "D3", "L4", "D6", "gantry_x", "gantry_y", "mount_height")
-COLOURS = {"sga": "#1f77b4", "gaco": "#ff7f0e", "ihs": "#2ca02c"}
+COLOURS = {"sga": "#1f77b4", "gaco": "#ff7f0e"}
 CELL = 0.1  # m, of the maps
 CHOSEN, BASE = "#d62728", "#555555"
 
