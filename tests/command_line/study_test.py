@@ -136,7 +136,7 @@ class Simulated(Study):
         again = subprocess.run([PROGRAM, *words, "--no-recording"], capture_output=True, text=True)
         self.assertIn(trial["state_hash"], again.stdout)
 
-        if importlib.util.find_spec("statsmodels"):
+        if importlib.util.find_spec("jinja2"):
             self.study("report")
             for name, begin in (("report.html", "<h1>Simulated people"), ("report.tex", "% THE PEOPLE OF THIS")):
                 self.assertIn(begin, (self.out / name).read_text())
@@ -156,7 +156,17 @@ class Simulated(Study):
         self.hashes_are_right()
         self.study("simulate", "--participants", 2)  # the code is not given to anybody else
         self.assertFalse((self.out / "sub-P01").exists())
-        self.assertIn("did you mean 'P02'", self.study("forget", "P01", code=2)[1])
+        self.assertIn("P01: 0 files deleted", self.study("forget", "P01")[0])
+        self.assertIn("did you mean 'P02'", self.study("forget", "P03", code=2)[1])
+
+    def test_a_measure_that_fails_is_a_fault_of_its_trial(self):
+        """How many joints there are is a matter of the device."""
+        self.file.write_text(STUDY.replace("event('locked')", "max(sensors.q_m[99])"))
+        out, err = self.study("simulate", "--participants", 1, code=1)
+        self.assertIn("0 trials of simulated people, 4 without a result", out)
+        self.assertIn("P01 light 1: ", err)
+        self.assertIn("no column is called 'sensors.q_m[99]'", err)
+        self.assertEqual(len(self.table("participants")), 1)  # forms are answered all the same
 
     def test_a_killed_study_continues_and_nothing_is_written_twice(self):
         process = subprocess.Popen([PROGRAM, "study", "simulate", self.file, "--jobs", "1"],

@@ -3,12 +3,14 @@
 import collections
 import itertools
 import pathlib
+import re
 import tempfile
 import unittest
+import warnings
 
 import numpy as np
 import without_compiled_part  # noqa: F401
-from hapticgiant.study import description, expressions, order, people, planning, questionnaires
+from hapticgiant.study import description, expressions, folder, order, people, planning, questionnaires, trials
 from hapticgiant.sweep.reader import StudyError
 
 STUDY = """\
@@ -93,12 +95,19 @@ class Expressions(unittest.TestCase):
     def test_nothing_else_of_python_can_be_written(self):
         for text in ("__import__('os')", "().__class__", "(lambda: 1)()", "[1][0]", "x if 1 else 2", "'a'", "f(x=1)",
                      "max(x, key=1)", "{1}", "x := 1", "max.__class__(1)", "open('a')", "1 if", "x[0:1]", "x['a']",
-                     "event(x)", "True", "+".join(["1"] * 900), "-" * 200 + "1", "(" * 400, "1j"):
+                     "event(x)", "True",
+                     "max(x, x)", "sqrt(x, x)", "sum(abs(x, x))", "rms(x, x)", "+".join(["1"] * 900), "-" * 200 + "1", "(" * 400, "1j"):
             with self.assertRaises(expressions.ExpressionError, msg=text):
                 self.value(text, x=[1])
 
     def test_huge_numbers_end_at_once(self):
         self.assertEqual(self.value("9 ** 9 ** 9"), np.inf)
+
+    def test_columns_stay_as_they_were_recorded(self):
+        columns = {name: np.array(values) for name, values in (("x", [-1.0, 2]), ("y", [0.0, 0]))}
+        with self.assertRaisesRegex(expressions.ExpressionError, "abs: expected 1 argument, got 2"):
+            expressions.evaluate(expressions.parse("max(abs(x, y))"), expressions.Trial(columns))
+        np.testing.assert_array_equal(columns["y"], [0, 0])
 
     def test_a_value_per_sample_is_no_measure(self):
         with self.assertRaisesRegex(expressions.ExpressionError, "value per sample"):
@@ -164,6 +173,13 @@ class Faults(unittest.TestCase):
                 ("peak_force_N: {light", "peak_force: {light", ":20:", "did you mean 'peak_force_N'"),
                 ("nasa_tlx", "nasa_tls", ":7:", "did you mean 'nasa_tlx'"),
                 ("peak_force_N: {}", "peak_force: {}", ":10:", "did you mean 'peak_force_N'"),
+                ("trial: peak_force_N > 1000", "trial: duration() > 1", ":13:",
+                 "duration() is of the samples of a trial: make it"),
+                ("trial: peak_force_N > 1000", "trial: half - event('locked') > 1", ":13:", "event() is of the samples"),
+                ("trial: peak_force_N > 1000", "trial: path_length(half)", ":13:", "exclusion.trial: path_length"),
+                ("  half:", "  excluded:", ":11:", "is the name of a column of trials.csv"),
+                ("  half:", "  recording_sha256:", ":11:", "is the name of a column of trials.csv"),
+                ("  half:", "  tlx:", ":11:", "is the name of a questionnaire"),
                 ("measures:", "measure:", ":9:", "did you mean 'measures'")):
             self.assertIn(old, STUDY)
             with self.assertRaises(StudyError) as caught:
@@ -171,6 +187,80 @@ class Faults(unittest.TestCase):
             for message in ("study.yaml", *messages):
                 self.assertIn(message, str(caught.exception))
             self.assertEqual(len(str(caught.exception).splitlines()), 1)
+
+    def test_a_measure_without_a_value_leaves_no_trial_out(self):
+        study = load(STUDY.replace("trial: peak_force_N > 1000", "trial: peak_force_N - half"))
+        self.assertEqual(trials.excluded(study, {"peak_force_N": 2.0, "half": 1.0}, 0), "too strong")
+        self.assertEqual(trials.excluded(study, {"peak_force_N": None, "half": 1.0}, 0), "")
+        self.assertEqual(trials.excluded(study, {"peak_force_N": 1.0, "half": 1.0}, 0), "")
+
+    def test_the_columns_of_trials_are_those_that_no_measure_may_have(self):
+        study = load(STUDY)
+        with tempfile.TemporaryDirectory() as path:
+            there = folder.Folder(study, path)
+            (pathlib.Path(path) / "sub-P01").mkdir()
+            (pathlib.Path(path) / "sub-P01" / "a_trial.json").write_text(trials.dump({
+                "position": 1, "condition": "light", "repetition": 1, "measures": dict.fromkeys(study.measures, 1.0),
+                "exit_code": 0, "state_hash": "", "recording_sha256": "", "recording": None}))
+            self.assertEqual(set(there.rows()["trials"][0]), {*description.TRIAL_COLUMNS, *study.measures})
+
+    def test_one_is_forgotten_although_the_study_has_changed(self):
+        with tempfile.TemporaryDirectory() as path:
+            file = pathlib.Path(path) / "study.yaml"
+            file.write_text(STUDY)
+            there = folder.Folder(study := description.load_study(file))
+            there.begin("1", True)
+            for code in ("P01", "P02"):
+                for step in planning.steps(study, planning.Participant(code, ("light", "heavy"))):
+                    if step.kind == "form":
+                        answers, pairs = people.answers_of(study, code, step.form, step.condition)
+                        there.write(there.file_of(code, step), trials.dump({
+                            "condition": step.condition, "form": step.form, "answers": answers, "pairs": pairs}))
+            there.tabulate()
+            there._lock.close()
+            out = file.with_suffix(".study")
+            partial, running = out / "sub-P02" / ".sub-P01_trial.json.77", out / ".running" / "3" / "P01"
+            running.mkdir(parents=True)
+            partial.write_text("")
+            for old, new in (("  tlx: {kind: nasa_tlx, weighted: true}\n", ""), ("kind: within", "kind: wthin")):
+                file.write_text(STUDY.replace(old, new))
+                there = folder.Folder.as_it_was(file, None)
+                self.assertEqual(there.forget("P01"), 3 if new == "" else 0)  # the second time it finishes
+                self.assertNotIn("P01,", (out / "answers.csv").read_text())
+                self.assertIn("P02,light,tlx", (out / "answers.csv").read_text())
+                self.assertFalse(partial.exists() or running.exists() or (out / "sub-P01").exists())
+                (out / "answers.csv").write_text("P01,")
+                there._lock.close()
+
+    def test_carry_over_is_told_as_a_count(self):
+        text = STUDY.replace("  heavy:", "  middle: {twin.mass_scale: 1.5}\n  heavy:").replace("order: williams", "order: latin_square")
+        text = text.replace("{light: 10,", "{light: 10, middle: 10,").replace("participants: 16", "participants: 3")
+        self.assertRegex(planning.notes_of(load(text))[0], "^one condition follows another 2 times more often than it follows a third")
+
+    def test_an_index_beyond_the_end_of_a_column(self):
+        known = {"robot.w_h": True, "joint.q": True, "cycle": False}
+        trials.require_columns(load(STUDY.replace("  peak_force_N: {}\n", "  peak_force_N: {}\n  q: {expression: 'max(joint.q[6])'}\n"
+                                                  )), known)
+        for column, message in (("robot.w_h[6]", "the indices 0 to 5"), ("robot.w_h", "as 'robot.w_h[0]'"),
+                                ("cycle[0]", "without an index"), ("robot.w_j[0]", "did you mean 'robot.w_h'")):
+            with self.assertRaisesRegex(StudyError, f":11:.*measures.half: .*{re.escape(message)}"):
+                trials.require_columns(load(STUDY.replace("robot.w_h[0]", column)), known)
+
+    def test_too_few_people_for_ranks(self):
+        ranks = STUDY.replace("outcome: peak_force_N}", "outcome: peak_force_N, test: wilcoxon}")
+        fewest = ranks.replace("participants: 16", "participants: 6")
+        self.assertEqual(planning.problems_of(load(fewest)), [])  # 2 / 2^6 < 0.05
+        self.assertIn("peak_force_N: signed ranks of 6 people cannot give p below 0.03125", planning.problems_of(
+            load(fewest.replace("analysis:", "analysis:\n  alpha: 0.01"))))
+        groups = ranks.replace("within, order: williams, participants: 16", "between, participants: 6")
+        groups = groups.replace("wilcoxon", "mann_whitney").replace("sus, after: end", "sus")
+        self.assertIn("peak_force_N: ranks of 6 people cannot give p below 0.1", planning.problems_of(load(groups)))
+
+    def test_power_of_too_few_people_warns_of_nothing(self):
+        groups = STUDY.replace("within, order: williams, participants: 16", "between, participants: 2")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertEqual(planning.power(load(groups), [2], 10)[0].by_count[2][0], 0)
 
     def test_conditions_that_are_the_same(self):
         self.assertIn("conditions light and heavy are the same",

@@ -22,7 +22,7 @@ if not __package__:
     sys.modules["hapticgiant"] = _package
 
 NEEDED = {"yaml": "pyyaml", "numpy": "numpy", "scipy": "scipy"}
-NEEDED_BY_REPORT = {"statsmodels": "statsmodels", "matplotlib": "matplotlib", "jinja2": "jinja2"}
+NEEDED_BY_REPORT = {"matplotlib": "matplotlib", "jinja2": "jinja2"}
 
 
 def positive(text):
@@ -86,7 +86,7 @@ def show_plan(study, code):
 
 
 def check(study, arguments):
-    from hapticgiant.study import expressions, planning, simulation, trials
+    from hapticgiant.study import planning, simulation, trials
     from hapticgiant.sweep.campaign import explained
     from hapticgiant.sweep.program import find_program
 
@@ -95,15 +95,7 @@ def check(study, arguments):
     print(f"{study.title}: {design.participants} participants, {len(study.conditions)} conditions {design.kind} "
           f"people, {design.repetitions} trials of each, order {design.order}")
     program = find_program()
-    known = trials.known_columns(program)
-    for name, measure in study.measures.items():
-        for column in expressions.names_of(expressions.parse(measure.expression)):
-            if column.partition("[")[0] not in known:
-                from hapticgiant.sweep.reader import StudyError, nearest
-
-                near = nearest(column.partition("[")[0], known)
-                raise StudyError(f"{study.place(f'measures.{name}')}: measures.{name}: no column is called '{column}', "
-                                 f"did you mean '{near}'?")
+    trials.require_columns(study, trials.known_columns(program))
     if not arguments.no_trials:
         with tempfile.TemporaryDirectory(prefix="hapticgiant_study_") as work:
             try:
@@ -154,6 +146,11 @@ def run(arguments):
     from hapticgiant.sweep.campaign import explained
     from hapticgiant.sweep.program import find_program
 
+    if arguments.command == "forget":
+        count = Folder.as_it_was(arguments.study, arguments.out).forget(arguments.code)
+        print(f"{arguments.code}: {count} files deleted, tables made anew; reports of before are deleted: "
+              f"hapticgiant study report {arguments.study}")
+        return 0
     study = description.load_study(arguments.study)
     if arguments.command == "plan":
         return show_plan(study, arguments.participant)
@@ -164,11 +161,6 @@ def run(arguments):
               end="")
         return 0
     folder = Folder(study, arguments.out)
-    if arguments.command == "forget":
-        count = folder.forget(arguments.code)
-        print(f"{arguments.code}: {count} files deleted, tables made anew; reports of before are deleted: "
-              f"hapticgiant study report {arguments.study}")
-        return 0
     if arguments.command == "report":
         from hapticgiant.study import report
 

@@ -19,6 +19,9 @@ TESTS = ("auto", "paired_t", "wilcoxon", "friedman", "mixed", "welch_t", "mann_w
          "kruskal")
 WITHIN_TESTS, BETWEEN_TESTS = TESTS[1:5], TESTS[5:]
 TWO_CONDITIONS = ("paired_t", "wilcoxon", "welch_t", "mann_whitney")
+TRIAL_COLUMNS = ("participant", "position", "condition", "repetition", "excluded", "exit_code", "state_hash",
+                 "recording_sha256", "recording")
+"""Columns of trials.csv beside the measures."""
 CORRECTIONS = ("holm", "bonferroni", "none")
 
 
@@ -139,7 +142,7 @@ class _Reader(Reader):
         design = self.design(parts["design"], conditions)
         forms = {name: questionnaires.read_form(self, name, node) for name, node
                  in self.names(parts.get("questionnaires"), "questionnaires")}
-        measures = self.measures(parts.get("measures"))
+        measures = self.measures(parts.get("measures"), forms)
         instructions = {name: self.texts(node, f"instructions.{name}") for name, node
                         in self.names(parts.get("instructions"), "instructions")}
         for name, node in self.names(parts.get("instructions"), "instructions"):
@@ -250,9 +253,12 @@ class _Reader(Reader):
             practice = self.count(parts["practice"], "design.practice")
         return Design(kind, chosen, practice=practice, **counts)
 
-    def measures(self, node):
+    def measures(self, node, forms):
         found = {}
         for name, value in self.names(node, "measures"):
+            if name in TRIAL_COLUMNS or name in forms:
+                self.fault(value, f"measures.{name}", "is the name of a " + (
+                    "questionnaire" if name in forms else "column of trials.csv") + ", take another")
             parts = self.map(value, name, ("expression", "unit", "what"))
             known = expressions.SHIPPED.get(name)
             if "expression" not in parts and known is None:
@@ -295,10 +301,18 @@ class _Reader(Reader):
                 tree = expressions.parse(text)
             except expressions.ExpressionError as error:
                 self.fault(parts[kinds[0]], f"exclusion.{kinds[0]}", str(error))
+            for name in expressions.functions_of(tree):
+                if name in expressions.OF_A_TRIAL:
+                    self.fault(parts[kinds[0]], f"exclusion.{kinds[0]}",
+                               f"{name}() is of the samples of a trial: make it a measure")
             for name in expressions.names_of(tree):
                 if name not in known:
                     self.fault(parts[kinds[0]], f"exclusion.{kinds[0]}",
                                f"no such measure as '{name}', did you mean '{nearest(name, known)}'?")
+            try:
+                expressions.is_true(text, dict.fromkeys(known, 1.0))
+            except expressions.ExpressionError as error:
+                self.fault(parts[kinds[0]], f"exclusion.{kinds[0]}", str(error))
             found.append(Exclusion(kinds[0], text, self.words(parts["why"])))
         return found
 

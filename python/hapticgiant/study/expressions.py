@@ -54,6 +54,8 @@ FUNCTIONS = {
 OF_A_TRIAL = {"event": 1, "events": 1, "first_event": 0, "last_event": 0, "duration": 0,
               "integral": 1, "derivative": 1, "spells": 2, "summary": 1}
 """Functions that need the trial, and how many arguments they take."""
+OF_SEVERAL = ("norm", "path_length")
+"""Functions of one argument or more; every other one of FUNCTIONS takes one."""
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
              ast.Div: np.divide, ast.Mod: np.mod, ast.Pow: np.float_power,
              ast.UAdd: operator.pos, ast.USub: operator.neg, ast.Not: np.logical_not,
@@ -94,10 +96,10 @@ def _check(node, depth):
         name = node.func.id
         if name not in known:
             raise ExpressionError(f"no such function as '{name}', did you mean '{nearest(name, known)}'?")
-        wanted = OF_A_TRIAL.get(name)
+        wanted = OF_A_TRIAL.get(name, None if name in OF_SEVERAL else 1)
         if wanted is not None and len(node.args) != wanted or not node.args and wanted is None:
             raise ExpressionError(f"{name}: expected {wanted if wanted is not None else 'some'} "
-                                  f"arguments, got {len(node.args)}")
+                                  f"argument{'' if wanted == 1 else 's'}, got {len(node.args)}")
         if name in ("event", "events", "summary"):
             if not (isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, str)):
                 raise ExpressionError(f"{name}: expected a text in quotes")
@@ -136,6 +138,17 @@ def names_of(tree: ast.expr) -> list[str]:
         else:
             rest += list(ast.iter_child_nodes(node))
     return sorted(set(found))
+
+
+def functions_of(tree: ast.expr) -> list[str]:
+    """The functions that an expression calls."""
+    return sorted({node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call)})
+
+
+def is_true(text: str, values: dict[str, float]) -> bool:
+    """Whether an expression over plain numbers is true; a result that is no number is not."""
+    value = evaluate(parse(text), Trial({name: np.float64(each) for name, each in values.items()}))
+    return bool(value) and value == value
 
 
 class Trial:

@@ -22,10 +22,11 @@ import io
 import json
 import os
 import pathlib
+import re
 import shutil
 
 from hapticgiant.study import questionnaires, trials
-from hapticgiant.study.description import Study
+from hapticgiant.study.description import Study, load_study
 from hapticgiant.study.planning import Participant, Step, plan
 from hapticgiant.sweep.reader import nearest
 
@@ -33,7 +34,9 @@ FORMAT = 1
 DESCRIPTION = "dataset_description.json"
 TABLES = ("participants", "trials", "answers")
 RUNNING = ".running"
+PARTIAL = re.compile(r"\..+\.[0-9]+")  # a file that is being written, see _put()
 WITHDRAWN = "withdrawn.json"
+STUDY = "study.yaml"
 REPORTS = ("report.html", "report.tex", "report.json", "figures")
 STORED = """\
 # What is stored
@@ -62,6 +65,13 @@ class Folder:
         self.path = pathlib.Path(path) if path is not None else study.file.with_suffix(".study")
         self._lock = None
 
+    @classmethod
+    def as_it_was(cls, file: str | os.PathLike, path: str | os.PathLike | None) -> Folder:
+        """The folder with the study as it was when it began, whatever has become of the file since."""
+        path = pathlib.Path(path) if path is not None else pathlib.Path(file).with_suffix(".study")
+        own = path / STUDY
+        return cls(load_study(own if own.exists() else file), path)
+
     def exists(self) -> bool:
         return (self.path / DESCRIPTION).exists()
 
@@ -82,7 +92,7 @@ class Folder:
         if self.exists():
             self.require(description)
         else:
-            shutil.copyfile(self.study.file, self.path / "study.yaml")
+            shutil.copyfile(self.study.file, self.path / STUDY)
             self.write(self.path / DESCRIPTION, trials.dump(description))
         shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # what a crash has left
 
@@ -151,18 +161,23 @@ class Folder:
         return [each for each in plan(self.study) if (self.path / f"sub-{each.code}").is_dir()]
 
     def forget(self, code: str) -> int:
-        """Deletes everything of one participant; how many files."""
-        self.description()
+        """Deletes everything of one participant; how many files. Again it finishes what a crash has left."""
+        self.require({**self.description(), "Study": self.study.digest()})
         self._take()
         codes = [each.code for each in self.participants()]
-        if code not in codes:
+        if code not in codes and code not in self.withdrawn():
             near = f", did you mean '{nearest(code, codes)}'?" if codes else ""
             raise FolderError(f"{self.path}: has no participant '{code}'{near}")
         folder = self.path / f"sub-{code}"
         count = sum(1 for file in folder.rglob("*") if file.is_file())
         # first the note: a crash in between must not let somebody play under this code again
         self.replace(self.path / WITHDRAWN, trials.dump(sorted({*self.withdrawn(), code})))
-        shutil.rmtree(folder)
+        if folder.exists():
+            shutil.rmtree(folder)
+        shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # trials and files of a program that was killed
+        for file in list(self.path.rglob(".*")):
+            if PARTIAL.fullmatch(file.name):
+                file.unlink(missing_ok=True)
         for name in REPORTS:
             target = self.path / name
             shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
@@ -206,13 +221,11 @@ class Folder:
         return found
 
     def _participant_excluded(self, count, excluded_trials):
-        import numpy as np
-
         from hapticgiant.study import expressions
 
-        known = expressions.Trial({"trials": np.float64(count), "excluded_trials": np.float64(excluded_trials)})
+        known = {"trials": count, "excluded_trials": excluded_trials}
         return next((each.why for each in self.study.exclusions if each.kind == "participant"
-                     and expressions.evaluate(expressions.parse(each.expression), known)), "")
+                     and expressions.is_true(each.expression, known)), "")
 
     def tabulate(self) -> list[pathlib.Path]:
         """Writes tables, data dictionary, what is stored, and hashes. Parquet where pyarrow is installed."""

@@ -1,4 +1,4 @@
-"""Tests of one outcome between conditions, by scipy and statsmodels; no files, no names of people.
+"""Tests of one outcome between conditions, by scipy; no files, no names of people.
 
 Every test gives an estimate with its interval, an effect size, and what its assumptions look like.
 Which test is right is a matter of the design, not of the data: an assumption that looks bad is
@@ -13,7 +13,7 @@ import math
 import warnings
 
 import numpy as np
-from scipy import stats
+from scipy import optimize, stats
 
 
 @dataclasses.dataclass
@@ -84,6 +84,25 @@ def number(value: float) -> str:
     return "< 0.001" if 0 <= value < 0.001 else f"{value:.3f}"
 
 
+def rounded(values, scale: float) -> np.ndarray:
+    """To 12 digits of the scale: equal sums in another order are equal, so that ranks see their ties."""
+    if not 0 < scale < math.inf:
+        return np.asarray(values, float)
+    return np.round(np.asarray(values, float), min(290, 11 - math.floor(math.log10(scale))))
+
+
+def for_ranks(columns) -> list[np.ndarray]:
+    """Columns rounded to 12 digits of the largest of all their values."""
+    scale = max((float(np.max(np.abs(each))) for each in columns if len(each)), default=0.0)
+    return [rounded(each, scale) for each in columns]
+
+
+def differences(first, second) -> np.ndarray:
+    """Second minus first, rounded to 12 digits of the largest value of both."""
+    a, b = np.asarray(first, float), np.asarray(second, float)
+    return rounded(b - a, float(np.max(np.abs([a, b]), initial=0)))
+
+
 def paired_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     """Student's t of differences; effect size d_z, the mean difference over its deviation."""
     difference = np.asarray(second, float) - np.asarray(first, float)
@@ -122,7 +141,7 @@ def wilcoxon(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
 
     Estimate and interval: Hodges and Lehmann; effect size: rank-biserial correlation.
     """
-    difference = np.asarray(second, float) - np.asarray(first, float)
+    difference = differences(first, second)
     kept = difference[difference != 0]
     count = len(kept)
     if count == 0:
@@ -140,7 +159,12 @@ def wilcoxon(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
 def welch_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     """Welch's t of two groups; effect size Hedges' g."""
     a, b = np.asarray(first, float), np.asarray(second, float)
-    test = stats.ttest_ind(b, a, equal_var=False)
+    if np.ptp(a) == 0 and np.ptp(b) == 0:
+        mean = b[0] - a[0]
+        return Comparison(*names, "t", math.nan, 1.0 if mean == 0 else 0.0, mean, mean, mean, "Hedges' g", math.nan)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # one group alone may be constant
+        test = stats.ttest_ind(b, a, equal_var=False)
     low, high = test.confidence_interval(1 - alpha)
     pooled = math.sqrt(((len(a) - 1) * a.var(ddof=1) + (len(b) - 1) * b.var(ddof=1)) / (len(a) + len(b) - 2))
     small = 1 - 3 / (4 * (len(a) + len(b)) - 9)
@@ -152,15 +176,23 @@ def welch_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
 def mann_whitney(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     """Mann and Whitney's U of the second group: exact without ties, else with correction of
     continuity, as R's wilcox.test. Estimate: Hodges and Lehmann; effect size rank-biserial."""
-    a, b = np.asarray(first, float), np.asarray(second, float)
+    a, b = for_ranks([first, second])
     has_ties = len(np.unique(np.concatenate([a, b]))) < len(a) + len(b)
     method = "exact" if not has_ties and max(len(a), len(b)) < 50 else "asymptotic"
     test = stats.mannwhitneyu(b, a, method=method, use_continuity=True)
+    p = test.pvalue if np.ptp(np.concatenate([a, b])) > 0 else 1.0
     gaps = np.sort((b[:, None] - a[None, :]).ravel())
     spread = math.sqrt(len(a) * len(b) * (len(a) + len(b) + 1) / 12)
     at = max(1, int(len(gaps) / 2 - stats.norm.ppf(1 - alpha / 2) * spread))
-    return Comparison(*names, "U", test.statistic, test.pvalue, float(np.median(gaps)), gaps[at - 1],
+    return Comparison(*names, "U", test.statistic, p, float(np.median(gaps)), gaps[at - 1],
                       gaps[len(gaps) - at], "rank-biserial", 2 * test.statistic / len(gaps) - 1)
+
+
+def least_p(test: str, sizes: list[int]) -> float:
+    """The smallest p that a test by ranks of two conditions can give; 0 for the others."""
+    if test == "wilcoxon":
+        return min(1.0, 2 / 2 ** sizes[0])
+    return min(1.0, 2 / math.comb(sum(sizes), sizes[0])) if test == "mann_whitney" else 0.0
 
 
 def every_pair(groups: dict[str, np.ndarray], compare, alpha, correction) -> list[Comparison]:
@@ -173,7 +205,7 @@ def every_pair(groups: dict[str, np.ndarray], compare, alpha, correction) -> lis
 
 def friedman(groups: dict[str, np.ndarray], alpha=0.05, correction="holm") -> Result:
     """Friedman's test over people (rows), post-hoc Wilcoxon of all pairs; effect size Kendall's W."""
-    columns = list(groups.values())
+    columns = for_ranks(groups.values())
     count = len(columns[0])
     if all(np.ptp(row) == 0 for row in np.array(columns).T):
         value, p = 0.0, 1.0
@@ -195,48 +227,93 @@ def repeated_anova(table: np.ndarray) -> tuple[float, tuple[float, float], float
     return f, df, float(stats.f.sf(f, *df))
 
 
+class Reml:
+    """Linear mixed model of a mean for each condition, with random people and people x condition, by REML.
+
+    The variances are those ratios to the rest where the restricted likelihood is largest, from 0 on; sigma
+    is profiled out (Bates et al., Journal of Statistical Software 67, 2015). A ratio of 0 is a result like others.
+    """
+
+    MOST = 1e5  # of a deviation over that of the rest
+
+    def __init__(self, values, code, group, kinds, repeats):
+        self.kinds, self.repeats = kinds, repeats
+        by_pattern = {}
+        for person in range(group.max() + 1):
+            rows = np.flatnonzero(group == person)
+            rows = rows[np.argsort(code[rows], kind="stable")]
+            by_pattern.setdefault(tuple(code[rows]), []).append(rows)
+        self.blocks = [(np.eye(kinds)[list(codes)], np.array(rows)) for codes, rows in by_pattern.items()]
+        self.values, self.count = values, len(values)
+        starts = [(1.0,), (0.1,), (10.0,)] if not repeats else [(1.0, 1.0), (0.1, 1.0), (1.0, 0.1), (10.0, 10.0)]
+        fits = [optimize.minimize(self.deviance, start, method="Nelder-Mead", bounds=[(0, self.MOST)] * len(start),
+                                  options={"xatol": 1e-7, "fatol": 1e-11, "maxiter": 2000}) for start in starts]
+        best = min(fits, key=lambda each: each.fun)
+        self.converged, self.ratios = best.success, np.array(best.x)
+        for i in range(len(self.ratios)):
+            without = self.ratios.copy()
+            without[i] = 0
+            if self.deviance(without) <= best.fun + 1e-8:
+                self.ratios = without
+        self.solve(self.ratios)
+
+    def spread(self, x, ratios):
+        """The covariance of a person's values over that of the rest."""
+        spread = np.eye(len(x)) + ratios[0] ** 2
+        return spread + ratios[1] ** 2 * x @ x.T if self.repeats else spread
+
+    def solve(self, ratios):
+        """Means, their covariance, variance of the rest; the two determinants' logarithm."""
+        left, right, logs = np.zeros((self.kinds, self.kinds)), np.zeros(self.kinds), 0.0
+        inner = []
+        for x, rows in self.blocks:
+            spread = self.spread(x, ratios)
+            inverse = np.linalg.inv(spread)
+            left += len(rows) * x.T @ inverse @ x
+            right += x.T @ inverse @ self.values[rows].sum(axis=0)
+            logs += len(rows) * np.linalg.slogdet(spread)[1]
+            inner.append(inverse)
+        self.means = np.linalg.solve(left, right)
+        self.errors, self.offsets = np.empty(self.count), []
+        total = 0.0
+        for (x, rows), inverse in zip(self.blocks, inner):
+            rest = self.values[rows] - x @ self.means
+            self.errors[rows] = rest @ inverse
+            self.offsets += (ratios[0] ** 2 * self.errors[rows].sum(axis=1)).tolist()
+            total += float(np.sum(rest * self.errors[rows]))
+        self.rest = max(total, 1e-300) / (self.count - self.kinds)
+        self.covariance = np.linalg.inv(left) * self.rest
+        return logs + np.linalg.slogdet(left)[1]
+
+    def deviance(self, ratios):
+        return self.solve(ratios) + (self.count - self.kinds) * math.log(self.rest)
+
+
 def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
     """Mixed model by REML: condition fixed; people, and people x condition where trials repeat, random.
 
     Tests use the degrees of freedom (people - 1)(conditions - 1), which are exact for balanced data
     and stand in for Satterthwaite's otherwise. Effect size d: the difference over the deviation of a
-    single value.
+    single value. Raises ValueError for one person and for values that do not vary within conditions.
     """
-    from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
-
     values = np.asarray(values, float)
     names = list(dict.fromkeys(conditions))
     code = np.array([names.index(each) for each in conditions])
     persons = list(dict.fromkeys(people))
     group = np.array([persons.index(each) for each in people])
-    fixed = np.eye(len(names))[code]  # a mean for each condition
-    cells = {(g, c) for g, c in zip(group.tolist(), code.tolist())}
-    repeats = len(values) > len(cells)
-    extra = {}
-    if repeats:
-        mats, columns = [], []
-        for person in range(len(persons)):
-            own = code[group == person]
-            kinds = np.unique(own)
-            mats.append((own[:, None] == kinds[None, :]).astype(float))
-            columns.append([names[kind] for kind in kinds])
-        extra = {"exog_vc": VCSpec(["person x condition"], [columns], [mats])}
-    scale = values.std(ddof=1) or 1.0
+    if len(persons) < 2:
+        raise ValueError("fewer than two people have values")
+    require_spread([values[code == i] for i in range(len(names))])
+    repeats = len(values) > len(set(zip(group.tolist(), code.tolist())))
+    middle, scale = values.mean(), values.std(ddof=1)
+    fit = Reml((values - middle) / scale, code, group, len(names), repeats)
     result = Result("mixed", len(persons))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        rows = np.argsort(group, kind="stable")
-        model = MixedLM(values[rows] / scale, fixed[rows], group[rows], exog_re=np.ones((len(values), 1)),
-                        **extra)
-        fit = model.fit(reml=True, method=["lbfgs", "bfgs", "cg"])
     if not fit.converged:
         result.notes.append("the fit of the mixed model has not converged")
-    means = fit.fe_params * scale
-    covariance = np.asarray(fit.cov_params())[:len(names), :len(names)] * scale ** 2
-    result.variances = {"person": float(fit.cov_re[0, 0]) * scale ** 2}
-    if repeats:
-        result.variances["person x condition"] = float(fit.vcomp[0]) * scale ** 2
-    result.variances["rest"] = float(fit.scale) * scale ** 2
+    means, covariance = fit.means * scale, fit.covariance * scale ** 2
+    rest = float(fit.rest * scale ** 2)
+    result.variances = {name: float(ratio ** 2 * rest) for name, ratio in zip(("person", "person x condition"), fit.ratios)}
+    result.variances["rest"] = rest
     deviation = math.sqrt(sum(result.variances.values()))
     df = len(names) - 1, (len(persons) - 1) * (len(names) - 1)
     contrast = np.hstack([-np.ones((len(names) - 1, 1)), np.eye(len(names) - 1)])
@@ -254,12 +331,17 @@ def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
     for each, p in zip(result.comparisons, adjusted([c.p for c in result.comparisons], correction)):
         each.p_adjusted = p
     result.effect, result.size = "partial eta2", result.value * df[0] / (result.value * df[0] + df[1])
-    result.assumptions.append(normality(fit.resid, "residuals", alpha))
-    offsets = [float(np.atleast_1d(each)[0]) for each in fit.random_effects.values()]
-    result.assumptions.append(normality(offsets, "offsets of people", alpha))
+    result.assumptions.append(normality(fit.errors, "residuals", alpha))
+    result.assumptions.append(normality(fit.offsets, "offsets of people", alpha))
     if result.variances["person"] < 1e-6 * deviation ** 2:
         result.notes.append("people do not differ in their mean (variance 0)")
     return result
+
+
+def require_spread(columns) -> None:
+    """Raises ValueError where no column has two different values: there is nothing to compare a difference with."""
+    if all(np.ptp(each) == 0 for each in for_ranks(columns)):
+        raise ValueError("does not vary within conditions")
 
 
 def between(groups: dict[str, np.ndarray], test: str, alpha=0.05, correction="holm") -> Result:
@@ -274,13 +356,16 @@ def between(groups: dict[str, np.ndarray], test: str, alpha=0.05, correction="ho
         result.assumptions = [normality(np.concatenate([c - c.mean() for c in columns]), "residuals", alpha),
                               equal_spread(columns, alpha)]
         return result
-    value, p = stats.kruskal(*columns)
+    ranked = for_ranks(columns)
+    value, p = stats.kruskal(*ranked) if np.ptp(np.concatenate(ranked)) > 0 else (0.0, 1.0)
     return Result(test, count, "H", value, (kinds - 1,), p, "epsilon2", value / (count - 1),
                   every_pair(groups, mann_whitney, alpha, correction))
 
 
 def equal_spread(columns, alpha) -> str:
     """What Levene's test (about the median) says, in words."""
+    if all(np.ptp(each) == 0 for each in for_ranks([abs(each - np.median(each)) for each in columns])):
+        return "groups: too few different values to judge their spread"
     value, p = stats.levene(*columns, center="median")
     words = "no sign against equal spread" if p >= alpha else "spread DIFFERS"
     return f"groups: {words} (Levene W = {value:.3f}, p = {number(p)})"
@@ -312,6 +397,8 @@ def run(test: str, values, conditions, people, alpha=0.05, correction="holm") ->
     groups = {c: np.array([np.mean(cells[p, c]) for p in complete if (p, c) in cells]) for c in names}
     if min(map(len, groups.values())) < 2:
         raise ValueError("fewer than two people have values in every condition")
+    if test in ("welch_t", "anova"):
+        require_spread(list(groups.values()))
     if test == "friedman":
         result = friedman(groups, alpha, correction)
     elif test in ("anova", "kruskal"):
@@ -334,12 +421,13 @@ def run(test: str, values, conditions, people, alpha=0.05, correction="holm") ->
             rank = mann_whitney(a, b, alpha)
             result.notes.append(f"without normality: Mann-Whitney U = {rank.value:g}, p = {number(rank.p)}")
         if test == "wilcoxon":
-            skew = float(stats.skew(b - a)) if np.ptp(b - a) > 0 else 0.0
+            gaps = differences(a, b)
+            skew = float(stats.skew(gaps)) if np.ptp(gaps) > 0 else 0.0
             result.assumptions = [f"differences: skewness {skew:.2f}; signed ranks assume that they are "
                                   "symmetric about their middle"]
-            if 2 / 2 ** count > alpha:
-                result.notes.append(f"with {count} people no p below {2 / 2 ** count:g} can come out, and the "
-                                    f"interval cannot reach {100 * (1 - alpha):g} %")
+        if least_p(test, list(map(len, groups.values()))) > alpha:
+            result.notes.append(f"with {count} people no p below {least_p(test, list(map(len, groups.values()))):g} can "
+                                f"come out, and the interval cannot reach {100 * (1 - alpha):g} %")
     if len(cells) < len(list(values)):
         result.notes.append("a person's trials of a condition are averaged")
     if left := len(persons) - len(complete):

@@ -92,13 +92,13 @@ def problems_of(study: Study) -> list[str]:
         other = by_options.setdefault(tuple(sorted(condition.options.items())), name)
         if other != name:
             found.append(f"conditions {other} and {name} are the same")
-    if len(study.conditions) == 2 and study.design.participants < 6:
-        for test in study.tests:
-            if test.test == "wilcoxon":
-                least = 2 / 2 ** study.design.participants
-                if least > study.alpha:
-                    found.append(f"{test.outcome}: signed ranks of {study.design.participants} people cannot "
-                                 f"give p below {least:g}")
+    count = study.design.participants
+    sizes = [count] if study.design.kind == "within" else [sum(row[0] == i for row in rows) for i in range(len(names))]
+    for test in study.tests:
+        least = inference.least_p(test.test, sizes)
+        if least > study.alpha:
+            kind = "signed ranks" if test.test == "wilcoxon" else "ranks"
+            found.append(f"{test.outcome}: {kind} of {count} people cannot give p below {least:g}")
     found += _missing_languages(study)
     return found
 
@@ -119,8 +119,8 @@ def notes_of(study: Study) -> list[str]:
     found = []
     _, follows = imbalance(orders(study.design, len(names)), len(names))
     if study.design.kind == "within" and follows > 1:
-        found.append(f"one condition follows another up to {follows} times more often than a third: carry-over "
-                     "is not balanced; williams balances it")
+        found.append(f"one condition follows another {follows} times more often than it follows a third: "
+                     "carry-over is not balanced; williams balances it")
     if not study.tests:
         found.append("no test is planned: analysis.tests")
     if not study.exclusions:
@@ -166,16 +166,20 @@ def _share(study, test, count, simulations, dice, differs):
 
 
 def _p_value(test, groups):
-    """The p value of the whole test, of means of people by condition; as the report computes it."""
+    """The p value of the whole test, of means of people by condition; as the report computes it. 1 where there is none."""
+    if min(map(len, groups)) < 2:
+        return 1.0
+    if test in ("friedman", "kruskal") and np.ptp(np.concatenate(groups)) == 0:
+        return 1.0
     if test == "wilcoxon":
-        return inference.signed_rank_p(groups[1] - groups[0])
+        return inference.signed_rank_p(inference.differences(*groups))
     if test in ("paired_t", "welch_t", "mann_whitney"):
         return getattr(inference, test)(*groups).p
     if test == "mixed":  # for balanced data the same
         return inference.repeated_anova(np.array(groups).T)[2]
     if test == "friedman":
-        return stats.friedmanchisquare(*groups).pvalue
-    return (stats.f_oneway if test == "anova" else stats.kruskal)(*groups).pvalue
+        return stats.friedmanchisquare(*inference.for_ranks(groups)).pvalue
+    return stats.f_oneway(*groups).pvalue if test == "anova" else stats.kruskal(*inference.for_ranks(groups)).pvalue
 
 
 DESCRIBED = {

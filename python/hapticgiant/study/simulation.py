@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 
-from hapticgiant.study import people, trials
+from hapticgiant.study import expressions, people, trials
 from hapticgiant.study.description import Study
 from hapticgiant.study.folder import RUNNING, Folder
 from hapticgiant.study.planning import Step, plan, steps
@@ -18,6 +18,7 @@ TRIES = 3  # of a trial that somebody has ended
 def play(study: Study, folder: Folder, program: Program, count: int | None, jobs: int | None,
          keeps_recordings: bool) -> tuple[int, int, list[str]]:
     """Plays what the folder does not have; how many trials were played, were there, and faults."""
+    trials.require_columns(study, trials.known_columns(program))
     folder.begin(program.version, True, people.MODEL)
     gone = folder.withdrawn()
     wanted, before = {}, 0
@@ -50,7 +51,7 @@ def play(study: Study, folder: Folder, program: Program, count: int | None, jobs
                     measured = trials.measure(study, program, outcome, _work(folder, number))
                     _keep(study, folder, program, code, step, position, measured, keeps_recordings)
                     played += 1
-                except trials.TrialError as error:
+                except (trials.TrialError, expressions.ExpressionError) as error:
                     faults.append(f"{code} {step.condition} {step.repetition}: {error}")
                 finally:
                     trials.discard(_work(folder, number))

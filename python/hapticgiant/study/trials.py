@@ -6,6 +6,7 @@ import csv
 import dataclasses
 import hashlib
 import json
+import math
 import pathlib
 import shutil
 import subprocess
@@ -15,9 +16,12 @@ import numpy as np
 from hapticgiant.study import expressions
 from hapticgiant.study.description import Study
 from hapticgiant.sweep.program import SUMMARY, Outcome, Program
+from hapticgiant.sweep.reader import StudyError, nearest
 
 RUNNING = 3  # of the column `mode`
 ALWAYS = ("mode",)
+LENGTHS = {"robot.w_h": 6, "truth.w_h": 6, "sensors.w_s": 6, "v_h": 3, "handle.p": 3, "truth.handle.p": 3, "handle.r": 9}
+"""Of columns that are as long for every device."""
 
 
 class TrialError(RuntimeError):
@@ -57,10 +61,27 @@ def columns_of(study: Study) -> list[str]:
     return sorted((names | set(ALWAYS)) - {"time_s"})
 
 
-def known_columns(program: Program) -> list[str]:
-    """The columns that a recording has."""
+def known_columns(program: Program) -> dict[str, bool]:
+    """The columns that a recording has, and whether they have an index."""
     done = subprocess.run([program.file, "export", "--list-columns"], capture_output=True, text=True, check=True)
-    return [line.split()[0].removesuffix("[]") for line in done.stdout.splitlines() if line.strip()]
+    names = [line.split()[0] for line in done.stdout.splitlines() if line.strip()]
+    return {name.removesuffix("[]"): name.endswith("[]") for name in names}
+
+
+def require_columns(study: Study, known: dict[str, bool]) -> None:
+    """Raises StudyError for a measure of a column that no recording has. How long a column is depends on the device:
+    an index beyond its end is found by a trial."""
+    for name, measure in study.measures.items():
+        for column in expressions.names_of(expressions.parse(measure.expression)):
+            whole, bracket, index = column.partition("[")
+            place = f"{study.place(f'measures.{name}')}: measures.{name}: "
+            if whole not in known:
+                raise StudyError(f"{place}no column is called '{column}', did you mean '{nearest(whole, known)}'?")
+            if known[whole] != bool(bracket):
+                raise StudyError(f"{place}'{column}': " + (f"take one of its values, as '{whole}[0]'" if known[whole]
+                                                           else f"'{whole}' is one value, without an index"))
+            if bracket and "." not in index and int(index.rstrip("]")) >= LENGTHS.get(whole, math.inf):
+                raise StudyError(f"{place}'{column}': '{whole}' has the indices 0 to {LENGTHS[whole] - 1}")
 
 
 def measure(study: Study, program: Program, outcome: Outcome, folder: pathlib.Path) -> Measured:
@@ -79,6 +100,8 @@ def measure(study: Study, program: Program, outcome: Outcome, folder: pathlib.Pa
     columns = _read_table(table.with_suffix(".csv"))
     is_felt = columns["mode"] == RUNNING
     columns = {name: values[is_felt] for name, values in columns.items()}
+    for values in columns.values():
+        values.setflags(write=False)
     events = [(event["time_s"], event["name"]) for event in summary["events"]]
     trial = expressions.Trial(columns, events, _numbers(summary))
     measures = {}
@@ -122,11 +145,9 @@ def _numbers(summary):
 
 def excluded(study: Study, measures: dict[str, float], exit_code: int) -> str:
     """Why a trial is left out; empty: it counts."""
-    known = {**{name: np.float64(np.nan if value is None else value) for name, value in measures.items()},
-             "exit_code": np.float64(exit_code)}
+    known = {**{name: np.nan if value is None else value for name, value in measures.items()}, "exit_code": exit_code}
     for each in study.exclusions:
-        if each.kind == "trial" and expressions.evaluate(expressions.parse(each.expression),
-                                                         expressions.Trial(known)):
+        if each.kind == "trial" and expressions.is_true(each.expression, known):
             return each.why
     return ""
 
