@@ -25,8 +25,8 @@ constexpr std::array<config::Choice<Sex>, 2> kSexes = {
 constexpr std::array<config::Choice<Burden>, 2> kBurdens = {
     {{"moving_mass", Burden::kMovingMass}, {"price", Burden::kPrice}}};
 
-template <std::size_t N>
-std::vector<std::string> names_of(const std::array<const char*, N>& names) {
+template <std::size_t kCount>
+std::vector<std::string> names_of(const std::array<const char*, kCount>& names) {
   return {names.begin(), names.end()};
 }
 

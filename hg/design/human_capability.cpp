@@ -131,8 +131,8 @@ HumanCapability human_capability(const HumanArm& arm, const CapabilityOptions& o
     Cell& cell =
         cells[voxel * orientations + orientation_of(posture.T_F_hand.R, options.orientation_bands)];
     ++cell.samples;
-    const Eigen::Matrix<double, 6, 6> JJ = posture.J * posture.J.transpose();
-    const double manipulability = JJ.determinant();
+    const Eigen::Matrix<double, 6, 6> J_J_T = posture.J * posture.J.transpose();
+    const double manipulability = J_J_T.determinant();
     if (manipulability > cell.manipulability) {
       cell.manipulability = manipulability;
       cell.q = q;
