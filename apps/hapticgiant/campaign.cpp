@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -66,11 +65,6 @@ void refuse_other_study(const fs::path& file) {
   throw SetupError(file.string() + ": is another study; --sweep needs a folder of its own");
 }
 
-std::vector<std::string> sweep_program() {
-  setenv("HAPTICGIANT_PROGRAM", fs::read_symlink("/proc/self/exe").c_str(), 1);  // plays the runs
-  return python_program("sweep");
-}
-
 }  // namespace
 
 void add_campaign_options(CLI::App& command, CampaignOptions& options) {
@@ -82,7 +76,7 @@ void add_campaign_options(CLI::App& command, CampaignOptions& options) {
 }
 
 void check_sweep_program() {
-  std::vector<std::string> words = sweep_program();
+  std::vector<std::string> words = python_program_that_runs_us("sweep");
   words.emplace_back("--check");
   if (run_program(words).code == 0) return;
   throw SetupError(fmt::format(
@@ -116,7 +110,7 @@ bool play_campaign(const Campaign& campaign, const CampaignOptions& options) {
                      {"parts", campaign.parts},
                      {"files", files}};
   write_output(study.string(), text.dump(1) + "\n");
-  std::vector<std::string> words = sweep_program();
+  std::vector<std::string> words = python_program_that_runs_us("sweep");
   words.insert(words.end(), {"--quiet", study.string()});
   const Ended ended = run_program(words);
   if (ended.code != 0) {

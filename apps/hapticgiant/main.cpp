@@ -24,17 +24,15 @@
 #include "apps/hapticgiant/haptify_command.h"
 #include "apps/hapticgiant/hqp_solve.h"
 #include "apps/hapticgiant/identify_command.h"
-#include "apps/hapticgiant/imus_command.h"
 #include "apps/hapticgiant/new_command.h"
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
+#include "apps/hapticgiant/python_commands.h"
 #include "apps/hapticgiant/replay_command.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/simulate_command.h"
 #include "apps/hapticgiant/stack.h"
 #include "apps/hapticgiant/start_test_command.h"
-#include "apps/hapticgiant/study_command.h"
-#include "apps/hapticgiant/sweep_command.h"
 #include "apps/hapticgiant/tune_command.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
@@ -126,9 +124,7 @@ int main(int argc, char** argv) {
   apps::add_haptify(app, exit_code);
   apps::add_tune(app, exit_code);
   apps::add_design(app);
-  apps::add_sweep(app);
-  apps::add_imus(app);
-  apps::add_study(app);
+  apps::add_python_commands(app);
   apps::refuse_empty_values(app);
 
   return apps::code_after_output(parse(app, argc, argv, exit_code));

@@ -59,11 +59,15 @@ std::vector<std::string> python_program(const std::string& part) {
   return words;
 }
 
-void become_python_program(const std::string& part, const std::vector<std::string>& arguments) {
+std::vector<std::string> python_program_that_runs_us(const std::string& part) {
   std::error_code error;
   const std::string program = fs::read_symlink("/proc/self/exe", error).string();
-  setenv("HAPTICGIANT_PROGRAM", program.c_str(), 1);  // for parts that run it
-  std::vector<std::string> words = python_program(part);
+  setenv("HAPTICGIANT_PROGRAM", program.c_str(), 1);
+  return python_program(part);
+}
+
+void become_python_program(const std::string& part, const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = python_program_that_runs_us(part);
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
