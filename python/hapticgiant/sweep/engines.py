@@ -12,6 +12,7 @@ from typing import Iterator
 
 from hapticgiant.sweep.program import Outcome
 
+WAKE_S = 0.2
 LOST = -int(signal.SIGKILL)  # the code of a run whose worker was lost
 
 
@@ -33,6 +34,13 @@ def undisturbed():
     finally:
         for number, handler in zip(signals, before):
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
+
+
+def _next(ended: queue.SimpleQueue):
+    """The next item. A signal that comes just before a wait is seen only after it: none is long."""
+    while True:
+        with contextlib.suppress(queue.Empty):
+            return ended.get(timeout=WAKE_S)
 
 
 class Local:
@@ -77,7 +85,7 @@ class Local:
             for thread in threads:
                 thread.start()
             for _ in commands:
-                number, outcome = ended.get()
+                number, outcome = _next(ended)
                 if number is None:
                     raise outcome
                 yield number, outcome
