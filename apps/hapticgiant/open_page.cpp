@@ -40,8 +40,12 @@ void open_browser(const std::string& url) {
 
 }  // namespace
 
+std::string page_folder() {
+  return (config::installation_root() / "viewer" / "dist").string();
+}
+
 std::string find_page() {
-  const fs::path page = config::installation_root() / "viewer" / "dist";
+  const fs::path page = page_folder();
   std::error_code error;
   if (fs::is_regular_file(page / "index.html", error)) return page.string();
   print_out(

@@ -5,6 +5,9 @@
 
 namespace hg::apps {
 
+/// Folder of the built page, whether it is there or not.
+std::string page_folder();
+
 /// Path of the built page; empty when it is not built, after printing how to get it.
 std::string find_page();
 

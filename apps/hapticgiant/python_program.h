@@ -30,7 +30,8 @@ pid_t start_program(std::vector<std::string>& words, int end, int stream);
 /// Words that start python/hapticgiant/`part`, or its module where the package is installed.
 std::vector<std::string> python_program(const std::string& part);
 
-/// The same; sets HAPTICGIANT_PROGRAM, which names this program to parts that run it.
+/// The same; sets HAPTICGIANT_PROGRAM, which names this program to parts that run it, and
+/// HAPTICGIANT_PAGE, the folder of the page.
 std::vector<std::string> python_program_that_runs_us(const std::string& part);
 
 /// Replaces this process by that program with these arguments; HAPTICGIANT_PROGRAM names this one.

@@ -22,7 +22,7 @@ if not __package__:
     sys.modules["hapticgiant"] = _package
 
 NEEDED = {"yaml": "pyyaml", "numpy": "numpy", "scipy": "scipy"}
-NEEDED_BY_REPORT = {"matplotlib": "matplotlib", "jinja2": "jinja2"}
+NEEDED_BY = {"report": {"matplotlib": "matplotlib", "jinja2": "jinja2"}, "run": {"aiohttp": "aiohttp"}}
 
 
 def positive(text):
@@ -48,6 +48,7 @@ def parser():
         each.add_argument("--simulations", type=positive, default=500, help="simulated studies per figure")
     plan = add("plan", "Prints the order of each participant.")
     plan.add_argument("--participant", metavar="CODE", help="every step of this one")
+    add_run(add)
     simulate = add("simulate", "Plays a study with simulated people; the same command again continues.")
     simulate.add_argument("--participants", type=positive, metavar="N", help="only the first N of the plan")
     simulate.add_argument("--jobs", type=positive, help="trials at a time; default: one per processor")
@@ -60,6 +61,95 @@ def parser():
     for each in (simulate, report, forget):
         each.add_argument("--out", help="folder of the study; default: NAME.study beside study.yaml")
     return main
+
+
+def add_run(add):
+    command = add("run", "The pages of operator and participant: plays the study with people; again it continues.")
+    command.add_argument("--out", help="folder of the study; default: NAME.study beside study.yaml")
+    command.add_argument("--rehearse", action="store_true",
+                         help="the scripted hand plays the trials, and the folder (NAME.rehearsal) says so")
+    command.add_argument("--bind", default="127.0.0.1", metavar="ADDRESS", help="IP address that the pages are served at")
+    command.add_argument("--port", type=port, default=0, help="of the pages; default: any free one")
+    command.add_argument("--no-browser", action="store_true", help="print the links only")
+    device = command.add_argument_group("a machine, as of hapticgiant run; without one a simulated device is moved with the mouse")
+    device.add_argument("--device-address", metavar="HOST:PORT")
+    for name, what in (("--machine", "FILE"), ("--key-file", "FILE"), ("--posture-confirmed", "NAMES"), ("--despite", "NAMES")):
+        device.add_argument(name, metavar=what)
+    device.add_argument("--without-start-test", action="store_true")
+    return command
+
+
+def port(text):
+    if not (text.isdigit() and int(text) <= 65535):
+        raise argparse.ArgumentTypeError(f"expected a whole number from 0 to 65535, got '{text}'")
+    return int(text)
+
+
+def hand_of(arguments):
+    """Who moves the handle, from the options of `study run`."""
+    from hapticgiant.study.conductor import Hand
+    from hapticgiant.sweep.reader import StudyError
+
+    options = []
+    for name in ("device_address", "machine", "key_file", "posture_confirmed", "despite"):
+        if (value := getattr(arguments, name)) is not None:
+            options += [f"--{name.replace('_', '-')}", value]
+    options += ["--without-start-test"] if arguments.without_start_test else []
+    if arguments.device_address is None:
+        if options:
+            raise StudyError(f"{options[0]}: needs --device-address")
+        return Hand("script" if arguments.rehearse else "mouse")
+    if arguments.rehearse:
+        raise StudyError("--rehearse: is with the simulated device, leave out --device-address")
+    return Hand("device", (*options, "--move-to-start"))
+
+
+def serve(study, arguments):
+    import asyncio
+
+    from hapticgiant.study import planning, trials
+    from hapticgiant.study.conductor import Conductor, expected_events
+    from hapticgiant.study.folder import Folder
+    from hapticgiant.study.server import Server
+    from hapticgiant.sweep.program import find_program
+    from hapticgiant.sweep.reader import StudyError
+
+    pages = pathlib.Path(os.environ.get("HAPTICGIANT_PAGE", ""))
+    if not (pages / "study" / "operator.html").is_file():
+        raise StudyError("the page is not built: cd viewer && npm ci && npm run build")
+    hand, program = hand_of(arguments), find_program()
+    trials.require_columns(study, trials.known_columns(program))
+    events = expected_events(study, program)
+    for problem in planning.problems_of(study):
+        print(f"PROBLEM: {problem}; hapticgiant study check {arguments.study}")
+    folder = Folder(study, arguments.out or (study.file.with_suffix(".rehearsal") if arguments.rehearse else None))
+    folder.begin(program.version, not hand.is_real, "rehearsal: the scripted hand plays" if not hand.is_real else "")
+
+    async def until_it_ends():
+        server = Server(pages, arguments.bind, arguments.port)
+        await server.open()
+        server.conductor = Conductor(study, folder, program, hand, events, server.origins(), server.changed)
+        for name in ("operator", "participant"):
+            print(f"{name:12}{server.link(name)}", flush=True)
+        if arguments.bind != "127.0.0.1":
+            print(f"            WARNING: listening at {arguments.bind}: whoever reaches it and has a link can use it; "
+                  "it is not encrypted")
+        print(f"folder      {folder.path}\nend         Ctrl-C", flush=True)
+        if not arguments.no_browser:
+            show(server.link("operator"))
+        await server.run()
+
+    asyncio.run(until_it_ends())
+    print("\nended; the same command continues")
+    return 0
+
+
+def show(link):
+    """Opens the page where there is a display and a terminal."""
+    import webbrowser
+
+    if sys.stdout.isatty() and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        webbrowser.open(link)
 
 
 def missing(needed):
@@ -160,6 +250,8 @@ def run(arguments):
         print(planning.preregistration(study, planning.power(study, [study.design.participants], arguments.simulations)),
               end="")
         return 0
+    if arguments.command == "run":
+        return serve(study, arguments)
     folder = Folder(study, arguments.out)
     if arguments.command == "report":
         from hapticgiant.study import report
@@ -179,7 +271,7 @@ def run(arguments):
 
 def main(words):
     arguments = parser().parse_args(words)
-    needed = NEEDED | (NEEDED_BY_REPORT if arguments.command == "report" else {})
+    needed = NEEDED | NEEDED_BY.get(arguments.command, {})
     if packages := missing(needed):
         print(f"study: {sys.executable} needs {', '.join(packages)}: pip install {' '.join(packages)}", file=sys.stderr)
         return 2

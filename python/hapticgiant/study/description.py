@@ -96,6 +96,10 @@ class Study(Placed):
     forms: dict[str, questionnaires.Form]
     breaks: tuple[int, float]
     """After how many conditions, and how long, min; (0, 0): none."""
+    longest_s: float
+    """A trial of a real person ends after this time, s."""
+    pause_s: float | None
+    """It ends so long after the last event of its task, s; None: when the operator says so."""
     exclusions: list[Exclusion]
     measures: dict[str, Measure]
     alpha: float
@@ -112,6 +116,14 @@ class Study(Placed):
         for name, form in self.forms.items():
             found |= {f"{name}.{score}": what for score, what in form.scores.items()}
         return found
+
+    @property
+    def languages(self) -> list[str]:
+        """Languages in which a participant can be spoken to: of the texts, and those of the shipped forms."""
+        texts = [*self.instructions.values(), *(item.text for form in self.forms.values() for item in form.items.values()
+                                                if form.kind == "own")]
+        found = [language for language in LANGUAGES if any(language in text for text in texts)]
+        return found or ["en", "de"]
 
     def arguments(self, condition: str, hand: dict[str, str] | None = None) -> list[str]:
         """The words after `hapticgiant run` for a trial."""
@@ -131,7 +143,7 @@ def load_study(file: str | os.PathLike) -> Study:
 class _Reader(Reader):
     def study(self):
         parts = self.map(root := self.root(), "", (
-            "title", "fixed", "conditions", "design", "instructions", "questionnaires", "breaks",
+            "title", "fixed", "conditions", "design", "trial", "instructions", "questionnaires", "breaks",
             "exclusion", "measures", "analysis", "simulation"))
         for needed in ("conditions", "design"):
             if needed not in parts:
@@ -160,7 +172,7 @@ class _Reader(Reader):
             (self.count(pause["after_conditions"], "breaks.after_conditions"),
              self.within(pause, "minutes", "breaks", 2, 0, 600)) if "after_conditions" in pause
             else (0, 0.0),
-            [], measures, alpha, correction, [], {},
+            *self.trial(parts), [], measures, alpha, correction, [], {},
             self.count(simulation["seed"], "simulation.seed") if "seed" in simulation else 1,
             self.places)
         study.exclusions = self.exclusions(parts.get("exclusion"), study)
@@ -252,6 +264,16 @@ class _Reader(Reader):
         if "practice" in parts and self.words(parts["practice"]) != "0":
             practice = self.count(parts["practice"], "design.practice")
         return Design(kind, chosen, practice=practice, **counts)
+
+    def trial(self, parts):
+        """Longest time of a trial, and the pause between its last event and its end."""
+        found = self.optional_map(parts, "trial", ("longest_s", "ends", "pause_s"))
+        longest_s = self.within(found, "longest_s", "trial", 180.0, 0, 36000)
+        ends = self.choice(found, "ends", "trial", ("events", "operator"), "events")
+        if ends == "operator" and "pause_s" in found:
+            self.fault(found["pause_s"], "trial.pause_s", "is after the last event, and the operator ends the trial")
+        pause_s = float(self.within(found, "pause_s", "trial", 1.0, -1e-9, 600))
+        return float(longest_s), pause_s if ends == "events" else None
 
     def measures(self, node, forms):
         found = {}

@@ -6,6 +6,8 @@
     sub-P01/sub-P01_task-door_run-1_trial.json    measures, events, hashes of one trial
     sub-P01/sub-P01_task-door_run-1_recording.mcap
     sub-P01/sub-P01_task-door_form-tlx_answers.json
+    sub-P01/sub-P01_note-1.json    a remark of the operator
+    sub-P01/aside/                 trials that were put aside and played again, and why
     trials.csv answers.csv participants.csv, .parquet   tidy tables, made of the files above
     data_dictionary.csv            every column of the tables
     hashes.sha256                  of all files: sha256sum -c hashes.sha256
@@ -27,13 +29,15 @@ import shutil
 
 from hapticgiant.study import questionnaires, trials
 from hapticgiant.study.description import Study, load_study
-from hapticgiant.study.planning import Participant, Step, plan
+from hapticgiant.study.planning import Participant, Step, plan, steps
 from hapticgiant.sweep.reader import nearest
 
 FORMAT = 1
 DESCRIPTION = "dataset_description.json"
 TABLES = ("participants", "trials", "answers")
 RUNNING = ".running"
+ASIDE = "aside"
+TRIAL = "_trial.json"
 PARTIAL = re.compile(r"\..+\.[0-9]+")  # a file that is being written, see _put()
 WITHDRAWN = "withdrawn.json"
 STUDY = "study.yaml"
@@ -132,13 +136,14 @@ class Folder:
             os.fsync(out.fileno())
         if replaces:
             os.replace(partial, file)
-            return
-        try:
-            os.link(partial, file)
-        except FileExistsError:
-            raise FolderError(f"{file}: is there already, and nothing is written twice") from None
-        finally:
-            partial.unlink()
+        else:
+            try:
+                os.link(partial, file)
+            except FileExistsError:
+                raise FolderError(f"{file}: is there already, and nothing is written twice") from None
+            finally:
+                partial.unlink()
+        _flush(file.parent)
 
     def stem(self, code: str, step: Step) -> pathlib.Path:
         """The beginning of the names of a step's files."""
@@ -148,7 +153,49 @@ class Folder:
 
     def file_of(self, code: str, step: Step) -> pathlib.Path:
         stem = self.stem(code, step)
-        return stem.with_name(stem.name + ("_answers.json" if step.kind == "form" else "_trial.json"))
+        return stem.with_name(stem.name + ("_answers.json" if step.kind == "form" else TRIAL))
+
+    def put_aside(self, code: str, step: Step, why: str) -> None:
+        """Moves the files of a trial aside, with the reason. The trial's own file goes first: without it the trial is not done."""
+        stem = self.stem(code, step)
+        folder = stem.parent / ASIDE
+        folder.mkdir(parents=True, exist_ok=True)
+        number = 1
+        while any(folder.glob(f"{stem.name}_aside-{number}_*")):
+            number += 1
+        begin = folder / f"{stem.name}_aside-{number}"
+        for file in sorted(stem.parent.glob(f"{stem.name}_*"), key=lambda each: not each.name.endswith(TRIAL)):
+            os.replace(file, f"{begin}{file.name.removeprefix(stem.name)}")
+        self.write(begin.with_name(f"{begin.name}_why.json"), trials.dump({
+            "participant": code, "condition": step.condition, "repetition": step.repetition, "why": why}))
+
+    def keep(self, file: pathlib.Path, code: str, step: Step, tail: str) -> pathlib.Path:
+        """Moves a file of a trial that has ended to where it stays; its new place."""
+        stem = self.stem(code, step)
+        target = stem.with_name(f"{stem.name}_{tail}")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _flush(file)
+        os.replace(file, target)
+        _flush(target.parent)
+        return target
+
+    def tidy(self, code: str) -> None:
+        """Puts aside what a crash has left of a trial that has no file of its own."""
+        for step in steps(self.study, next(each for each in plan(self.study) if each.code == code)):
+            stem = self.stem(code, step)
+            if step.kind == "trial" and not self.file_of(code, step).exists() and any(stem.parent.glob(f"{stem.name}_*")):
+                self.put_aside(code, step, "the program ended before the trial was measured")
+
+    def note(self, code: str, text: str, step: int) -> None:
+        """Keeps a remark of the operator."""
+        self.write(self.path / f"sub-{code}" / f"sub-{code}_note-{len(self.notes(code)) + 1}.json",
+                   trials.dump({"participant": code, "step": step, "text": text}))
+
+    def notes(self, code: str) -> list[dict]:
+        """The remarks of the operator, in their order."""
+        files = (self.path / f"sub-{code}").glob("*_note-*.json")
+        return [json.loads(file.read_text(encoding="utf-8"))
+                for file in sorted(files, key=lambda each: int(each.stem.rpartition("-")[2]))]
 
     def withdrawn(self) -> list[str]:
         try:
@@ -159,6 +206,12 @@ class Folder:
     def participants(self) -> list[Participant]:
         """Those that have files, in the order of the plan."""
         return [each for each in plan(self.study) if (self.path / f"sub-{each.code}").is_dir()]
+
+    def progress(self, participant: Participant) -> tuple[int, int]:
+        """How many trials and forms of a participant are there, and how many there are to be."""
+        files = [self.file_of(participant.code, step) for step in steps(self.study, participant)
+                 if step.kind in ("trial", "form")]
+        return sum(file.exists() for file in files), len(files)
 
     def forget(self, code: str) -> int:
         """Deletes everything of one participant; how many files. Again it finishes what a crash has left."""
@@ -189,7 +242,7 @@ class Folder:
         study, found = self.study, {name: [] for name in TABLES}
         for participant in self.participants():
             folder, code, out = self.path / f"sub-{participant.code}", participant.code, 0
-            played = sorted((json.loads(file.read_text(encoding="utf-8")) for file in folder.glob("*_trial.json")),
+            played = sorted((json.loads(file.read_text(encoding="utf-8")) for file in folder.glob(f"*{TRIAL}")),
                             key=lambda each: each["position"])
             for each in played:
                 why = trials.excluded(study, each["measures"], each["exit_code"])
@@ -202,7 +255,7 @@ class Folder:
             why = self._participant_excluded(len(played), out)
             found["participants"].append({
                 "participant": code, "order": " ".join(participant.conditions), "trials": len(played),
-                "excluded_trials": out, "excluded": why})
+                "excluded_trials": out, "put_aside": len({file.name.rpartition("_")[0] for file in (folder / ASIDE).glob("*")}), "excluded": why})
             for file in sorted(folder.glob("*_answers.json")):
                 each = json.loads(file.read_text(encoding="utf-8"))
                 common = {"participant": code, "condition": each["condition"], "form": each["form"]}
@@ -261,6 +314,7 @@ class Folder:
             ("participant", "", "code"), ("order", "", "conditions in the order of the plan"),
             ("trials", "", "trials that were played, without practice"),
             ("excluded_trials", "", "of these left out by a criterion"),
+            ("put_aside", "", "trials that the operator has put aside and that were played again; not in trials"),
             ("excluded", "", "why all of the participant is left out; empty: counts"))]
         lines += [("trials", *each) for each in (
             ("participant", "", "code"), ("position", "", "place of the trial in the participant's plan, from 1"),
@@ -285,13 +339,27 @@ class Folder:
 
     def hash(self) -> None:
         """Writes hashes.sha256 of every file, in the form that sha256sum reads."""
+        known = {}  # of recordings, which are large and never change
+        for file in self.path.glob(f"sub-*/**/*{TRIAL}"):
+            trial = json.loads(file.read_text(encoding="utf-8"))
+            if trial["recording"]:
+                known[file.with_name(file.name.removesuffix(TRIAL) + "_recording.mcap")] = trial["recording_sha256"]
         lines = []
         for file in sorted(self.path.rglob("*")):
             inner = file.relative_to(self.path)
             if not file.is_file() or any(part.startswith(".") for part in inner.parts) or inner.name == "hashes.sha256":
                 continue
-            lines.append(f"{trials.digest_of(file)}  {inner}\n")
+            lines.append(f"{known.get(file) or trials.digest_of(file)}  {inner}\n")
         self.replace(self.path / "hashes.sha256", "".join(lines))
+
+
+def _flush(path):
+    """Waits until a file, or the names in a folder, are on the disk: of a power cut that comes now."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def _csv(columns):

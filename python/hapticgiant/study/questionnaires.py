@@ -8,6 +8,7 @@ import itertools
 KINDS = ("nasa_tlx", "sus", "own")
 MOMENTS = ("condition", "end")
 ITEM_KINDS = ("likert", "slider", "text")
+LONGEST_TEXT = 10000
 
 
 @dataclasses.dataclass(frozen=True)
@@ -142,6 +143,28 @@ def _item(reader, node, item):
     if not low < high or not 0 < step <= high - low:
         reader.fault(node, item, f"expected a scale that rises in steps, got {low} to {high} by {step}")
     return Item(kind, text, low, high, step, tuple(ends) or ({}, {}))
+
+
+def problem_of(form: Form, answers: dict, pairs: dict) -> str | None:
+    """What is wrong with a filled form; None: nothing."""
+    for name, item in form.items.items():
+        if name not in answers:
+            return f"{name} has no answer"
+        value = answers[name]
+        if item.kind == "text":
+            if not isinstance(value, str) or len(value) > LONGEST_TEXT:
+                return f"{name}: expected a text of at most {LONGEST_TEXT} characters"
+            continue
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not item.low <= value <= item.high:
+            return f"{name}: expected a number from {item.low:g} to {item.high:g}, got {value!r}"
+        steps = (value - item.low) / item.step
+        if abs(steps - round(steps)) > 1e-9:
+            return f"{name}: expected steps of {item.step:g} from {item.low:g}, got {value!r}"
+    for pair in form.pairs:
+        if pairs.get("/".join(pair)) not in pair:
+            return f"the pair {' or '.join(pair)} has no answer"
+    unknown = [*(set(answers) - set(form.items)), *(set(pairs) - {"/".join(pair) for pair in form.pairs})]
+    return f"{unknown[0]}: no such item" if unknown else None
 
 
 def scores_of(form: Form, answers: dict, pairs: dict | None = None) -> dict[str, float]:

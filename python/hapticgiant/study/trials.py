@@ -85,12 +85,18 @@ def require_columns(study: Study, known: dict[str, bool]) -> None:
 
 
 def measure(study: Study, program: Program, outcome: Outcome, folder: pathlib.Path) -> Measured:
-    """The measures of a trial that has ended. Raises TrialError, ExpressionError."""
+    """The measures of a run that has ended by itself. Raises TrialError, ExpressionError."""
     summary = outcome.summary()
     if summary is None:
         raise TrialError(outcome.why())
-    recording = next((file for file in folder.glob("*.mcap") if not file.is_symlink()), None)
-    if recording is None:
+    return measured(study, program, summary, outcome.code, folder)
+
+
+def measured(study: Study, program: Program, summary: dict, exit_code: int, folder: pathlib.Path) -> Measured:
+    """The measures of a run by its summary and its recording; the folder is for what is needed meanwhile. Raises
+    TrialError, ExpressionError."""
+    recording = pathlib.Path(summary["recording"])
+    if not summary["recording"] or not recording.is_file():
         raise TrialError(f"no recording: {summary['recording_error'] or 'nothing was written'}")
     table = folder / "columns"
     done = subprocess.run([program.file, "export", recording, "--out", table, "--columns", *columns_of(study)],
@@ -110,7 +116,7 @@ def measure(study: Study, program: Program, outcome: Outcome, folder: pathlib.Pa
             measures[name] = expressions.evaluate(expressions.parse(each.expression), trial)
         except expressions.ExpressionError as error:
             raise expressions.ExpressionError(f"{study.place(f'measures.{name}')}: measures.{name}: {error}") from None
-    return Measured(outcome.code, summary["state_hash"], events, measures, recording, digest_of(recording))
+    return Measured(exit_code, summary["state_hash"], events, measures, recording, digest_of(recording))
 
 
 def digest_of(file: pathlib.Path) -> str:

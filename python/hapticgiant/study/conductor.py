@@ -1,0 +1,421 @@
+"""`hapticgiant study run` without its pages: whose turn it is, which step, the trial that is played, and what may be done.
+
+Everything happens in one thread (asyncio); what takes long (measuring a recording, tables) has a thread of its own, so
+that a stop never waits for it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import dataclasses
+import json
+import math
+import pathlib
+import subprocess
+import time
+
+from hapticgiant.study import expressions, people, questionnaires, trials
+from hapticgiant.study.description import Study
+from hapticgiant.study.folder import RUNNING, Folder
+from hapticgiant.study.planning import Step, plan
+from hapticgiant.study.session import PLAYED, WITH_FILES, Session
+from hapticgiant.study.trial_run import TrialRun
+from hapticgiant.sweep.program import SUMMARY, Program
+
+LONGEST_NOTE = 2000  # characters
+
+
+@dataclasses.dataclass(frozen=True)
+class Hand:
+    """Who moves the handle: mouse (simulated device), device (a person at it), script (rehearsal)."""
+
+    kind: str
+    options: tuple[str, ...] = ()
+    """Of `hapticgiant run`, for a device."""
+
+    @property
+    def is_real(self) -> bool:
+        """Whether it is a person's."""
+        return self.kind != "script"
+
+
+class Refused(RuntimeError):
+    """A command that is not possible now; the message says why."""
+
+
+def expected_events(study: Study, program: Program) -> dict[str, list[str]]:
+    """The events that each condition's task has, by a run of some cycles on the simulated device. Raises TrialError."""
+    found = {}
+    for condition in study.conditions:
+        words = study.arguments(condition)
+        if "--duration" in words:
+            del words[(at := words.index("--duration")):at + 2]
+        command = [program.file, "run", *words, "--fast", "--no-viewer", "--no-recording",
+                   "--flight-recorder", "off", "--duration", "0.01", *SUMMARY]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        begin = done.stdout.rfind("\n{\n")
+        if begin < 0:
+            raise trials.TrialError(f"condition {condition}: {done.stderr.strip() or f'exit code {done.returncode}'}")
+        summary = json.loads(done.stdout[begin + 1:])
+        found[condition] = [*(event["name"] for event in summary["events"]), *summary["missing_events"]]
+    return found
+
+
+class Conductor:
+    """One study that is being run."""
+
+    def __init__(self, study: Study, folder: Folder, program: Program, hand: Hand, events: dict[str, list[str]],
+                 origins: list[str], changed, markers=None):
+        """events: of each condition's task. origins: of the pages that show a run in themselves. changed(): called
+        whenever there is something new to show."""
+        self.study, self.folder, self.program, self.hand = study, folder, program, hand
+        self._events, self._origins, self._changed = events, origins, changed
+        self._markers = markers
+        self._plan = plan(study)
+        self._session: Session | None = None
+        self._run: TrialRun | None = None
+        self._phase = "ready"  # of a trial
+        self._task: asyncio.Task | None = None
+        self._abort_why: str | None = None
+        self._problem: str | None = None
+        self._last: dict | None = None
+        self._rest_until = 0.0
+        self.languages = study.languages
+        self.language = self.languages[0]
+        self.participant_pages = 0
+
+    # what is shown
+
+    def phase(self) -> str:
+        if self._session is None:
+            return "closed"
+        step = self._session.step
+        if step is None:
+            return "complete"
+        return self._phase if step.kind in PLAYED or self._task else "participant"
+
+    def can(self) -> list[str]:
+        """The operator's commands that are possible now."""
+        phase, session = self.phase(), self._session
+        found = []
+        if phase == "closed" and self._next() is not None:
+            found.append("begin")
+        if session is None:
+            return found
+        if self._task is None:
+            found.append("leave")
+            if session.last_played() is not None:
+                found.append("repeat")
+        if phase in ("ready", "failed"):
+            found.append("start")
+        if phase in ("moving", "starting", "running"):
+            found += ["abort"]
+        if phase == "running":
+            found.append("end")
+        if self._run is not None:
+            found.append("stop")
+        if phase == "participant" and session.step.kind != "form":
+            found.append("go_on")
+        return [*found, "note"]
+
+    def operator_state(self, participant_link: str) -> dict:
+        session = self._session
+        known = []
+        gone = self.folder.withdrawn()
+        for each in self._plan:
+            one = session if session is not None and session.code == each.code else None
+            done, count = (one.done, sum(s.kind in WITH_FILES for s in one.steps)) if one else self.folder.progress(each)
+            status = "withdrawn" if each.code in gone else "planned" if not done else "begun" if done < count else "complete"
+            known.append({"code": each.code, "conditions": list(each.conditions), "status": status, "done": done, "of": count})
+        return {
+            "kind": "state", "title": self.study.title, "people": "real" if self.hand.is_real else "simulated",
+            "hand": self.hand.kind, "participants": known, "next": self._next(),
+            "participant": session.code if session else None,
+            "participant_page": {"link": participant_link, "is_connected": self.participant_pages > 0,
+                                 "language": self.language},
+            "steps": [{**dataclasses.asdict(step), "is_done": session.is_done(i)} for i, step in enumerate(session.steps)]
+            if session else [],
+            "position": session.position if session else None, "phase": self.phase(), "problem": self._problem,
+            "run": self.run_state(), "last": self._last,
+            "notes": [{"step": note["step"], "text": note["text"]} for note in self.folder.notes(session.code)]
+            if session else [],
+            "markers": self._markers.state() if self._markers else [], "can": self.can()}
+
+    def run_state(self) -> dict | None:
+        """The run that is going on; None: there is none."""
+        if self._run is None or self._session.step is None:
+            return None
+        shown = self._run.shown
+        return {"link": shown.link, "mode": shown.mode, "is_held": shown.is_held, "time_s": shown.time_s,
+                "force_N": shown.force_N, "fault": shown.fault or None, "events": shown.events,
+                "expected_events": self._events[self._session.step.condition]}
+
+    def participant_state(self) -> dict:
+        session = self._session
+        state = {"kind": "state", "title": self.study.title, "code": session.code if session else None,
+                 "languages": self.languages, "language": self.language, "position": None, "progress": 0.0,
+                 "screen": "waiting"}
+        if session is None:
+            return state
+        step, position = session.step, session.position
+        if step is None:
+            return {**state, "position": len(session.steps), "progress": 1.0, "screen": "end"}
+        state |= {"position": position, "progress": position / len(session.steps)}
+        if step.kind == "instruction":
+            return {**state, "screen": "instruction", "markdown": self._words(self.study.instructions[step.text])}
+        if step.kind == "break":
+            words = self._words(self.study.instructions.get("break", {}))
+            return {**state, "screen": "break", "markdown": words, "rest_s": max(0.0, self._rest_until - time.monotonic())}
+        if step.kind == "form":
+            return {**state, "screen": "form", "form": self._form(step)}
+        if self._phase not in ("starting", "running"):
+            return state
+        is_practice = step.kind == "practice"
+        link = self._run.shown.link if self._run is not None and self.hand.kind == "mouse" else ""
+        return {**state, "screen": "trial", "link": link or None, "is_practice": is_practice,
+                "task": self._words(self.study.instructions.get(step.condition, {}))}
+
+    def _words(self, texts):
+        return texts.get(self.language) or texts.get("en") or next(iter(texts.values()), "")
+
+    def _form(self, step: Step):
+        form = self.study.forms[step.form]
+        about = self._words(self.study.instructions.get(step.condition, {})) if form.after == "condition" else ""
+        return {"name": step.form, "kind": form.kind, "about": about, "pairs": [list(pair) for pair in form.pairs], "items": [
+            {"name": name, "kind": item.kind, "text": self._words(item.text), "low": item.low, "high": item.high,
+             "step": item.step, "ends": [self._words(end) for end in item.ends]} for name, item in form.items.items()]}
+
+    def _next(self) -> str | None:
+        """Who is next: an interrupted one first, then the first that is planned."""
+        gone, planned = self.folder.withdrawn(), None
+        for each in self._plan:
+            if each.code in gone:
+                continue
+            done, count = self.folder.progress(each)
+            if 0 < done < count:
+                return each.code
+            if not done and planned is None:
+                planned = each.code
+        return planned
+
+    # what is asked
+
+    async def operator(self, command: str, words: dict) -> None:
+        """A command of the operator's page. Raises Refused."""
+        if command not in ("begin", "leave", "start", "end", "abort", "repeat", "go_on", "note", "stop"):
+            raise Refused(f"no such command: {command!r}")
+        if command not in self.can():
+            raise Refused(f"{command} is not possible now")
+        await getattr(self, f"_{command}")(words)
+        self._changed()
+
+    async def participant(self, command: str, words: dict) -> None:
+        """A command of the participant's page. Raises Refused."""
+        if command == "language":
+            if words.get("language") not in self.languages:
+                raise Refused(f"no such language: {words.get('language')!r}; there are {', '.join(self.languages)}")
+            self.language = words["language"]
+        elif command == "go_on":
+            await self._go_on(words, is_participant=True)
+        elif command == "answers":
+            await self._answer(words)
+        else:
+            raise Refused(f"no such command: {command!r}")
+        self._changed()
+
+    async def _begin(self, words):
+        code = words.get("code")
+        participant = next((each for each in self._plan if each.code == code), None)
+        if participant is None:
+            raise Refused(f"no participant is called {code!r}")
+        if code in self.folder.withdrawn():
+            raise Refused(f"{code} was withdrawn; a code is not given again")
+        self._session = Session(self.study, self.folder, participant)
+        self._last = self._problem = None
+        self._enter()
+        self._mark(f"{code} begin")
+
+    async def _leave(self, _):
+        self._mark(f"{self._session.code} leave")
+        self._session = None
+        self._problem = None
+        await asyncio.to_thread(self.folder.tabulate)
+
+    async def _start(self, _):
+        if self.hand.kind == "mouse" and not self.participant_pages:
+            raise Refused("the participant's page is not open, on which the handle is dragged")
+        self._phase, self._problem, self._abort_why = "starting", None, None
+        self._task = asyncio.create_task(self._play(self._session.position))
+
+    async def _end(self, _):
+        self._run.end()
+
+    async def _abort(self, words):
+        self._abort_why = self._text(words, "why")
+        self._run.end()
+
+    async def _repeat(self, words):
+        position = self._session.last_played()
+        why = self._text(words, "why")
+        self._session.put_aside(position, why)
+        self._mark(f"{self._name(position)} put aside")
+        self._last = None
+        self._enter()
+
+    async def _go_on(self, words, is_participant=False):
+        step = self._session.step if self._session else None
+        if step is None or words.get("position") != self._session.position:
+            return  # of a page that shows what was before
+        if step.kind not in ("instruction", "break"):
+            raise Refused(f"a {step.kind} cannot be passed")
+        if is_participant and step.kind == "break" and time.monotonic() < self._rest_until:
+            raise Refused("the break is not over")
+        self._session.pass_by(self._session.position)
+        self._enter()
+
+    async def _note(self, words):
+        self.folder.note(self._session.code, self._text(words, "text"), self._session.position or 0)
+
+    async def _stop(self, _):
+        if not await self._run.emergency_stop():
+            raise Refused("the run cannot be reached; use the button of the machine")
+
+    async def _answer(self, words):
+        step = self._session.step if self._session else None
+        if step is None or words.get("position") != self._session.position or step.kind != "form":
+            return  # has been answered
+        answers, pairs = words.get("answers"), words.get("pairs", {})
+        if not isinstance(answers, dict) or not isinstance(pairs, dict):
+            raise Refused("expected answers and pairs by their names")
+        if problem := questionnaires.problem_of(self.study.forms[step.form], answers, pairs):
+            raise Refused(problem)
+        name = self._name(self._session.position)
+        self.folder.write(self.folder.file_of(self._session.code, step), trials.dump({
+            "participant": self._session.code, "condition": step.condition, "form": step.form,
+            "simulated": not self.hand.is_real, "language": self.language, "answers": answers, "pairs": pairs}))
+        self._mark(f"{name} answered")
+        self._enter()
+
+    @staticmethod
+    def _text(words, key):
+        text = words.get(key)
+        if not isinstance(text, str) or not text.strip() or len(text) > LONGEST_NOTE:
+            raise Refused(f"{key}: expected a text of 1 to {LONGEST_NOTE} characters")
+        return text.strip()
+
+    # what happens
+
+    def _enter(self):
+        """The present step begins."""
+        step = self._session.step
+        self._phase = "ready"
+        if step is None:
+            self._mark(f"{self._session.code} complete")
+        elif step.kind == "break":
+            self._rest_until = time.monotonic() + 60 * self.study.breaks[1]
+        if step is not None and step.kind not in PLAYED:
+            self._mark(f"{self._name(self._session.position)} begin")
+
+    def _name(self, position):
+        """What a step is called in markers: P01 trial door 1."""
+        step = self._session.steps[position]
+        parts = (self._session.code, step.kind, step.condition, step.repetition or "", step.form, step.text)
+        return " ".join(str(part) for part in parts if part != "")
+
+    def _mark(self, text):
+        if self._markers:
+            self._markers.mark(text)
+
+    def _command(self, step: Step, work: pathlib.Path) -> list[str]:
+        words = self.study.arguments(step.condition)
+        options = [] if self.hand.kind == "device" else [
+            "--seed", str(people.seed_of(self.study, self._session.code, step.condition, step.repetition))]
+        if self.hand.kind == "mouse":
+            options += ["--user", "mouse"]
+        if self.hand.kind != "script" and "--duration" not in words:
+            options += ["--duration", f"{self.study.longest_s:g}"]
+        for origin in self._origins:
+            options += ["--embedded-in", origin]
+        return [self.program.file, "run", *words, *options, *self.hand.options,
+                "--no-browser", "--recordings", str(work), "--flight-recorder", "off"]
+
+    async def _play(self, position):
+        session, step = self._session, self._session.steps[position]
+        work = (self.folder.path / RUNNING / "trial").absolute()
+        name, summary = self._name(position), None
+        try:
+            trials.discard(work)
+            work.mkdir(parents=True)
+            self._run = TrialRun(self._command(step, work), self._events[step.condition], self.study.pause_s, self._run_changed)
+            self._mark(f"{name} begin")
+            code, summary, said = await self._run.play(work / "summary.json")
+            self._mark(f"{name} end")
+            self._run = None
+            if self._abort_why is not None:
+                self._put_aside(step, summary, self._abort_why)
+                self._phase = "ready"
+                return
+            if summary is None:
+                raise trials.TrialError(said or f"the run ended with {code} and no summary")
+            if step.kind == "practice":
+                session.pass_by(position)
+            else:
+                self._phase = "measuring"
+                self._changed()
+                await asyncio.to_thread(self._measure, session, step, position, code, summary, work)
+            self._enter()
+        except (trials.TrialError, expressions.ExpressionError, OSError) as error:
+            self._phase, self._problem = "failed", str(error)
+            self._put_aside(step, summary, str(error))
+        finally:
+            self._run = self._task = None
+            self._abort_why = None
+            trials.discard(work)
+            self._changed()
+
+    def _run_changed(self):
+        shown = self._run.shown if self._run else None
+        if shown is None:
+            return
+        self._phase = "ending" if self._run.is_ending else "running" if shown.link else "starting"
+        self._changed()
+
+    def _put_aside(self, step, summary, why):
+        """Keeps the recording of a trial that does not count."""
+        recording = pathlib.Path(summary["recording"]) if summary and summary["recording"] else None
+        if step.kind == "trial" and recording is not None and recording.is_file():
+            with contextlib.suppress(OSError):  # of a full disk, which has been told
+                self.folder.keep(recording, self._session.code, step, "recording.mcap")
+                self.folder.put_aside(self._session.code, step, why)
+
+    def _measure(self, session, step, position, exit_code, summary, work):
+        found = trials.measured(self.study, self.program, summary, exit_code_of(summary, exit_code), work)
+        recording = self.folder.keep(found.recording, session.code, step, "recording.mcap")
+        self.folder.write(self.folder.file_of(session.code, step), trials.dump({
+            "participant": session.code, "condition": step.condition, "repetition": step.repetition,
+            "position": session.place(position), "simulated": not self.hand.is_real, "hand": self.hand.kind,
+            "exit_code": found.exit_code, "measures": found.measures,
+            "events": [{"time_s": at, "name": name} for at, name in found.events], "state_hash": found.state_hash,
+            "recording_sha256": found.digest, "recording": recording.name}))
+        self._last = {
+            "condition": step.condition, "repetition": step.repetition, "exit_code": found.exit_code,
+            "excluded": trials.excluded(self.study, found.measures, found.exit_code),
+            "measures": {name: {"value": value if math.isfinite(value) else None, "unit": self.study.measures[name].unit}
+                         for name, value in found.measures.items()}}
+
+    async def close(self) -> None:
+        """Ends what goes on; the trial that is played does not count."""
+        if self._task is not None and self._run is not None:
+            self._abort_why = "the study was closed"
+            self._run.end()
+        if self._task is not None:
+            await asyncio.gather(self._task, return_exceptions=True)
+        await asyncio.to_thread(self.folder.tabulate)
+
+
+def exit_code_of(summary: dict, code: int) -> int:
+    """The exit code that a run would have had if nobody had ended it: docs/reference/runtime.md."""
+    if code == 0 and (summary["missing_events"] or not summary["limits_held"]):
+        return 1
+    return code

@@ -1,0 +1,180 @@
+"""The two pages of `hapticgiant study run`: operator's and participant's, and their WebSockets.
+
+Whoever has a page's link may use it: the token stands behind # in it, as in that of a run (docs/start/viewer.md).
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import json
+import pathlib
+import secrets
+import signal
+
+from aiohttp import WSMsgType, web
+
+from hapticgiant.study.conductor import Conductor, Refused
+from hapticgiant.study.folder import FolderError
+
+PROTOCOL = "hapticgiant-study"
+LARGEST_MESSAGE = 1 << 18  # bytes
+LIVE_PERIOD_S = 0.2
+PATIENCE_S = 1.0  # with a page that takes no messages
+PAGES = ("operator", "participant")
+POLICY = ("default-src 'self'; connect-src 'self'; frame-src http://127.0.0.1:*; img-src 'self' data:; "
+          "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'")
+HEADERS = {"Content-Security-Policy": POLICY, "Cache-Control": "no-store", "Referrer-Policy": "no-referrer",
+           "X-Content-Type-Options": "nosniff", "Cross-Origin-Opener-Policy": "same-origin"}
+
+
+class Server:
+    """Serves the pages of one study. `conductor` is set before run()."""
+
+    conductor: Conductor
+
+    def __init__(self, pages: pathlib.Path, address: str, port: int):
+        self._pages, self._address, self._port = pages, address, port
+        self._tokens = {name: secrets.token_hex(16) for name in PAGES}
+        self._sockets: dict[str, set[web.WebSocketResponse]] = {name: set() for name in PAGES}
+        self._news = asyncio.Event()
+        self._end = asyncio.Event()
+        self._runner: web.AppRunner | None = None
+
+    async def open(self) -> None:
+        """Binds the port. Raises OSError."""
+        app = web.Application(middlewares=[self._guard])
+        for name in PAGES:
+            app.router.add_get(f"/ws/{name}", self._talk)
+        app.router.add_static("/", self._pages, follow_symlinks=False)
+        self._runner = web.AppRunner(app, access_log=None)
+        await self._runner.setup()
+        site = web.TCPSite(self._runner, self._address, self._port)
+        await site.start()
+        self._port = site._server.sockets[0].getsockname()[1]
+
+    def origins(self) -> list[str]:
+        """Addresses of the pages."""
+        own = [f"http://127.0.0.1:{self._port}"]
+        if self._address not in ("127.0.0.1", "0.0.0.0"):
+            own.append(f"http://{self._address}:{self._port}")
+        return own
+
+    def link(self, name: str) -> str:
+        return f"{self.origins()[-1]}/study/{name}.html#token={self._tokens[name]}"
+
+    def changed(self) -> None:
+        """There is something new to show."""
+        self._news.set()
+
+    async def run(self) -> None:
+        """Until Ctrl-C or SIGTERM."""
+        loop = asyncio.get_running_loop()
+        for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            loop.add_signal_handler(each, self._end.set)
+        tasks = [asyncio.create_task(self._tell()), asyncio.create_task(self._tell_live())]
+        await self._end.wait()
+        for task in tasks:
+            task.cancel()
+        await self.conductor.close()
+        for sockets in self._sockets.values():
+            for socket in list(sockets):
+                await socket.close()
+        await self._runner.cleanup()
+
+    @web.middleware
+    async def _guard(self, request, handler):
+        if not self._is_own(request.host):
+            raise web.HTTPForbidden(text="this server is not called that\n", headers=HEADERS)
+        try:
+            answer = await handler(request)
+        except web.HTTPException as error:
+            error.headers.update(HEADERS)
+            raise
+        if not answer.prepared:
+            answer.headers.update(HEADERS)
+        return answer
+
+    def _is_own(self, host):
+        """Whether a Host header is an address of this machine: only names can be redirected here by others."""
+        name, _, port = host.rpartition(":")
+        if port != str(self._port):
+            return False
+        if self._address == "0.0.0.0":
+            return name == "localhost" or name.replace(".", "").isdigit()
+        return name in ("127.0.0.1", "localhost", self._address)
+
+    async def _talk(self, request):
+        name = request.path.rpartition("/")[2]
+        asked = [each.strip() for each in request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
+        token = next((each.removeprefix("token.") for each in asked if each.startswith("token.")), "")
+        origin = request.headers.get("Origin", "")
+        if not hmac.compare_digest(token.encode(), self._tokens[name].encode()) or PROTOCOL not in asked:
+            raise web.HTTPForbidden(text="the link has another token\n")
+        if origin.partition("://")[2] != request.host:
+            raise web.HTTPForbidden(text="a page of another server\n")
+        socket = web.WebSocketResponse(protocols=(PROTOCOL,), max_msg_size=LARGEST_MESSAGE, heartbeat=10)
+        await socket.prepare(request)
+        self._sockets[name].add(socket)
+        self._count()
+        try:
+            await socket.send_json(self._state(name))
+            async for message in socket:
+                if message.type == WSMsgType.TEXT:
+                    await socket.send_json(await self._take(name, message.data))
+        except (ConnectionError, RuntimeError):
+            pass  # it has gone
+        finally:
+            self._sockets[name].discard(socket)
+            self._count()
+        return socket
+
+    def _count(self):
+        self.conductor.participant_pages = len(self._sockets["participant"])
+        self.changed()
+
+    async def _take(self, name, text):
+        number = None
+        try:
+            words = json.loads(text)
+            if not isinstance(words, dict) or not isinstance(words.get("command"), str):
+                raise Refused("expected an object with 'id' and 'command'")
+            number = words.get("id")
+            await getattr(self.conductor, name)(words["command"], words)
+            problem = None
+        except (Refused, FolderError, OSError) as error:
+            problem = str(error)
+        except (ValueError, RecursionError):
+            problem = "not valid JSON"
+        return {"kind": "answer", "id": number if isinstance(number, (int, float, str)) else None, "problem": problem}
+
+    def _state(self, name):
+        if name == "operator":
+            return self.conductor.operator_state(self.link("participant"))
+        return self.conductor.participant_state()
+
+    async def _tell(self):
+        while True:
+            await self._news.wait()
+            self._news.clear()
+            for name, sockets in self._sockets.items():
+                if sockets:
+                    await self._send(sockets, self._state(name))
+
+    async def _tell_live(self):
+        while True:
+            await asyncio.sleep(LIVE_PERIOD_S)
+            run = self.conductor.run_state()
+            if run is not None:
+                await self._send(self._sockets["operator"], {"kind": "live", "run": run})
+
+    @staticmethod
+    async def _send(sockets, message):
+        for socket in list(sockets):
+            try:
+                await asyncio.wait_for(socket.send_json(message), PATIENCE_S)
+            except (ConnectionError, RuntimeError):
+                pass  # its reader will see that it has gone
+            except asyncio.TimeoutError:  # a page that takes nothing holds nobody up
+                sockets.discard(socket)
+                socket.get_extra_info("transport").abort()
