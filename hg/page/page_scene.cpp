@@ -223,6 +223,13 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
     scene.surfaces.push_back(scene_surface(surface));
   }
   scene.shapes = scene_shapes(scenario.device);
+  for (const EventRule& event : scenario.events) {
+    for (const Condition& condition : event.all_of) {
+      if (condition.kind != ConditionKind::kHandleAt) continue;
+      const Eigen::Vector3d& at = condition.place;
+      scene.checkpoints.push_back({event.name, at.x(), at.y(), at.z()});
+    }
+  }
   return scene;
 }
 

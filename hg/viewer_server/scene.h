@@ -76,6 +76,13 @@ struct SceneShape {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< of a box, m; zero for a capsule
 };
 
+/// A place that an expected event asks the handle to be brought to.
+struct SceneCheckpoint {
+  std::string name;          ///< of the event
+  double x = 0.0, y = 0.0;   ///< of the handle in B, m
+  double azimuth_rad = 0.0;  ///< of the hand axis about z of B
+};
+
 enum class Source : std::uint8_t { kRun, kRecording };
 
 struct Choice {
@@ -116,6 +123,7 @@ struct Scene {
   Environment environment = Environment::kRoom;
   std::vector<SceneSurface> surfaces;
   std::vector<SceneShape> shapes;
+  std::vector<SceneCheckpoint> checkpoints;  ///< in the order of their events
   Choices choices;
   std::vector<Setting> settings;
   std::vector<CommandName> commands;  ///< accepted commands

@@ -42,6 +42,10 @@ template <>
 inline constexpr Interface kInterface<SceneShape> = {
     "SceneShape", "a shape by which collisions of the device with itself are foreseen"};
 template <>
+inline constexpr Interface kInterface<SceneCheckpoint> = {
+    "SceneCheckpoint",
+    "a place of the handle that an event asks for, nearer than 0.10 m, 15 degrees"};
+template <>
 inline constexpr Interface kInterface<Choice> = {"Choice", "one option"};
 template <>
 inline constexpr Interface kInterface<Choices> = {"Choices", "options and the chosen ones"};
@@ -117,6 +121,14 @@ void fields(Archive& a, T& shape) {
   a("radius_m", shape.radius, "of a capsule along z");
   a("length_m", shape.length, "of a capsule, without its ends");
   a("size_m", shape.size, "of a box; zero for a capsule");
+}
+
+template <typename Archive, Is<SceneCheckpoint> T>
+void fields(Archive& a, T& checkpoint) {
+  a("name", checkpoint.name, "of the event");
+  a("x_m", checkpoint.x, "in B");
+  a("y_m", checkpoint.y, "in B");
+  a("azimuth_rad", checkpoint.azimuth_rad, "of the hand axis, z of H, about z of B");
 }
 
 template <typename Archive, Is<Choice> T>

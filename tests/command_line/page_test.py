@@ -131,6 +131,12 @@ class PageTest(TemporaryFolder):
                   self.samples(recording, "/hapticgiant/events")}
         self.assertEqual(events["set"], f"{name} = 3.25 Nms/rad")
 
+    def test_places_that_events_ask_for_are_in_the_scene(self):
+        with self.run_of("path", "--set", "scenario.person=mouse") as (_, page):
+            places = page.scene()["checkpoints"]
+            self.assertEqual([place["name"] for place in places], [f"checkpoint {i}" for i in range(1, 7)])
+            self.assertEqual(places[1], {"name": "checkpoint 2", "x_m": 1.2, "y_m": -1.5, "azimuth_rad": 0})
+
     def test_another_scenario_begins_and_the_page_stays(self):
         with self.run_of("door", "--user", "mouse") as (process, page):
             self.assertEqual(page.scene()["environment"], "door")

@@ -124,10 +124,10 @@ Json all() {
 
 Json message_facts() {
   return all<Scene, SceneChain, SceneJoint, SceneFollower, SceneLimitMessage, Eigen::AlignedBox3d,
-             SceneSurface, SceneShape, Choices, Choice, Setting, FrameMessage, FeltLimitMessage,
-             ActiveLimitMessage, ContactReport, HandBudget, Vector6, Singularity, RunState,
-             SafetyMessage, Ghost, HandMessage, HoldMessage, CommandMessage, WelcomeMessage,
-             AnswerMessage, ValuesMessage, EventMessage>();
+             SceneSurface, SceneShape, SceneCheckpoint, Choices, Choice, Setting, FrameMessage,
+             FeltLimitMessage, ActiveLimitMessage, ContactReport, HandBudget, Vector6, Singularity,
+             RunState, SafetyMessage, Ghost, HandMessage, HoldMessage, CommandMessage,
+             WelcomeMessage, AnswerMessage, ValuesMessage, EventMessage>();
 }
 
 }  // namespace hg::pages

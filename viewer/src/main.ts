@@ -108,6 +108,7 @@ class Page {
       on_frame: (frame) => this.note(frame),
       on_event: (event) => {
         this.events.add(event);
+        this.world?.happened(event.name);
         const { scene, frame } = this.store;
         const is_new = scene?.source === "run" && event.time_s > (frame?.time_s ?? Infinity) - NEWS_S;
         if (event.name === "request" && is_new) this.notices.show("request", event.text);

@@ -24,6 +24,7 @@ export interface Scene {
   environment: "room" | "door" | "excavator"; // surroundings of the twin
   surfaces: SceneSurface[];
   shapes: SceneShape[]; // of the device, watched for collisions with itself
+  checkpoints: SceneCheckpoint[]; // places that the handle is to be brought to, in order
   choices: Choices;
   settings: Setting[];
   commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop")[]; // accepted commands
@@ -98,6 +99,14 @@ export interface SceneShape {
   radius_m: number; // of a capsule along z
   length_m: number; // of a capsule, without its ends
   size_m: Vec3; // of a box; zero for a capsule
+}
+
+// a place of the handle that an event asks for, nearer than 0.10 m, 15 degrees
+export interface SceneCheckpoint {
+  name: string; // of the event
+  x_m: number; // in B
+  y_m: number; // in B
+  azimuth_rad: number; // of the hand axis, z of H, about z of B
 }
 
 // options and the chosen ones

@@ -98,6 +98,7 @@ Scene make_scene() {
   scene.settings = {{.name = "hinge.damping", .group = "hinge", .max = 10.0, .value = kInfinity}};
   scene.surfaces = {{.name = "table", .shape = SurfaceShape::kMesh, .triangles = {1.0}}};
   scene.shapes = {{.name = "hand_1", .link = "hand", .radius = 0.05, .length = 0.2}};
+  scene.checkpoints = {{"first", 1.0, 2.0, 0.5}};
   scene.commands = {CommandName::kPause, CommandName::kSet};
   scene.twin.joints = {{"free", JointType::kFloating},
                        {"glide x", JointType::kPrismatic, "glide", Eigen::Vector3d::UnitY()}};

@@ -332,7 +332,7 @@ class Conductor:
         options = [] if self.hand.kind == "device" else [
             "--seed", str(people.seed_of(self.study, self._session.code, step.condition, step.repetition))]
         if self.hand.kind == "mouse":
-            options += ["--user", "mouse"]
+            options += ["--set", "scenario.person=mouse"]  # and not --user, which is without the task's events
         if self.hand.kind != "script" and "--duration" not in words:
             options += ["--duration", f"{self.study.longest_s:g}"]
         for origin in self._origins:

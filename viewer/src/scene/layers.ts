@@ -5,6 +5,7 @@ export const LAYERS = {
   twin: { title: "Twin", is_on: true },
   ghost: { title: "Second recording", is_on: true },
   surfaces: { title: "Virtual surfaces", is_on: true },
+  checkpoints: { title: "Checkpoints", is_on: true },
   surroundings: { title: "Surroundings", is_on: true },
   person: { title: "Person", is_on: true },
   arrows: { title: "Force and torque", is_on: true },

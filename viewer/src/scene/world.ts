@@ -6,6 +6,7 @@ import { limit_closeness } from "../limit_words";
 import type { Frame, Scene, Vec3 } from "../messages";
 import { ELBOW_COLOR, FORCE_COLOR, type Theme } from "../theme";
 import { arrow_size } from "./arrow_size";
+import { Checkpoints } from "./checkpoints";
 import { type ChainView, load_chain } from "./chain_view";
 import { add_shapes } from "./collision_shapes";
 import { dispose_of } from "./dispose";
@@ -40,6 +41,7 @@ export class World {
   private readonly gauges: Gauge[];
   private readonly surroundings: Surroundings;
   private readonly surfaces: SurfacesView;
+  private readonly checkpoints: Checkpoints;
   private readonly scanner: Group;
   private readonly shapes: Object3D[];
   private readonly ghost: Ghost;
@@ -57,6 +59,7 @@ export class World {
     const lowest = new Box3().setFromObject(device.placement).min.z;
     this.surroundings = surroundings_of(scene, lowest);
     this.surfaces = new SurfacesView(scene.surfaces);
+    this.checkpoints = new Checkpoints(scene.checkpoints, scene.floor_z_m);
     this.shapes = add_shapes(scene.shapes, device);
     this.scanner = scanner_zone(scene.box, scene.floor_z_m);
     this.ghost = new Ghost(scene);
@@ -64,6 +67,7 @@ export class World {
     this.trails.add(this.handle_trail.line, this.elbow_trail.line);
     this.root.add(device.placement, twin.placement, this.surroundings.group, this.ghost.group);
     this.root.add(this.person.group, this.trails, this.scanner, this.surfaces.group);
+    this.root.add(this.checkpoints.group);
     this.root.add(this.handle.pull, this.handle.arrows);
     this.apply_layers();
   }
@@ -82,6 +86,7 @@ export class World {
       ["twin", [this.twin.placement]],
       ["ghost", [this.ghost.group]],
       ["surfaces", [this.surfaces.group]],
+      ["checkpoints", [this.checkpoints.group]],
       ["surroundings", [this.surroundings.group]],
       ["person", [this.person.group]],
       ["arrows", [this.handle.arrows]],
@@ -107,6 +112,11 @@ export class World {
     this.elbow_trail.add(frame.p_B_elbow_m);
   }
 
+  // Its checkpoint, if there is one of that name, has been reached.
+  happened(event: string): void {
+    this.checkpoints.reach(event);
+  }
+
   // `target`: where the handle is dragged to, null = it is not; `axis`: along which only.
   show(frame: Frame, target: Vec3 | null, axis: Vec3 | null): void {
     this.device.pose(frame.q_device);
@@ -118,6 +128,7 @@ export class World {
     this.person.pose(new Vector3(...frame.p_B_H_m), attitude);
     this.ghost.show(frame.ghost);
     this.surfaces.show(frame.p_B_E_m, frame.contact);
+    this.checkpoints.show(new Vector3(...frame.p_B_H_m), attitude);
   }
 
   dispose(): void {

@@ -56,6 +56,7 @@ export const scene: Scene = {
   environment: "door",
   surfaces: [],
   shapes: [],
+  checkpoints: [],
   choices: {
     scenario: "door",
     scenarios: [],
