@@ -32,7 +32,7 @@ install_page_packages() {
     cp viewer/package-lock.json "$page_packages"
 }
 page_stamp=viewer/dist/.hapticgiant-sources
-page_sources=$(find viewer/*.json viewer/*.ts viewer/index.html viewer/src viewer/public -type f \
+page_sources=$(find viewer/*.json viewer/*.ts viewer/index.html viewer/study viewer/src viewer/public -type f \
   -exec sha256sum {} + | LC_ALL=C sort)
 build_page() {
   if [ "$(cat "$page_stamp" 2>/dev/null)" = "$page_sources" ]; then return; fi

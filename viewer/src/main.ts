@@ -16,6 +16,7 @@ import { SafetyPanel } from "./panels/safety";
 import { Tabs } from "./panels/tabs";
 import { PlotDrawer } from "./plots/drawer";
 import { ReplayBar } from "./replay_bar";
+import { show_part } from "./part";
 import { Cameras } from "./scene/cameras";
 import { foot_of_arm, sight_of, what_matters } from "./scene/first_view";
 import { Layers } from "./scene/layers";
@@ -274,5 +275,6 @@ function show_connection(is_connected: boolean): void {
 
 watch_token();
 start_theme();
+show_part();
 if (token() === "") write(element("story"), "Open the link that the program printed: it has the token.");
 window.hapticgiant = new Page().state();

@@ -44,6 +44,11 @@ export function stop_text(link: Link, safety: Safety | null, own_page: number): 
   return { text: "STOP", note: "Esc", announcement: "" };
 }
 
+// A page that shows this one inside itself presses the stop by a message.
+export function is_stop_of_container(source: unknown, data: unknown): boolean {
+  return window.parent !== window && source === window.parent && data === "emergency stop";
+}
+
 export class StopButton {
   private readonly button = element<HTMLButtonElement>("emergency-stop");
   private readonly announcement = element("stop-announcement");
@@ -60,6 +65,9 @@ export class StopButton {
       this.press();
     };
     addEventListener("keydown", take_key, { capture: true }); // before anything else takes it
+    addEventListener("message", ({ source, data }) => {
+      if (is_stop_of_container(source, data) && !this.button.hidden) this.press();
+    });
   }
 
   load(scene: Scene): void {

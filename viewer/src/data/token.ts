@@ -39,6 +39,6 @@ export function authorization(): Record<string, string> {
 }
 
 // Of the WebSocket, which cannot have headers: the program takes the first.
-export function protocols(): string[] {
-  return ["hapticgiant", `token.${token()}`];
+export function protocols(name = "hapticgiant"): string[] {
+  return [name, `token.${token()}`];
 }

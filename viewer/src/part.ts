@@ -1,0 +1,24 @@
+// A part of the page, for a page that shows it inside itself: `show=hand` in the address, after the
+// token, is scene, handle and stop for who holds the handle; `show=trial` leaves out what another
+// program decides, scenario and time.
+
+import { page_options } from "./data/token";
+
+const PARTS = ["hand", "trial"];
+
+export function show_part(): void {
+  const part = page_options().get("show") ?? "";
+  if (!PARTS.includes(part)) return;
+  document.body.dataset.show = part;
+  if (part === "hand") addEventListener("keydown", keep_from_page, { capture: true });
+  else addEventListener("keydown", keep_time_from_page, { capture: true });
+}
+
+// Of the keys only Escape is left, and what works buttons.
+function keep_from_page(event: KeyboardEvent): void {
+  if (event.key !== "Escape") event.stopImmediatePropagation();
+}
+
+function keep_time_from_page(event: KeyboardEvent): void {
+  if (["p", ".", "r"].includes(event.key)) event.stopImmediatePropagation();
+}
