@@ -6,6 +6,7 @@
 import csv
 import importlib.util
 import json
+import os
 import re
 import shlex
 import shutil
@@ -100,6 +101,14 @@ class Before(Study):
                 text = text.replace("test: mixed", "test: welch_t")
             self.file.write_text(text)
             self.assertIn(message, self.study("check", *words, code=1)[0])
+
+    def test_check_says_that_markers_need_pylsl(self):
+        """Where pylsl is installed, it is hidden by a folder of Python that has another one, without a library."""
+        (self.folder / "pylsl.py").write_text("raise RuntimeError('LSL binary library file was not found.')")
+        self.file.write_text(STUDY + "lab_streaming: {markers: [all]}\n")
+        out = subprocess.run([PROGRAM, "study", "check", self.file, "--no-trials", "--simulations", "100"], text=True,
+                             capture_output=True, env={**os.environ, "PYTHONPATH": str(self.folder)}).stdout
+        self.assertIn("PROBLEM: lab_streaming: needs pylsl: pip install pylsl (LSL binary library", out)
 
     def test_a_column_that_does_not_exist_has_its_place(self):
         self.file.write_text(STUDY.replace("robot.w_h[0],", "robot.w_j[0],"))

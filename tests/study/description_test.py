@@ -2,6 +2,7 @@
 
 import collections
 import itertools
+import math
 import pathlib
 import re
 import tempfile
@@ -10,7 +11,7 @@ import warnings
 
 import numpy as np
 import without_compiled_part  # noqa: F401
-from hapticgiant.study import description, expressions, folder, order, people, planning, questionnaires, trials
+from hapticgiant.study import description, expressions, folder, markers, order, people, planning, questionnaires, trials
 from hapticgiant.sweep.reader import StudyError
 
 STUDY = """\
@@ -187,6 +188,49 @@ class Faults(unittest.TestCase):
             for message in ("study.yaml", *messages):
                 self.assertIn(message, str(caught.exception))
             self.assertEqual(len(str(caught.exception).splitlines()), 1)
+
+    def test_lab_streaming(self):
+        def study(text):
+            return load(STUDY + f"lab_streaming: {text}\n")
+
+        self.assertEqual(load(STUDY).lab_streaming, description.LabStreaming(False, ()))
+        self.assertEqual(study("{outlets: true, markers: [Eye Tracker, 'all', \"42\"]}").lab_streaming,
+                         description.LabStreaming(True, ("Eye Tracker", "all", "42")))
+        for text, message in (("{outlet: true}", "did you mean 'outlets'"), ("{outlets: tru}", "did you mean 'true'"),
+                              ("{markers: Eye}", "lab_streaming.markers: expected a list"),
+                              ("{markers: ['']}", "expected the name of a stream"),
+                              ("{markers: [[a]]}", "expected the name of a stream"),
+                              ("{markers: [a, a]}", "'a' is given twice"),
+                              ("{markers: [HapticGiantEvents]}", "is sent by HapticGiant itself: outlets: true"),
+                              ("[all]", "lab_streaming: expected a map")):
+            with self.assertRaisesRegex(StudyError, rf"study.yaml:21:\d+: .*{message}"):
+                study(text)
+
+    def test_markers_are_named_where_they_are_kept(self):
+        for names, is_told in (("[Eyes]", True), ("[]", False)):
+            study = load(STUDY + f"lab_streaming: {{markers: {names}}}\n")
+            with tempfile.TemporaryDirectory() as path:
+                (there := folder.Folder(study, path)).tabulate()
+                self.assertEqual("streams of other instruments, with their times: Eyes."
+                                 in (there.path / "WHAT_IS_STORED.md").read_text(), is_told)
+                for column in markers.COLUMNS:
+                    self.assertEqual(f"sub-*/*_markers,{column}," in (there.path / "data_dictionary.csv").read_text(), is_told)
+
+    def test_markers_become_files_of_their_trial_and_none_is_written_twice(self):
+        study = load(STUDY)
+        rows = [markers.Marker("Eyes", 12.5, "blink", -2.0, 1e-4), markers.Marker("Eyes", math.nan, "3 markers dropped")]
+        with tempfile.TemporaryDirectory() as path:
+            there, step = folder.Folder(study, path), planning.Step("trial", "light", 2)
+            file = markers.write(there, "P01", step, rows, [(0.1, 10.0)])
+            self.assertEqual(file.relative_to(path), pathlib.Path("sub-P01/sub-P01_task-light_run-2_markers.csv"))
+            self.assertEqual(file.read_text(), "stream,lsl_time_s,clock_offset_s,offset_error_s,run_time_s,value\n"
+                                               "Eyes,12.500000,-2.000000,0.000100,0.500000,blink\n"
+                                               "Eyes,,,,,3 markers dropped\n")
+            with self.assertRaisesRegex(folder.FolderError, "is there already"):
+                markers.write(there, "P01", step, rows)
+            between = [markers.write(there, "P01", None, rows[:1]) for _ in range(2)]
+            self.assertEqual([each.name for each in between], ["sub-P01_run-1_markers.csv", "sub-P01_run-2_markers.csv"])
+            self.assertIn(",0.000100,,blink\n", between[0].read_text())
 
     def test_a_measure_without_a_value_leaves_no_trial_out(self):
         study = load(STUDY.replace("trial: peak_force_N > 1000", "trial: peak_force_N - half"))

@@ -176,11 +176,15 @@ def show_plan(study, code):
 
 
 def check(study, arguments):
-    from hapticgiant.study import planning, simulation, trials
+    from hapticgiant.study import markers, planning, simulation, trials
     from hapticgiant.sweep.campaign import explained
     from hapticgiant.sweep.program import find_program
 
     problems, notes = planning.problems_of(study), planning.notes_of(study)
+    try:
+        markers.require(study)
+    except markers.MarkerError as error:
+        problems.append(str(error))
     design = study.design
     print(f"{study.title}: {design.participants} participants, {len(study.conditions)} conditions {design.kind} "
           f"people, {design.repetitions} trials of each, order {design.order}")
@@ -277,6 +281,7 @@ def main(words):
         return 2
     from hapticgiant.study.expressions import ExpressionError
     from hapticgiant.study.folder import FolderError
+    from hapticgiant.study.markers import MarkerError
     from hapticgiant.study.trials import TrialError
     from hapticgiant.sweep.reader import StudyError
 
@@ -286,7 +291,7 @@ def main(words):
     signal.signal(signal.SIGTERM, interrupt)
     try:
         return run(arguments)
-    except (StudyError, FolderError, ExpressionError, TrialError) as error:
+    except (StudyError, FolderError, ExpressionError, TrialError, MarkerError) as error:
         print(error, file=sys.stderr)
         return 2
     except BrokenPipeError:  # the reader has seen enough

@@ -15,7 +15,7 @@ import pathlib
 import subprocess
 import time
 
-from hapticgiant.study import expressions, people, questionnaires, trials
+from hapticgiant.study import expressions, markers, people, questionnaires, trials
 from hapticgiant.study.description import Study
 from hapticgiant.study.folder import RUNNING, Folder
 from hapticgiant.study.planning import Step, plan
@@ -66,12 +66,14 @@ class Conductor:
     """One study that is being run."""
 
     def __init__(self, study: Study, folder: Folder, program: Program, hand: Hand, events: dict[str, list[str]],
-                 origins: list[str], changed, markers=None):
+                 origins: list[str], changed):
         """events: of each condition's task. origins: of the pages that show a run in themselves. changed(): called
-        whenever there is something new to show."""
+        whenever there is something new to show. Raises MarkerError."""
         self.study, self.folder, self.program, self.hand = study, folder, program, hand
         self._events, self._origins, self._changed = events, origins, changed
-        self._markers = markers
+        lab = study.lab_streaming
+        self._stream = markers.StudyStream(study.digest()) if lab.outlets else None
+        self._markers = markers.Markers(lab.markers) if lab.markers else None
         self._plan = plan(study)
         self._session: Session | None = None
         self._run: TrialRun | None = None
@@ -237,6 +239,7 @@ class Conductor:
         self._mark(f"{code} begin")
 
     async def _leave(self, _):
+        self._keep_markers()
         self._mark(f"{self._session.code} leave")
         self._session = None
         self._problem = None
@@ -259,7 +262,7 @@ class Conductor:
         position = self._session.last_played()
         why = self._text(words, "why")
         self._session.put_aside(position, why)
-        self._mark(f"{self._name(position)} put aside")
+        self._mark_step(position, "put aside")
         self._last = None
         self._enter()
 
@@ -290,11 +293,11 @@ class Conductor:
             raise Refused("expected answers and pairs by their names")
         if problem := questionnaires.problem_of(self.study.forms[step.form], answers, pairs):
             raise Refused(problem)
-        name = self._name(self._session.position)
+        position = self._session.position
         self.folder.write(self.folder.file_of(self._session.code, step), trials.dump({
             "participant": self._session.code, "condition": step.condition, "form": step.form,
             "simulated": not self.hand.is_real, "language": self.language, "answers": answers, "pairs": pairs}))
-        self._mark(f"{name} answered")
+        self._mark_step(position, "end")
         self._enter()
 
     @staticmethod
@@ -315,17 +318,15 @@ class Conductor:
         elif step.kind == "break":
             self._rest_until = time.monotonic() + 60 * self.study.breaks[1]
         if step is not None and step.kind not in PLAYED:
-            self._mark(f"{self._name(self._session.position)} begin")
-
-    def _name(self, position):
-        """What a step is called in markers: P01 trial door 1."""
-        step = self._session.steps[position]
-        parts = (self._session.code, step.kind, step.condition, step.repetition or "", step.form, step.text)
-        return " ".join(str(part) for part in parts if part != "")
+            self._mark_step(self._session.position, "begin")
 
     def _mark(self, text):
-        if self._markers:
-            self._markers.mark(text)
+        if self._stream:
+            self._stream.mark(text)
+
+    def _mark_step(self, position, what):
+        """As P01 trial door 1 begin."""
+        self._mark(markers.words_of(self._session.code, self._session.steps[position], what))
 
     def _command(self, step: Step, work: pathlib.Path) -> list[str]:
         words = self.study.arguments(step.condition)
@@ -337,20 +338,23 @@ class Conductor:
             options += ["--duration", f"{self.study.longest_s:g}"]
         for origin in self._origins:
             options += ["--embedded-in", origin]
+        if self.study.lab_streaming.outlets:
+            options.append("--lsl")
         return [self.program.file, "run", *words, *options, *self.hand.options,
                 "--no-browser", "--recordings", str(work), "--flight-recorder", "off"]
 
     async def _play(self, position):
         session, step = self._session, self._session.steps[position]
         work = (self.folder.path / RUNNING / "trial").absolute()
-        name, summary = self._name(position), None
+        summary = None
         try:
             trials.discard(work)
             work.mkdir(parents=True)
+            self._keep_markers()
             self._run = TrialRun(self._command(step, work), self._events[step.condition], self.study.pause_s, self._run_changed)
-            self._mark(f"{name} begin")
+            self._mark_step(position, "begin")
             code, summary, said = await self._run.play(work / "summary.json")
-            self._mark(f"{name} end")
+            self._mark_step(position, "end")
             self._run = None
             if self._abort_why is not None:
                 self._put_aside(step, summary, self._abort_why)
@@ -381,6 +385,11 @@ class Conductor:
         self._phase = "ending" if self._run.is_ending else "running" if shown.link else "starting"
         self._changed()
 
+    def _keep_markers(self):
+        """Writes what other instruments have sent since the last trial."""
+        if self._markers and (found := self._markers.take()):
+            markers.write(self.folder, self._session.code, None, found)
+
     def _put_aside(self, step, summary, why):
         """Keeps the recording of a trial that does not count."""
         recording = pathlib.Path(summary["recording"]) if summary and summary["recording"] else None
@@ -392,6 +401,8 @@ class Conductor:
     def _measure(self, session, step, position, exit_code, summary, work):
         found = trials.measured(self.study, self.program, summary, exit_code_of(summary, exit_code), work)
         recording = self.folder.keep(found.recording, session.code, step, "recording.mcap")
+        if self._markers:
+            markers.write(self.folder, session.code, step, self._markers.take(), markers.lab_clock_of(work / "columns.events.csv"))
         self.folder.write(self.folder.file_of(session.code, step), trials.dump({
             "participant": session.code, "condition": step.condition, "repetition": step.repetition,
             "position": session.place(position), "simulated": not self.hand.is_real, "hand": self.hand.kind,
@@ -411,6 +422,11 @@ class Conductor:
             self._run.end()
         if self._task is not None:
             await asyncio.gather(self._task, return_exceptions=True)
+        if self._session is not None:
+            self._keep_markers()
+        for each in (self._markers, self._stream):
+            if each is not None:
+                await asyncio.to_thread(each.close)
         await asyncio.to_thread(self.folder.tabulate)
 
 

@@ -23,6 +23,9 @@ TRIAL_COLUMNS = ("participant", "position", "condition", "repetition", "excluded
                  "recording_sha256", "recording")
 """Columns of trials.csv beside the measures."""
 CORRECTIONS = ("holm", "bonferroni", "none")
+OWN_STREAMS = ("HapticGiant", "HapticGiantEvents", "HapticGiantStudy")
+"""Of the Lab Streaming Layer, which we send."""
+ALL_STREAMS = "all"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,6 +86,16 @@ class Expected:
     within: float
 
 
+@dataclasses.dataclass(frozen=True)
+class LabStreaming:
+    """What goes to and comes from the Lab Streaming Layer."""
+
+    outlets: bool = False
+    """Whether the study and its runs send streams."""
+    markers: tuple[str, ...] = ()
+    """Names of streams whose markers are kept; ALL_STREAMS: every marker stream but our own."""
+
+
 @dataclasses.dataclass
 class Study(Placed):
     """What load_study() returns."""
@@ -108,6 +121,7 @@ class Study(Placed):
     expected: dict[str, Expected]
     simulation_seed: int
     places: dict[str, str]
+    lab_streaming: LabStreaming = LabStreaming()
 
     @property
     def outcomes(self) -> dict[str, str]:
@@ -144,7 +158,7 @@ class _Reader(Reader):
     def study(self):
         parts = self.map(root := self.root(), "", (
             "title", "fixed", "conditions", "design", "trial", "instructions", "questionnaires", "breaks",
-            "exclusion", "measures", "analysis", "simulation"))
+            "exclusion", "measures", "analysis", "simulation", "lab_streaming"))
         for needed in ("conditions", "design"):
             if needed not in parts:
                 self.fault(root, "", f"key '{needed}' is missing")
@@ -174,11 +188,26 @@ class _Reader(Reader):
             else (0, 0.0),
             *self.trial(parts), [], measures, alpha, correction, [], {},
             self.count(simulation["seed"], "simulation.seed") if "seed" in simulation else 1,
-            self.places)
+            self.places, self.lab_streaming(parts))
         study.exclusions = self.exclusions(parts.get("exclusion"), study)
         study.tests = self.tests(analysis.get("tests"), study)
         study.expected = self.expected(simulation.get("expected"), study)
         return study
+
+    def lab_streaming(self, parts):
+        known = self.optional_map(parts, "lab_streaming", ("outlets", "markers"))
+        item, names = "lab_streaming.markers", []
+        for node in self.sequence(known.get("markers"), item):
+            name = self.words(node) if isinstance(node, self.nodes.ScalarNode) else ""
+            if not name.strip():
+                self.fault(node, item, "expected the name of a stream")
+            if name in names:
+                self.fault(node, item, f"'{name}' is given twice")
+            if name in OWN_STREAMS:
+                self.fault(node, item, f"'{name}' is sent by HapticGiant itself: outlets: true")
+            names.append(name)
+        return LabStreaming(self.choice(known, "outlets", "lab_streaming", ("true", "false"), "false") == "true",
+                            tuple(names))
 
     def optional_map(self, parts, name, known):
         return self.map(parts[name], name, known) if name in parts else {}

@@ -8,6 +8,8 @@
     sub-P01/sub-P01_task-door_form-tlx_answers.json
     sub-P01/sub-P01_note-1.json    a remark of the operator
     sub-P01/aside/                 trials that were put aside and played again, and why
+    sub-P01/sub-P01_task-door_run-1_markers.csv         markers of other instruments, see markers.py
+    sub-P01/sub-P01_run-1_markers.csv                   those between trials
     trials.csv answers.csv participants.csv, .parquet   tidy tables, made of the files above
     data_dictionary.csv            every column of the tables
     hashes.sha256                  of all files: sha256sum -c hashes.sha256
@@ -27,7 +29,7 @@ import pathlib
 import re
 import shutil
 
-from hapticgiant.study import questionnaires, trials
+from hapticgiant.study import markers, questionnaires, trials
 from hapticgiant.study.description import Study, load_study
 from hapticgiant.study.planning import Participant, Step, plan, steps
 from hapticgiant.sweep.reader import nearest
@@ -49,12 +51,17 @@ STORED = """\
   has which code is on no file of this folder.
 - Of each trial: condition, repetition, measures, names and times of events ({trial}).{recording}
 - Of each questionnaire: the answers, among them free texts as they were typed. A free text can tell who
-  somebody is: read them before the data are published.
+  somebody is: read them before the data are published.{markers}
 - Times of day are not stored in tables; recordings have the date in their metadata.
 
 `hapticgiant study forget CODE` deletes everything of one participant: files, rows of tables, and reports, which
 are made anew without them. The code stays in {withdrawn}, so that nobody gets it again.
 """
+
+
+MARKERS = """
+- Markers (sub-*/*_markers.csv) of these streams of other instruments, with their times: {names}. What they say is
+  up to those who send them: read them, too."""
 
 
 class FolderError(RuntimeError):
@@ -304,7 +311,8 @@ class Folder:
         self.replace(self.path / "WHAT_IS_STORED.md", STORED.format(
             codes=f"{plan(self.study)[0].code} ...", trial="sub-*/*_trial.json", withdrawn=WITHDRAWN,
             recording="\n- Recordings (sub-*/*_recording.mcap): what the device has measured and done in each cycle."
-            if has_recordings else " Recordings are not kept."))
+            if has_recordings else " Recordings are not kept.",
+            markers=MARKERS.format(names=", ".join(names)) if (names := self.study.lab_streaming.markers) else ""))
         self.hash()
         return files
 
@@ -329,6 +337,8 @@ class Folder:
             ("participant", "", "code"), ("condition", "", "empty: asked once, at the end"),
             ("form", "", "as in study.yaml"), ("kind", "", "answer, pair (winner of two TLX scales) or score"),
             ("item", "", "see below"), ("value", "", "number"), ("text", "", "free text, or the winner of a pair"))]
+        if self.study.lab_streaming.markers:
+            lines += [("sub-*/*_markers", name, *about) for name, about in markers.COLUMNS.items()]
         for name, form in self.study.forms.items():
             for item, each in form.items.items():
                 scale = "" if each.kind == "text" else f"; {each.low:g} to {each.high:g} by {each.step:g}"
