@@ -123,7 +123,7 @@ def serve(study, arguments):
     for problem in planning.problems_of(study):
         print(f"PROBLEM: {problem}; hapticgiant study check {arguments.study}")
     folder = Folder(study, arguments.out or (study.file.with_suffix(".rehearsal") if arguments.rehearse else None))
-    folder.begin(program.version, not hand.is_real, "rehearsal: the scripted hand plays" if not hand.is_real else "")
+    folder.begin(program.version, not hand.is_real, hand.model)
 
     async def until_it_ends():
         server = Server(pages, arguments.bind, arguments.port)

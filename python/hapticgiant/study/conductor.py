@@ -35,6 +35,12 @@ class Hand:
     """Of `hapticgiant run`, for a device."""
 
     @property
+    def model(self) -> str:
+        """What a report says of it."""
+        return {"mouse": "A simulated device was moved with the mouse.", "device": "A device was held by its handle.",
+                "script": "Rehearsal: a scripted hand has played the trials; forms were answered by whoever was there."}[self.kind]
+
+    @property
     def is_real(self) -> bool:
         """Whether it is a person's."""
         return self.kind != "script"

@@ -124,6 +124,9 @@ class Folder:
             kinds = {True: "simulated", False: "real"}
             raise FolderError(f"{self.path}: its people are {kinds[there['Simulated']]}, and {kinds[wanted['Simulated']]} "
                               "ones cannot be mixed with them: take another --out")
+        if there["Model"] != wanted["Model"]:
+            raise FolderError(f"{self.path}: was begun differently ({there['Model']}), which cannot be mixed with this: take "
+                              "another --out")
 
     def write(self, file: pathlib.Path, text: str | bytes) -> None:
         """Writes a file whole or not at all, and never one that is there."""

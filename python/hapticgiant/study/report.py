@@ -23,7 +23,7 @@ PANELS = 4  # measures in a row
 def write(folder: Folder) -> list[pathlib.Path]:
     """Writes the report into the folder; its files. Raises FolderError."""
     study, description = folder.study, folder.description()
-    folder.require({"Study": study.digest(), "Simulated": description["Simulated"]})
+    folder.require({**description, "Study": study.digest()})
     if not folder.participants():
         raise FolderError(f"{folder.path}: nobody has taken part yet")
     folder.tabulate()
