@@ -51,7 +51,7 @@ class Server:
         await self._runner.setup()
         site = web.TCPSite(self._runner, self._address, self._port)
         await site.start()
-        self._port = site._server.sockets[0].getsockname()[1]
+        self._port = self._runner.addresses[0][1]
 
     def origins(self) -> list[str]:
         """Addresses of the pages."""

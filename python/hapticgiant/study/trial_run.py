@@ -22,6 +22,8 @@ import aiohttp
 LINK = re.compile(r"(http://\S+)/#token=([0-9a-f]+)")
 PROTOCOL = "hapticgiant"
 PATIENCE_S = 30  # of a run that was asked to end, before it is killed
+RETRY_S = 0.3  # until the connection to a run is tried again
+LARGEST_MESSAGE = 1 << 20  # bytes
 SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
@@ -105,15 +107,16 @@ class TrialRun:
         await self._found_link.wait()
         address, token = LINK.match(self.shown.link).groups()
         async with aiohttp.ClientSession() as session:
-            for _ in range(2):  # a page whose connection breaks may come back once
+            while self._process.returncode is None:
                 with contextlib.suppress(aiohttp.ClientError):
-                    async with session.ws_connect(f"{address}/ws", origin=address, max_msg_size=1 << 20,
+                    async with session.ws_connect(f"{address}/ws", origin=address, max_msg_size=LARGEST_MESSAGE,
                                                   protocols=(PROTOCOL, f"token.{token}")) as socket:
                         self._socket = socket
                         async for message in socket:
                             if message.type == aiohttp.WSMsgType.TEXT:
                                 self._take(json.loads(message.data))
                 self._socket = None
+                await asyncio.sleep(RETRY_S)
 
     def _take(self, message):
         shown = self.shown
