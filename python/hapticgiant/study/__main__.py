@@ -119,7 +119,7 @@ def serve(study, arguments):
         raise StudyError("the page is not built: cd viewer && npm ci && npm run build")
     hand, program = hand_of(arguments), find_program()
     trials.require_columns(study, trials.known_columns(program))
-    events = expected_events(study, program)
+    events = expected_events(study, program, hand)
     for problem in planning.problems_of(study):
         print(f"PROBLEM: {problem}; hapticgiant study check {arguments.study}")
     folder = Folder(study, arguments.out or (study.file.with_suffix(".rehearsal") if arguments.rehearse else None))

@@ -50,11 +50,17 @@ class Refused(RuntimeError):
     """A command that is not possible now; the message says why."""
 
 
-def expected_events(study: Study, program: Program) -> dict[str, list[str]]:
+MOUSE = ("--set", "scenario.person=mouse")  # and not --user, which is without the task's events
+
+
+def expected_events(study: Study, program: Program, hand: Hand) -> dict[str, list[str]]:
     """The events that each condition's task has, by a run of some cycles on the simulated device. Raises TrialError."""
     found = {}
     for condition in study.conditions:
         words = study.arguments(condition)
+        if hand.is_real and "--user" in words:
+            raise trials.TrialError(f"condition {condition}: 'user' is a simulated person's; leave it out, or --rehearse")
+        words += MOUSE if hand.kind == "mouse" else ()
         if "--duration" in words:
             del words[(at := words.index("--duration")):at + 2]
         command = [program.file, "run", *words, "--fast", "--no-viewer", "--no-recording",
@@ -339,7 +345,7 @@ class Conductor:
         options = [] if self.hand.kind == "device" else [
             "--seed", str(people.seed_of(self.study, self._session.code, step.condition, step.repetition))]
         if self.hand.kind == "mouse":
-            options += ["--set", "scenario.person=mouse"]  # and not --user, which is without the task's events
+            options += MOUSE
         if self.hand.kind != "script" and "--duration" not in words:
             options += ["--duration", f"{self.study.longest_s:g}"]
         for origin in self._origins:
