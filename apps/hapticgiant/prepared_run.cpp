@@ -120,7 +120,8 @@ page::ShownRun PreparedRun::shown() const {
           .options = &arguments.world,
           .refusal = remote == nullptr
                          ? ""
-                         : "the device at " + arguments.device_address + " keeps its own time"};
+                         : "the device at " + arguments.device_address + " keeps its own time",
+          .is_trial = arguments.is_trial()};
 }
 
 }  // namespace hg::apps

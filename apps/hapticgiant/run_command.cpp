@@ -262,6 +262,7 @@ std::unique_ptr<page::RunPage> open_page(const PreparedRun& run, page::RunPage::
   if (options.page.empty()) return nullptr;
   options.address = arguments.address;
   options.port = arguments.port;
+  options.embedders = arguments.embedders;
   return std::make_unique<page::RunPage>(options, run.shown(), std::move(prepare));
 }
 
@@ -286,7 +287,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   const RunArguments& arguments = run.arguments;
   const config::Scenario& scenario = run.scenario;
   const bool is_terminal = isatty(STDOUT_FILENO) == 1;
-  const bool goes_on = is_terminal && page != nullptr;
+  const bool goes_on = is_terminal && page != nullptr && !arguments.is_trial();
   const runtime::RuntimeOptions options = runtime_options(run, goes_on, interrupted, page);
   auto streams = liblsl == nullptr ? nullptr : open_lab_streams(*liblsl, scenario);
   // after all that may refuse the run, which then leaves no file
@@ -378,7 +379,7 @@ int play(PreparedRun& run, const std::atomic<bool>& interrupted, const Backgroun
   }
   const bool was_ended = page != nullptr && (page->has_next() || page->stop_was_asked());
   const int code = exit_code(observers.summary, missing, interrupted.load() || was_ended);
-  wait_for_next(observers, goes_on);
+  if (!arguments.is_trial()) wait_for_next(observers, goes_on);
   return code == 0 && !is_written ? kNotWritten : code;
 }
 

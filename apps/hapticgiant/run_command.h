@@ -30,7 +30,9 @@ struct RunArguments {
   bool has_viewer = true;
   std::string address = "127.0.0.1";  ///< address at which the page is served
   std::uint16_t port = 0;             ///< port of the page; 0 = any free one
-  bool opens_browser = true;          ///< opens a browser if there is a display
+  /// Web origins whose pages may show the page inside themselves; the run is a trial of theirs
+  std::vector<std::string> embedders;
+  bool opens_browser = true;  ///< opens a browser if there is a display
   /// Folder of recordings and of the stored data of a machine
   std::string recordings = "recordings";
   bool without_start_test = false;  ///< allows a machine with untested brakes
@@ -45,6 +47,9 @@ struct RunArguments {
   int slow_solve = 100;  ///< number of active sets from which a problem is slow
   int priority = 80;     ///< SCHED_FIFO priority of the control thread; 0 = an ordinary thread
   int cpu = -1;          ///< CPU of the control thread; -1 = any
+
+  /// Whether the run is a trial of a study: its page changes nothing and does not restart it.
+  bool is_trial() const { return !embedders.empty(); }
 };
 
 /// Exit code: 0 fine, 1 an expected event is missing or a limit was exceeded, 3 a fault stopped the

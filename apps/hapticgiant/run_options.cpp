@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
@@ -5,8 +7,18 @@
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/scenario_options.h"
+#include "hg/viewer_server/access.h"
 
 namespace hg::apps {
+namespace {
+
+std::string web_origin(const std::string& text) {
+  if (viewer_server::is_web_origin(text)) return "";
+  return fmt::format("expected the origin of a page, as {}, got '{}'",
+                     viewer_server::kOriginExample, text);
+}
+
+}  // namespace
 
 void add_run(CLI::App& app, const std::string& program, int& exit_code) {
   const auto arguments = std::make_shared<RunArguments>();
@@ -78,6 +90,15 @@ void add_run(CLI::App& app, const std::string& program, int& exit_code) {
       ->excludes(fast)
       ->excludes(no_viewer)
       ->check(whole_number(0.0, 65535.0));
+  command
+      ->add_option("--embedded-in", arguments->embedders,
+                   "the run is a trial of a study: pages of this origin, as "
+                   "http://127.0.0.1:8123, may show its page inside themselves, and pages change "
+                   "nothing about it; may be given several times")
+      ->allow_extra_args(false)
+      ->excludes(fast)
+      ->excludes(no_viewer)
+      ->check(web_origin);
   command->add_flag("!--no-browser", arguments->opens_browser, "print the link only");
   command
       ->add_flag("--lsl", arguments->has_lab_streams,

@@ -31,6 +31,7 @@ std::vector<double> values_of(const std::vector<config::FormField>& form) {
 }
 
 constexpr std::string_view kRunIsOver = "the run is over: start it again";
+constexpr std::string_view kTrial = "this run is a trial of a study";
 constexpr std::string_view kStopped = "a stop came after it";
 constexpr std::uint32_t kMostSamples = 10'000;  // in which a request must be seen
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // equal to no wrench
@@ -91,6 +92,7 @@ std::string_view name_of_done(const Command& command) {
 struct RunPage::Order {
   CommandName name;
   bool needs_simulation;  ///< the device has to wait, or to start anew
+  bool changes_trial;     ///< a trial would no longer be what was planned
   /// How it is executed; nullptr = by the server, at the operator's desk
   std::string (RunPage::*obey)(const Command&, runtime::Runtime*, const Note&);
 
@@ -98,22 +100,22 @@ struct RunPage::Order {
 };
 
 std::span<const RunPage::Order> RunPage::orders() {
-  static constexpr Order kOrders[] = {{CommandName::kStop, false, &RunPage::stop},
-                                      {CommandName::kSet, false, &RunPage::set},
-                                      {CommandName::kMode, false, &RunPage::request_mode},
-                                      {CommandName::kMark, false, &RunPage::mark},
-                                      {CommandName::kEmergencyStop, false, nullptr},
-                                      {CommandName::kReleaseStop, false, nullptr},
-                                      {CommandName::kPause, true, &RunPage::set_pace},
-                                      {CommandName::kResume, true, &RunPage::set_pace},
-                                      {CommandName::kStep, true, &RunPage::set_pace},
-                                      {CommandName::kSpeed, true, &RunPage::set_pace},
-                                      {CommandName::kRestart, true, &RunPage::choose},
-                                      {CommandName::kScenario, true, &RunPage::choose},
-                                      {CommandName::kTwin, true, &RunPage::choose},
-                                      {CommandName::kLaw, true, &RunPage::choose},
-                                      {CommandName::kPerson, true, &RunPage::choose},
-                                      {CommandName::kPanel, true, nullptr}};
+  static constexpr Order kOrders[] = {{CommandName::kStop, false, false, &RunPage::stop},
+                                      {CommandName::kSet, false, true, &RunPage::set},
+                                      {CommandName::kMode, false, false, &RunPage::request_mode},
+                                      {CommandName::kMark, false, false, &RunPage::mark},
+                                      {CommandName::kEmergencyStop, false, false, nullptr},
+                                      {CommandName::kReleaseStop, false, false, nullptr},
+                                      {CommandName::kPause, true, true, &RunPage::set_pace},
+                                      {CommandName::kResume, true, true, &RunPage::set_pace},
+                                      {CommandName::kStep, true, true, &RunPage::set_pace},
+                                      {CommandName::kSpeed, true, true, &RunPage::set_pace},
+                                      {CommandName::kRestart, true, true, &RunPage::choose},
+                                      {CommandName::kScenario, true, true, &RunPage::choose},
+                                      {CommandName::kTwin, true, true, &RunPage::choose},
+                                      {CommandName::kLaw, true, true, &RunPage::choose},
+                                      {CommandName::kPerson, true, true, &RunPage::choose},
+                                      {CommandName::kPanel, true, false, nullptr}};
   return kOrders;
 }
 
@@ -133,11 +135,17 @@ viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
   scene.choices = page_choices(*run.options);
   scene.choices.law = rendering::to_string(run.scenario->device.rendering.law);
   scene.settings = page_settings(form_);
-  scene.refusal = run.refusal;
+  scene.refusal = run.is_trial ? std::string(kTrial) : run.refusal;
   for (const Order& order : orders()) {
-    if (run.refusal.empty() || !order.needs_simulation) scene.commands.push_back(order.name);
+    if (refusal_of(order, run).empty()) scene.commands.push_back(order.name);
   }
   return scene;
+}
+
+// Why `run` does not take this command; empty = it does.
+std::string RunPage::refusal_of(const Order& order, const ShownRun& run) {
+  if (run.is_trial && order.changes_trial) return std::string(kTrial);
+  return order.needs_simulation ? run.refusal : std::string();
 }
 
 void RunPage::begin(const ShownRun& run, const std::string& recording,
@@ -302,8 +310,9 @@ void RunPage::take(const Command& command, runtime::Runtime* runtime, const Note
   const auto order = std::ranges::find(orders(), command.name, &Order::name);
   const bool is_known = order != orders().end();
   std::string why_not;
-  if (is_known && order->needs_simulation && !run_.refusal.empty()) {
-    why_not = run_.refusal;
+  if (is_known) why_not = refusal_of(*order, run_);
+  if (!why_not.empty()) {
+    // said
   } else if (!is_known || order->obey == nullptr) {
     why_not = "this is a run, not a recording";
   } else if (runtime == nullptr && !order->is_choice()) {
@@ -372,6 +381,10 @@ void RunPage::take_reference_wrench(runtime::Runtime* runtime, const Note& note)
   std::uint64_t client = 0;
   const bool is_new = server_.take_reference_wrench(w, client);
   if (runtime == nullptr) return next_wrench_.reset();
+  if (run_.is_trial) {
+    if (is_new && client != 0) server_.warn(client, "/reference_wrench: " + std::string(kTrial));
+    return;
+  }
   if (is_new && client != wrench_client_) {
     note("reference_wrench",
          client == 0 ? std::string("ended: zero") : fmt::format("given by page {}", client));

@@ -35,6 +35,8 @@ struct ShownRun {
   const scenario::ScenarioOptions* options = nullptr;
   /// Why the device neither waits nor starts anew; empty = it does, being simulated here
   std::string refusal;
+  /// A trial: pages start no other run and change neither its pace nor its twin
+  bool is_trial = false;
 };
 
 class RunPage {
@@ -106,6 +108,8 @@ class RunPage {
   void note_done(const viewer_server::Command& command, const Note& note);
   void begin_live(std::chrono::system_clock::time_point start);
   void publish_live(const Sample& sample);
+
+  static std::string refusal_of(const Order& order, const ShownRun& run);
 
   // Execute a command; return the reason for a refusal, empty = executed or under way.
   std::string set(const viewer_server::Command& command, runtime::Runtime* runtime,

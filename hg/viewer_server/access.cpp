@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
@@ -91,6 +92,20 @@ bool is_own_host(std::string_view host, const Listener& listener) {
 bool is_own_origin(std::string_view origin, const Listener& listener) {
   constexpr std::string_view kScheme = "http://";
   return origin.starts_with(kScheme) && is_own_host(origin.substr(kScheme.size()), listener);
+}
+
+bool is_web_origin(std::string_view text) {
+  static const std::regex kOrigin(R"(https?://([A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\])(:[0-9]{1,5})?)");
+  return std::regex_match(text.begin(), text.end(), kOrigin);
+}
+
+std::string content_policy(const std::vector<std::string>& embedders) {
+  std::string policy =
+      "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; "
+      "frame-ancestors";
+  if (embedders.empty()) policy += " 'none'";
+  for (const std::string& origin : embedders) policy += " " + origin;
+  return policy;
 }
 
 std::string_view path_of(std::string_view target) noexcept {

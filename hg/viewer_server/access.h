@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "hg/live/frame.h"
 
@@ -34,6 +35,15 @@ bool is_own_host(std::string_view host, const Listener& listener);
 
 /// Whether an Origin header is that of a page of this server.
 bool is_own_origin(std::string_view origin, const Listener& listener);
+
+/// Whether `text` is the origin of a page: http or https, a host, and a port if it is not the
+/// usual one, "http://127.0.0.1:8123". Nothing in it can end a directive of content_policy().
+bool is_web_origin(std::string_view text);
+inline constexpr std::string_view kOriginExample = "http://127.0.0.1:8123";
+
+/// Content-Security-Policy of a page that asks nothing of other machines and that only pages of
+/// `embedders`, which are web origins, may show inside themselves.
+std::string content_policy(const std::vector<std::string>& embedders);
 
 /// The path of a request target, without its query.
 std::string_view path_of(std::string_view target) noexcept;

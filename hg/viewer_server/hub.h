@@ -106,6 +106,7 @@ struct Hub {
 
   Listener listener;
   std::string token;
+  std::string content_policy;  ///< header of every answer
   AssetTable assets;
   OperatorDesk* desk = nullptr;       ///< nullptr: no operator
   std::vector<CommandName> followed;  ///< commands accepted by the scene

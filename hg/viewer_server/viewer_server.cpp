@@ -265,6 +265,7 @@ struct ViewerServer::Impl {
     hub.listener = {own.address().to_string(), own.port()};
     hub.desk = options.desk;
     hub.token = options.token.empty() ? random_token() : options.token;
+    hub.content_policy = content_policy(options.embedders);
     hub.assets = load_page(options.page);
     take(new_scene(scene, update_rate_hz));
     accept();
@@ -410,6 +411,11 @@ void check_server_options(const ServerOptions& options) {
   }
   if (options.token.find_first_not_of("0123456789abcdef") != std::string::npos) {
     throw SetupError("viewer: token must be hexadecimal digits");
+  }
+  for (const std::string& origin : options.embedders) {
+    if (is_web_origin(origin)) continue;
+    throw SetupError("viewer: a page that shows this one must have an origin like " +
+                     std::string(kOriginExample) + ", got '" + origin + "'");
   }
 }
 

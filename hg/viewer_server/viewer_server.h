@@ -33,6 +33,8 @@ struct ServerOptions {
   std::filesystem::path page;    ///< folder of the built page, with index.html
   double update_rate_hz = 60.0;  ///< frames per second sent to each client, > 0
   std::string token;             ///< hexadecimal digits; empty = 128 random bits
+  /// Web origins whose pages may show this page inside themselves; empty: none may
+  std::vector<std::string> embedders;
   /// Operator's desk that pages affect directly, without take_commands(). Must outlive the server;
   /// nullptr: no direct effect.
   OperatorDesk* desk = nullptr;

@@ -16,10 +16,6 @@ namespace hg::viewer_server {
 
 constexpr std::uint32_t kLargestHeader = 8192;  // bytes
 
-constexpr std::string_view kContentPolicy =
-    "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'";
-
 /// HTTP connection; destroyed when it closes or becomes a page.
 class Visitor : public std::enable_shared_from_this<Visitor> {
  public:
@@ -120,7 +116,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     response_ = {status, request.version()};
     response_.set(http::field::content_type, content_type);
     response_.set(http::field::cache_control, "no-store");
-    response_.set("Content-Security-Policy", kContentPolicy);
+    response_.set("Content-Security-Policy", hub_.content_policy);
     response_.set("Cross-Origin-Opener-Policy", "same-origin");
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
     response_.set("Referrer-Policy", "no-referrer");

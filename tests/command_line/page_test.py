@@ -6,11 +6,13 @@ Usage: page_test.py PROGRAM
 import contextlib
 import json
 import os
+import pathlib
 import pty
 import re
 import shutil
 import signal
 import socket
+import struct
 import subprocess
 import termios
 import threading
@@ -18,7 +20,7 @@ import time
 import unittest
 
 from program import MODELS, PROGRAM, TemporaryFolder, install, run
-from web_socket import Page
+from web_socket import Live, Page
 
 
 def drain(terminal):
@@ -217,6 +219,73 @@ class PageTest(TemporaryFolder):
         page.next("frame", lambda frame: frame["mode"] == "fault")
         process.send_signal(signal.SIGINT)
         process.wait(timeout=30)
+
+    def trial(self, *options):
+        """A run of a study, and its page once the device moves."""
+        self.summary = self.folder / "trial.json"
+        return self.run_of("door", "--user", "mouse", "--embedded-in", "http://127.0.0.1:8123",
+                           "--embedded-in", "http://[::1]:8123", "--summary", self.summary, *options)
+
+    def test_a_trial_is_changed_by_no_page(self):
+        with self.trial() as (process, page):
+            scene = page.scene()
+            self.assertEqual(scene["refusal"], "this run is a trial of a study")
+            self.assertEqual(set(scene["commands"]), {"stop", "mode", "mark", "emergency_stop",
+                                                      "release_stop", "panel"})
+            setting = scene["settings"][0]
+            for command in (("pause",), ("resume",), ("step", "", 1), ("speed", "", 0.5),
+                            ("restart",), ("scenario", "path"), ("twin", "light"),
+                            ("law", "paper"), ("person", "none"),
+                            ("set", setting["name"], setting["value"])):
+                self.assertEqual(self.refuse(page, *command), scene["refusal"], command)
+            self.accept(page, "mark", "the lamp")
+            self.accept(page, "panel", "person_in_field", 1)
+            self.accept(page, "mode", "hold")
+            page.next("frame", lambda frame: frame["mode"] == "armed")
+            answer = page.answer_to("/")
+            self.assertIn("frame-ancestors http://127.0.0.1:8123 http://[::1]:8123\r\n", answer)
+            self.assertNotIn("X-Frame-Options", answer)
+            self.assertTrue(self.summary_of_end(process)["interrupted"])
+
+    def test_a_reference_wrench_is_refused_in_a_trial(self):
+        with self.trial("--no-recording") as (process, page):
+            live = Live(page)
+            self.addCleanup(live.close)
+            live.send({"op": "advertise", "channels": [
+                {"id": 7, "topic": "/reference_wrench", "encoding": "cdr"}]})
+            wrench = struct.pack("<BI4s8xI5s7x6d", 1, 7, b"\0\1\0\0", 5, b"base", 20, 0, 0, 0, 0, 0)
+            live.send_data(wrench, opcode=2)
+            self.assertIn("/reference_wrench: this run is a trial", live.warning())
+            self.end(process)
+
+    def test_a_trial_ends_by_itself_when_its_page_asks_for_it(self):
+        with self.trial() as (process, page):
+            self.accept(page, "stop")
+            process.communicate(timeout=60)  # with its page still connected
+            self.assertEqual(process.returncode, 0)
+            self.assertFalse(json.loads(self.summary.read_text())["interrupted"])
+            self.assertEqual(len(self.recordings()), 1)
+
+    def test_a_signal_ends_a_trial_with_all_its_files(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number), self.trial() as (process, page):
+                summary = self.summary_of_end(process, number)
+                self.assertTrue(summary["interrupted"])
+                recording = pathlib.Path(summary["recording"])
+                self.assertEqual(len(self.samples(self.folder / recording)), summary["cycles"])
+
+    def summary_of_end(self, process, number=signal.SIGTERM):
+        process.send_signal(number)
+        out, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, out)
+        return json.loads(self.summary.read_text())
+
+    def test_what_is_no_origin_is_refused(self):
+        for text in ("*", "127.0.0.1:8123", "http://127.0.0.1:8123/", "http://a;script-src *"):
+            code, _, error = run("run", "door", "--embedded-in", text)
+            self.assertEqual(code, 2, error)
+            self.assertIn("--embedded-in: expected the origin of a page, as http://127.0.0.1:8123",
+                          error)
 
     def test_a_stop_overtakes_what_is_being_prepared(self):
         with self.run_of("door", "--user", "mouse", "--no-recording") as (process, page):

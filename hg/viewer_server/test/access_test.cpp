@@ -69,6 +69,25 @@ TEST(IsOwnOrigin, AcceptsPlainHttpOfThisServerOnly) {
   }
 }
 
+TEST(IsWebOrigin, IsSchemeHostAndPortOnly) {
+  for (const std::string origin : {"http://127.0.0.1:8123", "https://study.example",
+                                   "http://[::1]:80", "http://localhost:8123"}) {
+    EXPECT_TRUE(is_web_origin(origin)) << origin;
+  }
+  for (const std::string text :
+       {"", "*", "'self'", "127.0.0.1:8123", "http://", "http://*:8123", "http://127.0.0.1:8123/",
+        "http://a b", "http://a;b", "http://a\r\nX: y", "ftp://a", "http://a:", "http://a:123456",
+        "http://a http://b"}) {
+    EXPECT_FALSE(is_web_origin(text)) << text;
+  }
+}
+
+TEST(ContentPolicy, NamesThoseThatMayShowThePage) {
+  EXPECT_TRUE(content_policy({}).ends_with("; frame-ancestors 'none'"));
+  EXPECT_TRUE(content_policy({"http://a:1", "http://b:2"})
+                  .ends_with("; frame-ancestors http://a:1 http://b:2"));
+}
+
 TEST(Access, FindsTheTokenInAQuery) {
   EXPECT_EQ(query_token("/live?token=abc"), "abc");
   EXPECT_EQ(query_token("/live?x=1&token=abc&y=2"), "abc");

@@ -566,6 +566,20 @@ TEST_F(ViewerServerTest, APageThatNeverReadsLosesFramesAndDelaysNoOther) {
   EXPECT_TRUE(receives(*other, 1e6));
 }
 
+TEST_F(ViewerServerTest, OnlyPagesThatAreNamedMayShowThePage) {
+  EXPECT_NE(get("/", host_).find("frame-ancestors 'none'\r\n"), std::string::npos);
+  ServerOptions options = make_options();
+  options.embedders = {"http://127.0.0.1:8123"};
+  const ViewerServer server(options, make_scene());
+  const std::string url = server.url();
+  const std::string host = url.substr(7, url.find("/#") - 7);
+  const auto port = static_cast<std::uint16_t>(std::stoi(host.substr(host.find(':') + 1)));
+  EXPECT_NE(RawClient(port)
+                .get("/", "Host: " + host + "\r\n")
+                .find("frame-ancestors http://127.0.0.1:8123\r\n"),
+            std::string::npos);
+}
+
 TEST_F(ViewerServerTest, ATakenPortIsNamed) {
   ServerOptions options = make_options();
   options.port = port_;
