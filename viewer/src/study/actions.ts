@@ -87,7 +87,10 @@ export class Actions {
       enable(button, can.includes(action));
     }
     const main = LARGE.find((action) => can.includes(action));
-    for (const action of LARGE) this.buttons.get(action)!.classList.toggle("primary", action === main);
+    const is_complete = state.phase === "complete";
+    for (const [action, button] of this.buttons) {
+      button.classList.toggle("primary", action === main || (action === "leave" && is_complete));
+    }
     if (this.asked && !can.includes(this.asked.action)) this.close_question();
   }
 

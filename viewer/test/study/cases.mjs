@@ -1,9 +1,14 @@
 // What the pages of a study do, in a browser, with the canned study of mock.mjs. Each case gets
 // {browser, mock, links, expect}.
 import { violations } from "./axe.mjs";
+import { lead_to } from "./mock.mjs";
 import { drive, fill_items, is_heading_focused, matches, open, press, tab_to, until } from "./keyboard.mjs";
 
 const no_problems = ({ problems }) => problems.filter((text) => !/WebSocket/.test(text));
+
+function expect_none(expect, found) {
+  expect(found.length === 0, `axe has nothing against that: ${found.join("; ") || "none"}`);
+}
 
 async function whole_session({ browser, mock, links, expect }, language) {
   const operator = await open(browser, links.operator);
@@ -44,17 +49,6 @@ export async function whole_session_in_german(given) {
   given.expect(visited.some(({ text }) => text === "Benutzen Sie jetzt den Griff"), "the words are German");
 }
 
-// Leads the mock to the first step of `kind`.
-function lead_to(mock, kind, form = null) {
-  mock.do_begin({ code: "P01" });
-  for (const step of mock.person.steps) {
-    if (step.kind === kind && (form === null || step.form === form)) break;
-    step.is_done = true;
-  }
-  mock.arrive();
-  mock.tell();
-}
-
 export async function nothing_is_answered_beforehand({ browser, mock, links, expect }) {
   const { page } = await open(browser, links.participant);
   lead_to(mock, "form", "tlx");
@@ -70,7 +64,7 @@ export async function nothing_is_answered_beforehand({ browser, mock, links, exp
   expect(at === 1, `the focus goes to the first that is missing: ${at}`);
   const told = await page.locator(".item .problem:visible").count();
   expect(told === 5, `each of them says so: ${told}`);
-  expect((await violations(page)).length === 0, "axe has nothing against that");
+  expect_none(expect, await violations(page));
   expect(mock.saved.length === 0, "nothing is sent");
 }
 
@@ -93,7 +87,7 @@ export async function draft_survives({ browser, mock, links, expect }) {
   await until(page, () => document.body.dataset.connected === "false");
   const line = await page.textContent("#connection");
   expect(/connection is lost/.test(line), `a lost connection is told: ${line}`);
-  expect((await violations(page)).length === 0, "axe has nothing against that");
+  expect_none(expect, await violations(page));
   await press(page, ".main");
   const lost = await page.textContent(".problem.alert:not(:empty)");
   expect(/kept here/.test(lost), `answers that could not be sent are kept: ${lost}`);
@@ -122,7 +116,7 @@ export async function escape_stops({ browser, mock, links, expect }) {
   expect(await matches(page, "#why-text"), "who throws a trial away is asked why");
   await page.keyboard.press("Enter");
   expect(/reason/.test(await page.textContent("#why .problem")), "and has to say it");
-  expect((await violations(page)).length === 0, "axe has nothing against the question");
+  expect_none(expect, await violations(page));
   await page.keyboard.type("the handle slip");
   await page.keyboard.press("Escape");
   await until(page, () => document.body.dataset.phase === "failed");
@@ -130,7 +124,7 @@ export async function escape_stops({ browser, mock, links, expect }) {
   expect(mock.told.includes("emergency stop"), `and by the run's page: ${mock.told.join()}`);
   const problem = await page.textContent("#problem");
   expect(/stopped by the operator/.test(problem), `the problem is an alert: ${problem}`);
-  expect((await violations(page)).length === 0, "axe has nothing against that");
+  expect_none(expect, await violations(page));
 
   await page.keyboard.press("s");
   await until(page, () => document.body.dataset.phase === "running");
@@ -156,7 +150,7 @@ export async function operator_sees_loss({ browser, mock, links, expect }) {
   await until(page, () => document.body.dataset.connected === "false");
   const text = await page.textContent("#connection");
   expect(/No connection/.test(text), `the loss of the study server is an alert: ${text}`);
-  expect((await violations(page)).length === 0, "axe has nothing against that");
+  expect_none(expect, await violations(page));
   const filter = await page.evaluate(() => getComputedStyle(document.querySelector("#now")).filter);
   expect(/grayscale/.test(filter), "old data is grey");
   await page.keyboard.press("Escape");

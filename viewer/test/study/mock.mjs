@@ -401,6 +401,18 @@ export class Mock {
   }
 }
 
+// Leads the mock to the first step of `kind`.
+export function lead_to(mock, kind, form = null) {
+  mock.reset();
+  mock.do_begin({ code: "P01" });
+  for (const step of mock.person.steps) {
+    if (step.kind === kind && (form === null || step.form === form)) break;
+    step.is_done = true;
+  }
+  mock.arrive();
+  mock.tell();
+}
+
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const mock = new Mock(process.argv[2]);
   console.log(await mock.listen());

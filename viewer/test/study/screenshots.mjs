@@ -4,8 +4,8 @@
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 
-import { drive, open, start_browser } from "./keyboard.mjs";
-import { Mock } from "./mock.mjs";
+import { drive, fill_items, open, press, start_browser, tab_to, until } from "./keyboard.mjs";
+import { Mock, lead_to } from "./mock.mjs";
 
 const folder = process.argv[2] ?? "test/output";
 mkdirSync(folder, { recursive: true });
@@ -45,5 +45,53 @@ for (const { name, language, ...options } of LOOKS) {
     await participant.context.close();
     mock.close();
   }
+}
+
+// What a whole session does not show: missing answers, a question, lost connections.
+for (const [name, options] of [
+  ["phone", { viewport: { width: 390, height: 844 } }],
+  ["desktop", { viewport: { width: 1600, height: 900 } }],
+  ["zoomed", { viewport: { width: 640, height: 400 }, colorScheme: "dark" }], // 1280 x 800 at 200 %
+]) {
+  const mock = new Mock();
+  const links = await mock.listen();
+  const operator = await open(browser, links.operator, options);
+  const { page } = await open(browser, links.participant, options);
+  const picture = (looked, what) =>
+    looked.screenshot({ path: join(folder, `${name}-special-${what}.png`), fullPage: true });
+  lead_to(mock, "form", "tlx");
+  await until(page, () => document.body.dataset.screen === "form");
+  await tab_to(page, "[role=slider]");
+  for (let i = 0; i < 8; i++) await page.keyboard.press("ArrowRight");
+  await press(page, ".main");
+  await picture(page, "missing");
+  lead_to(mock, "trial");
+  await until(operator.page, () => document.body.dataset.phase === "ready");
+  await picture(operator.page, "ready");
+  await operator.page.keyboard.press("s");
+  await until(operator.page, () => document.body.dataset.phase === "running");
+  await press(operator.page, "#do-abort");
+  await operator.page.keyboard.press("Enter");
+  await picture(operator.page, "why");
+  mock.do_stop();
+  mock.tell();
+  await until(operator.page, () => document.body.dataset.phase === "failed");
+  await press(operator.page, "#note");
+  await operator.page.keyboard.type("The phone rang.");
+  await operator.page.keyboard.press("Enter");
+  await picture(operator.page, "failed");
+  lead_to(mock, "form", "impression");
+  await until(page, () => document.querySelector("textarea"));
+  await fill_items(page);
+  mock.deaf = true;
+  mock.cut();
+  await until(page, () => document.body.dataset.connected === "false");
+  await press(page, ".main");
+  await picture(page, "lost");
+  await until(operator.page, () => document.body.dataset.connected === "false");
+  await picture(operator.page, "operator-lost");
+  await operator.context.close();
+  await page.context().close();
+  mock.close();
 }
 await browser.close();
