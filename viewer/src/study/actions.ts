@@ -76,6 +76,7 @@ export class Actions {
   }
 
   show(state: OperatorState): void {
+    const is_other_session = state.participant !== (this.state?.participant ?? null);
     this.state = state;
     const { can, next } = state;
     const is_closed = state.participant === null;
@@ -87,8 +88,12 @@ export class Actions {
       enable(button, can.includes(action));
     }
     const main = LARGE.find((action) => can.includes(action));
-    for (const action of LARGE) this.buttons.get(action)!.classList.toggle("primary", action === main);
+    const is_complete = state.phase === "complete";
+    for (const [action, button] of this.buttons) {
+      button.classList.toggle("primary", action === main || (action === "leave" && is_complete));
+    }
     if (this.asked && !can.includes(this.asked.action)) this.close_question();
+    if (is_other_session && is_focus_lost()) (main ? this.buttons.get(main)! : this.begin).focus();
   }
 
   private begin_next(): void {
@@ -149,6 +154,12 @@ export class Actions {
     this.why.replaceChildren();
     if (asked && had_focus) this.buttons.get(asked.action)!.focus();
   }
+}
+
+// What had it is not there any more.
+function is_focus_lost(): boolean {
+  const active = document.activeElement;
+  return active === null || active === document.body || (active instanceof HTMLElement && active.hidden);
 }
 
 // A button that is not possible now keeps the focus.

@@ -27,6 +27,7 @@ export class DeviceView {
     write(this.time, run && run.time_s !== null ? `${run.time_s.toFixed(1)} s` : "-");
     this.mode.dataset.mode = run?.mode ?? "";
     write(element("device-fault"), run?.fault ?? "");
+    element("force").dataset.known = String(run !== null);
     if (run) this.force.show(run.time_s, run.force_N);
     else this.force.clear();
     this.show_events(run);
@@ -46,7 +47,7 @@ export class DeviceView {
       item.dataset.state = state.replaceAll(" ", "-");
       return item;
     });
-    const none = run ? "None are expected, none have happened." : "No run.";
+    const none = "None are expected, none have happened.";
     element("events-list").replaceChildren(...(items.length > 0 ? items : [make("li", "none", none)]));
   }
 }

@@ -90,7 +90,7 @@ class ParticipantPage {
     write(element("news"), "");
     element("languages").replaceChildren(...this.language_buttons("top"));
     element("languages").setAttribute("aria-label", words.language);
-    element("languages").hidden = state.languages.length < 2 || state.screen === "waiting";
+    element("languages").hidden = state.languages.length < 2 || state.code === null;
     this.screen = this.screen_of(state);
     this.main.replaceChildren(this.screen.root, this.problem);
     if (is_other_place) {
@@ -114,7 +114,7 @@ class ParticipantPage {
       const submit: StudyLink["send"] = (_, answers) => this.link.send("answers", { position, ...answers });
       return form_screen({ ...desk, submit: (answers) => submit("answers", answers) }, state);
     }
-    return waiting_screen(desk, this.language_group());
+    return waiting_screen(desk, state.code === null ? this.language_group() : null);
   }
 
   private language_group(): HTMLElement | null {

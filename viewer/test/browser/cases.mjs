@@ -66,6 +66,33 @@ export async function drag_opens_door({ browser, program, expect }) {
   await close();
 }
 
+// As the page of a study shows it inside itself to who holds the handle.
+export async function hand_alone({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, cheap(`${program.link}&show=hand`));
+  const seen = await page.evaluate(() =>
+    ["emergency-stop", "hand", "panel", "transport", "vitals", "scenario-field", "view-tools"].filter((id) =>
+      document.getElementById(id).checkVisibility(),
+    ),
+  );
+  expect(seen.join(" ") === "emergency-stop hand", `only the stop and the hand: ${seen.join(" ")}`);
+  await page.keyboard.press("p");
+  const { time_s } = await frame_of(page);
+  const goes_on = await comes_true(page, (f) => f.time_s > time_s + 0.5 && !f.run_state.is_paused);
+  expect(goes_on, "no key pauses it");
+  await page.keyboard.press("Escape");
+  expect(await comes_true(page, (f) => f.safety.emergency_stop), "but Esc stops it");
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
+  const trial = await open_page(browser, cheap(`${program.link}&show=trial`));
+  const shown = await trial.page.evaluate(() =>
+    ["emergency-stop", "panel", "vitals", "transport", "scenario-field"].filter((id) =>
+      document.getElementById(id).checkVisibility(),
+    ),
+  );
+  expect(shown.join(" ") === "emergency-stop panel vitals", `a trial without scenario and time: ${shown.join(" ")}`);
+  await trial.close();
+}
+
 // As a user without instructions does: at once, and not along the arc of the handle.
 export async function hasty_drag_opens_door({ browser, program, expect }) {
   const { page, close } = await open_page(browser, cheap(program.link));
