@@ -151,7 +151,13 @@ def run(arguments):
     from hapticgiant.sweep.program import find_program
 
     if arguments.command == "forget":
-        count = Folder.as_it_was(arguments.study, arguments.out).forget(arguments.code)
+        folder = Folder.as_it_was(arguments.study, arguments.out)
+        count = folder.forget(arguments.code)
+        for note in folder.notes:
+            print(f"note: {note}")
+        if folder.notes:
+            print(f"{arguments.code}: {count} files deleted, and reports of before")
+            return 0
         print(f"{arguments.code}: {count} files deleted, tables made anew; reports of before are deleted: "
               f"hapticgiant study report {arguments.study}")
         return 0
