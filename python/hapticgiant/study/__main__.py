@@ -32,8 +32,9 @@ def positive(text):
 
 
 def parser():
-    main = argparse.ArgumentParser(prog="hapticgiant study",
-                                   description="User studies (docs/start/user_studies.md).")
+    from hapticgiant.command_line import Parser
+
+    main = Parser(prog="hapticgiant study", description="User studies (docs/start/user_studies.md).")
     commands = main.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     def add(name, what):
