@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 import unittest
+from unittest import mock
 
 BUILD, PROGRAM = (pathlib.Path(each).resolve() for each in sys.argv[1:3])
 JUDGES = BUILD.parent / "connect_venv"
@@ -142,6 +143,8 @@ class Inlets(Test):
         self.assertLess(time.monotonic() - begin, 2)
         self.assertFalse(collected._thread.is_alive())
 
+    @mock.patch.object(markers, "GONE_S", 4.0)
+    @mock.patch.object(markers, "MOST_STREAMS", 1)  # there is room for another only when the first is given up
     def test_a_sender_that_is_killed_is_found_again(self):
         for source in ("same", ""):  # by LSL itself; by us, since it cannot be
             name = f"Killed{source}"
@@ -265,11 +268,10 @@ class Files(Test):
         self.assertEqual([text for _, text in heard], texts)
         self.assertTrue(all(before_s <= float(at) <= after_s for at, _ in heard))
 
+    @mock.patch.object(markers, "OWN_STREAMS", ())
     def test_run_time_is_that_of_the_recording(self):
         """A run says its clock in its recording and sends its events with it: both give the same time."""
         collected = self.collect("HapticGiantEvents")
-        self.addCleanup(setattr, markers, "OWN_STREAMS", markers.OWN_STREAMS)
-        markers.OWN_STREAMS = ()
         out = FOLDER / "run"
         run = subprocess.run([PROGRAM, "run", "door", "--lsl", "--no-viewer", "--priority", "0", "--duration", "3",
                               "--recordings", out], capture_output=True, text=True, stdin=subprocess.DEVNULL)

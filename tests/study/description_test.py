@@ -1,8 +1,10 @@
 """Parts of `hapticgiant study` that need no program: orders, expressions, scores, faults of study.yaml."""
 
 import collections
+import fnmatch
 import importlib.util
 import itertools
+import json
 import math
 import pathlib
 import re
@@ -266,6 +268,20 @@ class Faults(unittest.TestCase):
         there.tabulate()
         there._lock.close()
         return file
+
+    def test_bids_is_told_of_every_file_that_it_does_not_know(self):
+        with tempfile.TemporaryDirectory() as path:
+            out = self.answered(path).with_suffix(".study")
+            for name in ("sub-P01/sub-P01_task-light_run-1_recording.mcap", "sub-P01/sub-P01_task-light_run-1_trial.json",
+                         "sub-P01/sub-P01_run-1_markers.csv", "withdrawn.json", "report.tex", "report.html"):
+                (out / name).write_text("")
+            ignored = (out / ".bidsignore").read_text().splitlines()
+            for file in out.rglob("*"):
+                if file.is_file() and not file.name.startswith("."):
+                    self.assertNotEqual(any(fnmatch.fnmatch(file.name, each) for each in ignored),
+                                        file.name in ("README.md", "dataset_description.json"), file)
+            described = json.loads((out / "dataset_description.json").read_text())
+            self.assertTrue({"Name", "BIDSVersion", "DatasetType", "GeneratedBy"} <= set(described))
 
     def test_one_is_forgotten_although_the_study_has_changed(self):
         with tempfile.TemporaryDirectory() as path:

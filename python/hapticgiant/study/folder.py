@@ -2,6 +2,7 @@
 
     study.yaml                     as it was when the study began
     dataset_description.json       who has made it, and whether people are simulated
+    README.md .bidsignore          what the folder is; what BIDS does not know of it
     WHAT_IS_STORED.md              for participants and ethics boards
     sub-P01/sub-P01_task-door_run-1_trial.json    measures, events, hashes of one trial
     sub-P01/sub-P01_task-door_run-1_recording.mcap
@@ -42,6 +43,23 @@ PARTIAL = re.compile(r"\..+\.[0-9]+")  # a file that is being written, see _put(
 WITHDRAWN = "withdrawn.json"
 STUDY = "study.yaml"
 REPORTS = ("report.html", "report.tex", "report.json", "figures")
+BIDS = "1.10.0"
+BIDS_IGNORE = ("*.csv", "*.parquet", "*.mcap", "*_trial.json", "*_answers.json", "WHAT_IS_STORED.md", WITHDRAWN, STUDY,
+               "hashes.sha256", "report.*", "figures/")
+README = """\
+# {title}
+
+A user study, made with HapticGiant {version}. {people}
+
+`participants.csv`, `trials.csv` and `answers.csv` have a row per person, trial and answer; `data_dictionary.csv` says
+what each column is. They are made of the files in `sub-*`. `study.yaml` is the study as it was when it began,
+`WHAT_IS_STORED.md` is for participants and ethics boards. `sha256sum -c hashes.sha256` checks that all is as it was;
+`python code/analysis.py` computes the tests of the report again.
+
+Names and `dataset_description.json` are those of BIDS, tables are CSV instead of TSV. What BIDS does not know is listed
+in `.bidsignore`; authors, licence and ethics approvals are missing in `dataset_description.json`: add them before the
+data are published.
+"""
 STORED = """\
 # What is stored
 
@@ -107,13 +125,17 @@ class Folder:
         self.path.mkdir(parents=True, exist_ok=True)
         self._take()
         description = {
-            "Name": self.study.title, "DatasetType": "raw", "HapticGiantFormat": FORMAT,
+            "Name": self.study.title, "BIDSVersion": BIDS, "DatasetType": "raw", "HapticGiantFormat": FORMAT,
             "Study": self.study.digest(), "Simulated": is_simulated, "Model": model,
             "GeneratedBy": [{"Name": "HapticGiant", "Version": version}]}
         if self.exists():
             self.require(description)
         else:
             shutil.copyfile(self.study.file, self.path / STUDY)
+            people = "Its people are simulated." if is_simulated else "Its people took part in person."
+            self.replace(self.path / "README.md",
+                         README.format(title=self.study.title, version=version, people=people))
+            self.replace(self.path / ".bidsignore", "".join(f"{each}\n" for each in BIDS_IGNORE))
             self.write(self.path / DESCRIPTION, trials.dump(description))
         shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # what a crash has left
 
