@@ -141,6 +141,26 @@ class Scores(unittest.TestCase):
         self.assertAlmostEqual(found["raw"], 220 / 6)
 
 
+    def test_a_laboratory_has_its_own_words(self):
+        own = "{item_02: {text: {de: Zu komplex.}}, item_03: {ends: [{de: nein}, {de: ja}]}}"
+        changed = load(STUDY.replace("sus, after", f"sus, wording: {own}, after")).forms["sus"].items
+        usual = load(STUDY).forms["sus"].items
+        self.assertEqual(changed["item_02"].text, {"en": usual["item_02"].text["en"], "de": "Zu komplex."})
+        self.assertEqual(changed["item_02"].ends, usual["item_02"].ends)
+        self.assertEqual(changed["item_03"].ends, ({"en": "strongly disagree", "de": "nein"}, {"en": "strongly agree", "de": "ja"}))
+        self.assertEqual({**changed, "item_02": 0, "item_03": 0}, {**usual, "item_02": 0, "item_03": 0})
+        for old, new, message in (
+                ("kind: sus", "kind: sus, wording: {item_2: {text: a}}", "did you mean 'item_02'"),
+                ("kind: sus", "kind: sus, wording: {item_02: {texts: a}}", "did you mean 'text'"),
+                ("kind: sus", "kind: sus, wording: {item_02: {ends: [a]}}", "expected two ends"),
+                ("kind: sus", "kind: sus, items: {a: {kind: text, text: a}}", "'wording' changes their texts"),
+                ("nasa_tlx, weighted: true", "nasa_tlx, wording: {mentale: {text: a}}", "did you mean 'mental'"),
+                ("kind: nasa_tlx, weighted: true", "wording: {a: {text: a}}, items: {a: {kind: text, text: a}}",
+                 "'wording' is for nasa_tlx and sus")):
+            with self.assertRaisesRegex(StudyError, f"study.yaml:[78]:.*{message}"):
+                load(STUDY.replace(old, new))
+
+
 class Power(unittest.TestCase):
     def test_is_that_of_the_formula(self):
         """R: power.t.test(n = 16, delta = 1, sd = sqrt(2), type = "paired")$power. Differences of two
