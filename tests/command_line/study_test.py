@@ -122,6 +122,22 @@ class Before(Study):
             self.assertIn(part, out)
 
 
+class Words(TemporaryFolder):
+    def test_a_word_that_does_not_exist_has_the_nearest_one(self):
+        for words, line in ((("study", "repot", "x.yaml"), "repot: no such subcommand of hapticgiant study, did you mean 'report'?"),
+                            (("study", "simulate", "x.yaml", "--particpants", "3"),
+                             "--particpants: no such option of hapticgiant study simulate, did you mean '--participants'?"),
+                            (("sweep", "chek", "x.yaml"), "chek: no such subcommand of hapticgiant sweep, did you mean 'check'?"),
+                            (("sweep", "check", "x.yaml", "--cuont=3"),
+                             "--cuont: no such option of hapticgiant sweep check, did you mean '--count'?"),
+                            (("imus", "x.urdf", "--mesure", "gramian"),
+                             "--mesure: no such option of hapticgiant imus, did you mean '--measure'?"),
+                            (("imus", "x.urdf", "--measure", "gramia"), "did you mean 'gramian'?")):
+            code, out, err = run(*words)
+            self.assertEqual((code, out), (2, ""), err)
+            self.assertIn(line, err)
+
+
 class Simulated(Study):
     def test_from_trials_to_tables_and_one_forgotten(self):
         out, _ = self.study("simulate", "--participants", 2, "--keep-recordings")

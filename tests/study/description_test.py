@@ -1,13 +1,18 @@
 """Parts of `hapticgiant study` that need no program: orders, expressions, scores, faults of study.yaml."""
 
 import collections
+import fnmatch
+import importlib.util
 import itertools
+import json
 import math
 import pathlib
 import re
 import tempfile
+import threading
 import unittest
 import warnings
+from unittest import mock
 
 import numpy as np
 import without_compiled_part  # noqa: F401
@@ -136,6 +141,26 @@ class Scores(unittest.TestCase):
         self.assertAlmostEqual(found["raw"], 220 / 6)
 
 
+    def test_a_laboratory_has_its_own_words(self):
+        own = "{item_02: {text: {de: Zu komplex.}}, item_03: {ends: [{de: nein}, {de: ja}]}}"
+        changed = load(STUDY.replace("sus, after", f"sus, wording: {own}, after")).forms["sus"].items
+        usual = load(STUDY).forms["sus"].items
+        self.assertEqual(changed["item_02"].text, {"en": usual["item_02"].text["en"], "de": "Zu komplex."})
+        self.assertEqual(changed["item_02"].ends, usual["item_02"].ends)
+        self.assertEqual(changed["item_03"].ends, ({"en": "strongly disagree", "de": "nein"}, {"en": "strongly agree", "de": "ja"}))
+        self.assertEqual({**changed, "item_02": 0, "item_03": 0}, {**usual, "item_02": 0, "item_03": 0})
+        for old, new, message in (
+                ("kind: sus", "kind: sus, wording: {item_2: {text: a}}", "did you mean 'item_02'"),
+                ("kind: sus", "kind: sus, wording: {item_02: {texts: a}}", "did you mean 'text'"),
+                ("kind: sus", "kind: sus, wording: {item_02: {ends: [a]}}", "expected two ends"),
+                ("kind: sus", "kind: sus, items: {a: {kind: text, text: a}}", "'wording' changes their texts"),
+                ("nasa_tlx, weighted: true", "nasa_tlx, wording: {mentale: {text: a}}", "did you mean 'mental'"),
+                ("kind: nasa_tlx, weighted: true", "wording: {a: {text: a}}, items: {a: {kind: text, text: a}}",
+                 "'wording' is for nasa_tlx and sus")):
+            with self.assertRaisesRegex(StudyError, f"study.yaml:[78]:.*{message}"):
+                load(STUDY.replace(old, new))
+
+
 class Power(unittest.TestCase):
     def test_is_that_of_the_formula(self):
         """R: power.t.test(n = 16, delta = 1, sd = sqrt(2), type = "paired")$power. Differences of two
@@ -248,20 +273,39 @@ class Faults(unittest.TestCase):
                 "exit_code": 0, "state_hash": "", "recording_sha256": "", "recording": None}))
             self.assertEqual(set(there.rows()["trials"][0]), {*description.TRIAL_COLUMNS, *study.measures})
 
+    def answered(self, path):
+        """The file of a study, whose folder beside it has the forms of two people."""
+        file = pathlib.Path(path) / "study.yaml"
+        file.write_text(STUDY)
+        there = folder.Folder(study := description.load_study(file))
+        there.begin("1", True)
+        for code in ("P01", "P02"):
+            for step in planning.steps(study, planning.Participant(code, ("light", "heavy"))):
+                if step.kind == "form":
+                    answers, pairs = people.answers_of(study, code, step.form, step.condition)
+                    there.write(there.file_of(code, step), trials.dump({
+                        "condition": step.condition, "form": step.form, "answers": answers, "pairs": pairs}))
+        there.tabulate()
+        there._lock.close()
+        return file
+
+    def test_bids_is_told_of_every_file_that_it_does_not_know(self):
+        with tempfile.TemporaryDirectory() as path:
+            out = self.answered(path).with_suffix(".study")
+            for name in ("sub-P01/sub-P01_task-light_run-1_recording.mcap", "sub-P01/sub-P01_task-light_run-1_trial.json",
+                         "sub-P01/sub-P01_run-1_markers.csv", "withdrawn.json", "report.tex", "report.html"):
+                (out / name).write_text("")
+            ignored = (out / ".bidsignore").read_text().splitlines()
+            for file in out.rglob("*"):
+                if file.is_file() and not file.name.startswith("."):
+                    self.assertNotEqual(any(fnmatch.fnmatch(file.name, each) for each in ignored),
+                                        file.name in ("README.md", "dataset_description.json"), file)
+            described = json.loads((out / "dataset_description.json").read_text())
+            self.assertTrue({"Name", "BIDSVersion", "DatasetType", "GeneratedBy"} <= set(described))
+
     def test_one_is_forgotten_although_the_study_has_changed(self):
         with tempfile.TemporaryDirectory() as path:
-            file = pathlib.Path(path) / "study.yaml"
-            file.write_text(STUDY)
-            there = folder.Folder(study := description.load_study(file))
-            there.begin("1", True)
-            for code in ("P01", "P02"):
-                for step in planning.steps(study, planning.Participant(code, ("light", "heavy"))):
-                    if step.kind == "form":
-                        answers, pairs = people.answers_of(study, code, step.form, step.condition)
-                        there.write(there.file_of(code, step), trials.dump({
-                            "condition": step.condition, "form": step.form, "answers": answers, "pairs": pairs}))
-            there.tabulate()
-            there._lock.close()
+            file = self.answered(path)
             out = file.with_suffix(".study")
             partial, running = out / "sub-P02" / ".sub-P01_trial.json.77", out / ".running" / "3" / "P01"
             running.mkdir(parents=True)
@@ -270,11 +314,118 @@ class Faults(unittest.TestCase):
                 file.write_text(STUDY.replace(old, new))
                 there = folder.Folder.as_it_was(file, None)
                 self.assertEqual(there.forget("P01"), 3 if new == "" else 0)  # the second time it finishes
+                self.assertEqual(there.notes, [])
                 self.assertNotIn("P01,", (out / "answers.csv").read_text())
                 self.assertIn("P02,light,tlx", (out / "answers.csv").read_text())
                 self.assertFalse(partial.exists() or running.exists() or (out / "sub-P01").exists())
                 (out / "answers.csv").write_text("P01,")
-                there._lock.close()
+
+    def test_one_is_forgotten_although_the_folder_is_damaged(self):
+        def refused(out):
+            (out / "study.yaml").write_text(STUDY.replace("kind: within", "kind: wthin"))
+
+        def no_text(out):
+            (out / "study.yaml").write_bytes(b"\xff\x00")
+
+        def edited(out):
+            (out / "study.yaml").write_text(STUDY.replace("participants: 16", "participants: 8"))
+
+        def no_description(out):
+            (out / "dataset_description.json").write_text("{")
+
+        def answer(out):
+            next((out / "sub-P02").glob("*.json")).write_text("{}")
+
+        def table(out):
+            refused(out)
+            (out / "answers.csv").write_bytes(b"participant\nP01\n\xff")
+
+        for damage, note in ((refused, "did you mean 'within'"), (no_text, "cannot be read"), (edited, "holds another study"),
+                             (no_description, "JSONDecodeError"), (answer, "KeyError"), (table, "answers.csv is deleted")):
+            with tempfile.TemporaryDirectory() as path, self.subTest(damage.__name__):
+                file = self.answered(path)
+                out = file.with_suffix(".study")
+                for name in ("report.html", "trials.parquet"):
+                    (out / name).write_text("P01")
+                damage(out)
+                there = folder.Folder.as_it_was(file, None)
+                with self.assertRaisesRegex(folder.FolderError, "did you mean 'P02'"):
+                    there.forget("P22")
+                there = folder.Folder.as_it_was(file, None)
+                self.assertEqual(there.forget("P01"), 3)
+                self.assertIn(note, " ".join(there.notes))
+                self.assertIn("tables are not made anew", there.notes[-1])
+                for each in out.rglob("*"):
+                    self.assertFalse("sub-P01" in str(each) or each.suffix == ".parquet" or each.name == "report.html", each)
+                    if each.is_file() and each.name != "withdrawn.json":
+                        self.assertNotIn(b"P01", each.read_bytes().replace(b"(P01 ...)", b""), each)
+                self.assertIn("P02,", (out / "participants.csv").read_text())
+                self.assertEqual(there.withdrawn(), ["P01"])
+                lines = (out / "hashes.sha256").read_text().splitlines()
+                self.assertEqual({line.split("  ")[1] for line in lines},
+                                 {str(each.relative_to(out)) for each in out.rglob("*")
+                                  if each.is_file() and not each.name.startswith(".") and each.name != "hashes.sha256"})
+
+    def test_a_folder_that_is_none_is_left_alone(self):
+        with tempfile.TemporaryDirectory() as path:
+            file = pathlib.Path(path) / "study.yaml"
+            file.write_text("a: b")
+            (pathlib.Path(path) / "study.study").mkdir()
+            with self.assertRaises(StudyError):
+                folder.Folder.as_it_was(file, None)
+            file.write_text(STUDY)
+            with self.assertRaisesRegex(folder.FolderError, "holds no study"):
+                folder.Folder.as_it_was(file, None).forget("P01")
+            self.assertEqual(list((pathlib.Path(path) / "study.study").iterdir()), [])
+
+    @unittest.skipUnless(importlib.util.find_spec("jinja2") and importlib.util.find_spec("matplotlib"), "needs jinja2")
+    def test_a_report_has_nobody_who_was_forgotten_while_it_was_made(self):
+        from hapticgiant.study import report
+
+        with tempfile.TemporaryDirectory() as path:
+            file = self.answered(path)
+            out = file.with_suffix(".study")
+            there = folder.Folder(description.load_study(file))
+            playing = folder.Folder(there.study)
+            playing._take()  # a study that runs
+            report.write(there)
+            with self.assertRaisesRegex(folder.FolderError, "another program is writing"):
+                folder.Folder.as_it_was(file, None).forget("P01")
+            playing._lock.close()
+            drawn = report.boxes
+
+            def forget(*words):
+                folder.Folder.as_it_was(file, None).forget("P01")
+                return drawn(*words)
+
+            with mock.patch.object(report, "boxes", forget):
+                with self.assertRaisesRegex(folder.FolderError, "somebody has been forgotten meanwhile"):
+                    report.write(there)
+            self.assertFalse((out / "report.html").exists() or (out / "report.tex").exists())
+            self.assertNotIn("P01,", (out / "answers.csv").read_text())
+            report.write(there)
+            self.assertNotIn("P01,", (out / "answers.csv").read_text())
+
+    def test_tables_are_written_by_one_at_a_time(self):
+        with tempfile.TemporaryDirectory() as path:
+            file = self.answered(path)
+            first, second = (folder.Folder(description.load_study(file)) for _ in range(2))
+            done = []
+            with first.writing_tables():
+                first.tabulate()  # its own thread may
+                thread = threading.Thread(target=lambda: done.append(second.tabulate()))
+                thread.start()
+                thread.join(0.3)
+                self.assertEqual(done, [])
+            thread.join(20)
+            self.assertEqual(len(done), 1)
+
+    def test_who_has_withdrawn_is_in_no_table_whatever_a_crash_has_left(self):
+        with tempfile.TemporaryDirectory() as path:
+            there = folder.Folder(description.load_study(self.answered(path)))
+            there.replace(there.path / folder.WITHDRAWN, '["P01"]')
+            there.tabulate()
+            self.assertNotIn("P01,", (there.path / "answers.csv").read_text())
 
     def test_carry_over_is_told_as_a_count(self):
         text = STUDY.replace("  heavy:", "  middle: {twin.mass_scale: 1.5}\n  heavy:").replace("order: williams", "order: latin_square")

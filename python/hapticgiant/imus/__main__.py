@@ -54,7 +54,9 @@ def place_of(text):
 
 
 def parser():
-    found = argparse.ArgumentParser(
+    from hapticgiant.command_line import Parser
+
+    found = Parser(
         prog="hapticgiant imus", description="Where inertial sensors tell most about the speeds and "
         "accelerations of the joints of a robot (docs/start/imu_placement.md).")
     add = found.add_argument

@@ -32,8 +32,9 @@ def positive(text):
 
 
 def parser():
-    main = argparse.ArgumentParser(prog="hapticgiant study",
-                                   description="User studies (docs/start/user_studies.md).")
+    from hapticgiant.command_line import Parser
+
+    main = Parser(prog="hapticgiant study", description="User studies (docs/start/user_studies.md).")
     commands = main.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     def add(name, what):
@@ -241,7 +242,13 @@ def run(arguments):
     from hapticgiant.sweep.program import find_program
 
     if arguments.command == "forget":
-        count = Folder.as_it_was(arguments.study, arguments.out).forget(arguments.code)
+        folder = Folder.as_it_was(arguments.study, arguments.out)
+        count = folder.forget(arguments.code)
+        for note in folder.notes:
+            print(f"note: {note}")
+        if folder.notes:
+            print(f"{arguments.code}: {count} files deleted, and reports of before")
+            return 0
         print(f"{arguments.code}: {count} files deleted, tables made anew; reports of before are deleted: "
               f"hapticgiant study report {arguments.study}")
         return 0

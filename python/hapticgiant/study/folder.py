@@ -2,6 +2,7 @@
 
     study.yaml                     as it was when the study began
     dataset_description.json       who has made it, and whether people are simulated
+    README.md .bidsignore          what the folder is; what BIDS does not know of it
     WHAT_IS_STORED.md              for participants and ethics boards
     sub-P01/sub-P01_task-door_run-1_trial.json    measures, events, hashes of one trial
     sub-P01/sub-P01_task-door_run-1_recording.mcap
@@ -20,6 +21,7 @@ that is killed loses the step that is running. Tables are made of them anew when
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import fcntl
 import io
@@ -28,11 +30,12 @@ import os
 import pathlib
 import re
 import shutil
+import threading
 
 from hapticgiant.study import markers, questionnaires, trials
 from hapticgiant.study.description import Study, load_study
 from hapticgiant.study.planning import Participant, Step, plan, steps
-from hapticgiant.sweep.reader import nearest
+from hapticgiant.sweep.reader import StudyError, nearest
 
 FORMAT = 1
 DESCRIPTION = "dataset_description.json"
@@ -44,6 +47,23 @@ PARTIAL = re.compile(r"\..+\.[0-9]+")  # a file that is being written, see _put(
 WITHDRAWN = "withdrawn.json"
 STUDY = "study.yaml"
 REPORTS = ("report.html", "report.tex", "report.json", "figures")
+BIDS = "1.10.0"
+BIDS_IGNORE = ("*.csv", "*.parquet", "*.mcap", "*_trial.json", "*_answers.json", "WHAT_IS_STORED.md", WITHDRAWN, STUDY,
+               "hashes.sha256", "report.*", "figures/")
+README = """\
+# {title}
+
+A user study, made with HapticGiant {version}. {people}
+
+`participants.csv`, `trials.csv` and `answers.csv` have a row per person, trial and answer; `data_dictionary.csv` says
+what each column is. They are made of the files in `sub-*`. `study.yaml` is the study as it was when it began,
+`WHAT_IS_STORED.md` is for participants and ethics boards. `sha256sum -c hashes.sha256` checks that all is as it was;
+`python code/analysis.py` computes the tests of the report again.
+
+Names and `dataset_description.json` are those of BIDS, tables are CSV instead of TSV. What BIDS does not know is listed
+in `.bidsignore`; authors, licence and ethics approvals are missing in `dataset_description.json`: add them before the
+data are published.
+"""
 STORED = """\
 # What is stored
 
@@ -71,17 +91,29 @@ class FolderError(RuntimeError):
 class Folder:
     """The folder of one study."""
 
-    def __init__(self, study: Study, path: str | os.PathLike | None = None):
+    def __init__(self, study: Study | None, path: str | os.PathLike | None = None):
+        """study: None where it cannot be read; then only forget() works."""
         self.study = study
         self.path = pathlib.Path(path) if path is not None else study.file.with_suffix(".study")
+        self.notes: list[str] = []
+        """What forget() could not do as usual."""
         self._lock = None
+        self._inner, self._depth, self._tables = threading.RLock(), 0, None
 
     @classmethod
     def as_it_was(cls, file: str | os.PathLike, path: str | os.PathLike | None) -> Folder:
-        """The folder with the study as it was when it began, whatever has become of the file since."""
+        """The folder with the study as it was when it began, whatever has become of the file since; without the study
+        where that cannot be read any more. Raises StudyError where there is no folder either."""
         path = pathlib.Path(path) if path is not None else pathlib.Path(file).with_suffix(".study")
         own = path / STUDY
-        return cls(load_study(own if own.exists() else file), path)
+        try:
+            return cls(load_study(own if own.exists() else file), path)
+        except StudyError as error:
+            if not any(path.glob("sub-*")) and not (path / DESCRIPTION).exists():
+                raise
+            found = cls(None, path)
+            found.notes.append(f"the study cannot be read: {error}")
+            return found
 
     def exists(self) -> bool:
         return (self.path / DESCRIPTION).exists()
@@ -97,13 +129,17 @@ class Folder:
         self.path.mkdir(parents=True, exist_ok=True)
         self._take()
         description = {
-            "Name": self.study.title, "DatasetType": "raw", "HapticGiantFormat": FORMAT,
+            "Name": self.study.title, "BIDSVersion": BIDS, "DatasetType": "raw", "HapticGiantFormat": FORMAT,
             "Study": self.study.digest(), "Simulated": is_simulated, "Model": model,
             "GeneratedBy": [{"Name": "HapticGiant", "Version": version}]}
         if self.exists():
             self.require(description)
         else:
             shutil.copyfile(self.study.file, self.path / STUDY)
+            people = "Its people are simulated." if is_simulated else "Its people took part in person."
+            self.replace(self.path / "README.md",
+                         README.format(title=self.study.title, version=version, people=people))
+            self.replace(self.path / ".bidsignore", "".join(f"{each}\n" for each in BIDS_IGNORE))
             self.write(self.path / DESCRIPTION, trials.dump(description))
         shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # what a crash has left
 
@@ -112,7 +148,24 @@ class Folder:
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
+            self._lock.close()
             raise FolderError(f"{self.path}: another program is writing there") from None
+
+    @contextlib.contextmanager
+    def writing_tables(self):
+        """Within it nobody else writes tables or reports, or forgets somebody. It waits for whoever does so, and may be
+        entered again by its own thread."""
+        with self._inner:
+            if self._depth == 0:
+                self._tables = open(self.path / ".tables", "w", encoding="utf-8")
+                fcntl.flock(self._tables, fcntl.LOCK_EX)
+            self._depth += 1
+            try:
+                yield
+            finally:
+                self._depth -= 1
+                if self._depth == 0:
+                    self._tables.close()
 
     def require(self, wanted: dict) -> None:
         """Raises FolderError where the folder is of another study or of other people."""
@@ -214,8 +267,9 @@ class Folder:
             return []
 
     def participants(self) -> list[Participant]:
-        """Those that have files, in the order of the plan."""
-        return [each for each in plan(self.study) if (self.path / f"sub-{each.code}").is_dir()]
+        """Those that have files and have not withdrawn, in the order of the plan."""
+        gone = self.withdrawn()
+        return [each for each in plan(self.study) if each.code not in gone and (self.path / f"sub-{each.code}").is_dir()]
 
     def progress(self, participant: Participant) -> tuple[int, int]:
         """How many trials and forms of a participant are there, and how many there are to be."""
@@ -224,28 +278,67 @@ class Folder:
         return sum(file.exists() for file in files), len(files)
 
     def forget(self, code: str) -> int:
-        """Deletes everything of one participant; how many files. Again it finishes what a crash has left."""
-        self.require({**self.description(), "Study": self.study.digest()})
+        """Deletes everything of one participant; how many files. Again it finishes what a crash has left. Where study or
+        folder are damaged, tables are not made anew but lose the rows of the participant, and `notes` say so."""
+        codes = sorted(each.name.removeprefix("sub-") for each in self.path.glob("sub-*") if each.is_dir())
+        if not codes and not self.exists():
+            raise FolderError(f"{self.path}: holds no study; hapticgiant study simulate makes one")
         self._take()
-        codes = [each.code for each in self.participants()]
+        with self._lock:
+            return self._forget(code, codes)
+
+    def _forget(self, code, codes):
         if code not in codes and code not in self.withdrawn():
             near = f", did you mean '{nearest(code, codes)}'?" if codes else ""
             raise FolderError(f"{self.path}: has no participant '{code}'{near}")
-        folder = self.path / f"sub-{code}"
-        count = sum(1 for file in folder.rglob("*") if file.is_file())
-        # first the note: a crash in between must not let somebody play under this code again
-        self.replace(self.path / WITHDRAWN, trials.dump(sorted({*self.withdrawn(), code})))
-        if folder.exists():
-            shutil.rmtree(folder)
-        shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # trials and files of a program that was killed
-        for file in list(self.path.rglob(".*")):
-            if PARTIAL.fullmatch(file.name):
-                file.unlink(missing_ok=True)
-        for name in REPORTS:
-            target = self.path / name
-            shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
-        self.tabulate()
+        with self.writing_tables():
+            folder = self.path / f"sub-{code}"
+            count = sum(1 for file in folder.rglob("*") if file.is_file())
+            # first the note: a crash in between must not let somebody play under this code again
+            self.replace(self.path / WITHDRAWN, trials.dump(sorted({*self.withdrawn(), code})))
+            if folder.exists():
+                shutil.rmtree(folder)
+            shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # trials and files of a program that was killed
+            for file in list(self.path.rglob(".*")):
+                if PARTIAL.fullmatch(file.name):
+                    file.unlink(missing_ok=True)
+            for name in REPORTS:
+                target = self.path / name
+                shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
+            for name in TABLES:
+                (self.path / f"{name}.parquet").unlink(missing_ok=True)
+            lost = [note for name in TABLES if (note := self._filter(self.path / f"{name}.csv", code))]
+            if not self._is_tabulated_anew():
+                self.notes += [*lost, "tables are not made anew: they are those of before without the participant, as "
+                               "CSV only"]
+                self.hash()
         return count
+
+    def _filter(self, file, code):
+        """Takes the rows of a participant out of a table. Deletes one that cannot be read; returns a note of that."""
+        if not file.exists():
+            return ""
+        try:
+            with open(file, encoding="utf-8", newline="") as lines:
+                head, *rows = csv.reader(lines, strict=True)
+            if not head and not rows:  # a table without rows has no columns either
+                return ""
+            place = head.index("participant")
+            self.replace(file, _rows_text([head, *(row for row in rows if row[place] != code)]))
+        except (ValueError, IndexError, csv.Error) as error:
+            file.unlink()
+            return f"{file.name} is deleted, since it cannot be read: {error}"
+        return ""
+
+    def _is_tabulated_anew(self):
+        try:
+            if self.study is not None:
+                self.require({**self.description(), "Study": self.study.digest()})
+                self.tabulate()
+                return True
+        except (FolderError, ValueError, KeyError, TypeError) as error:  # whatever somebody has done to the files
+            self.notes.append(f"{type(error).__name__}: {error}" if not isinstance(error, FolderError) else str(error))
+        return False
 
     def rows(self) -> dict[str, list[dict]]:
         """The tables, made of the files of the participants."""
@@ -291,7 +384,12 @@ class Folder:
                      and expressions.is_true(each.expression, known)), "")
 
     def tabulate(self) -> list[pathlib.Path]:
-        """Writes tables, data dictionary, what is stored, and hashes. Parquet where pyarrow is installed."""
+        """Writes tables, data dictionary, what is stored, and hashes. Parquet where pyarrow is installed. It waits for
+        another program that does so, or that writes a report."""
+        with self.writing_tables():
+            return self._tabulate()
+
+    def _tabulate(self):
         from hapticgiant.sweep.table import columns_of
 
         files, rows = [], self.rows()

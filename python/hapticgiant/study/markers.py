@@ -97,7 +97,9 @@ class StudyStream:
 
 
 def words_of(code: str, step, what: str) -> str:
-    """What StudyStream says of a planning.Step, as "P01 trial door 1 begin"."""
+    """What StudyStream says of a planning.Step, as "P01 trial door 1 begin"; without a step, of the session."""
+    if step is None:
+        return f"{code} session {what}"
     text = step.text if step.text != step.kind else ""
     words = [code, step.kind, step.form, step.condition or text]
     return " ".join([*filter(None, words), *([str(step.repetition)] if step.repetition else []), what])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import itertools
 
+from hapticgiant.command_line import nearest
+
 KINDS = ("nasa_tlx", "sus", "own")
 MOMENTS = ("condition", "end")
 ITEM_KINDS = ("likert", "slider", "text")
@@ -38,6 +40,7 @@ class Form:
     """Of the weighted TLX: the 15 pairs, each answered by the item that mattered more."""
 
 
+# The German texts of both are translations of this project and of no publication: `wording` takes others.
 # Hart and Staveland, Development of NASA-TLX, 1988: six scales of 21 marks, 0 to 100 in steps of 5.
 TLX = {
     "mental": ({"en": "Mental demand: how mentally demanding was the task?",
@@ -95,16 +98,18 @@ def sus_items() -> dict[str, Item]:
 def read_form(reader, name, node) -> Form:
     """The form of a node of study.yaml. Raises StudyError."""
     item = f"questionnaires.{name}"
-    parts = reader.map(node, item, ("kind", "after", "weighted", "items"))
+    parts = reader.map(node, item, ("kind", "after", "weighted", "items", "wording"))
     kind = reader.choice(parts, "kind", item, KINDS, "own")
     after = reader.choice(parts, "after", item, MOMENTS, "condition")
     if "weighted" in parts and kind != "nasa_tlx":
         reader.fault(parts["weighted"], item, "only the nasa_tlx is weighted")
     if kind != "own":
         if "items" in parts:
-            reader.fault(parts["items"], item, f"the items of the {kind} are fixed")
+            reader.fault(parts["items"], item, f"the items of the {kind} are fixed: 'wording' changes their texts")
+    elif "wording" in parts:
+        reader.fault(parts["wording"], item, "own items have their texts: 'wording' is for nasa_tlx and sus")
     if kind == "nasa_tlx":
-        items = tlx_items()
+        items = _reworded(reader, tlx_items(), parts.get("wording"), f"{item}.wording")
         scores = {"raw": "raw TLX, mean of the six scales, 0 to 100"}
         is_weighted = reader.choice(parts, "weighted", item, ("true", "false"), "false") == "true"
         if is_weighted:
@@ -113,7 +118,8 @@ def read_form(reader, name, node) -> Form:
         return Form(kind, after, items, scores,
                     tuple(itertools.combinations(items, 2)) if is_weighted else ())
     if kind == "sus":
-        return Form(kind, after, sus_items(), {"score": "SUS score, 0 to 100"})
+        items = _reworded(reader, sus_items(), parts.get("wording"), f"{item}.wording")
+        return Form(kind, after, items, {"score": "SUS score, 0 to 100"})
     items = {}
     for each, value in reader.names(parts.get("items"), f"{item}.items"):
         items[each] = _item(reader, value, f"{item}.{each}")
@@ -121,6 +127,26 @@ def read_form(reader, name, node) -> Form:
         reader.fault(node, item, "expected items")
     return Form(kind, after, items, {each: known.text.get("en", each) for each, known in items.items()
                                      if known.kind != "text"})
+
+
+def _reworded(reader, items, node, item):
+    """The items with the texts of the laboratory, in the languages that it gives."""
+    for name, value in reader.names(node, item):
+        if name not in items:
+            reader.fault(value, f"{item}.{name}", f"no such item, did you mean '{nearest(name, items)}'?")
+        parts = reader.map(value, f"{item}.{name}", ("text", "ends"))
+        known, ends = items[name], _ends(reader, parts, f"{item}.{name}")
+        text = reader.texts(parts["text"], f"{item}.{name}.text") if "text" in parts else {}
+        items[name] = dataclasses.replace(known, text=known.text | text, ends=tuple(
+            old | new for old, new in zip(known.ends, ends or ({}, {}))))
+    return items
+
+
+def _ends(reader, parts, item):
+    ends = [reader.texts(end, f"{item}.ends") for end in reader.sequence(parts.get("ends"), f"{item}.ends")]
+    if ends and len(ends) != 2:
+        reader.fault(parts["ends"], item, "expected two ends")
+    return ends
 
 
 def _item(reader, node, item):
@@ -131,9 +157,7 @@ def _item(reader, node, item):
     text = reader.texts(parts["text"], f"{item}.text")
     if kind == "text":
         return Item(kind, text)
-    ends = [reader.texts(end, f"{item}.ends") for end in reader.sequence(parts.get("ends"), f"{item}.ends")]
-    if ends and len(ends) != 2:
-        reader.fault(parts["ends"], item, "expected two ends")
+    ends = _ends(reader, parts, item)
     low, high, step = 1, 7, 1
     if kind == "likert" and "points" in parts:
         high = reader.count(parts["points"], f"{item}.points")

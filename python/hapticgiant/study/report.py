@@ -21,20 +21,23 @@ PANELS = 4  # measures in a row
 
 
 def write(folder: Folder) -> list[pathlib.Path]:
-    """Writes the report into the folder; its files. Raises FolderError."""
+    """Writes the report into the folder; its files. A study may run meanwhile: the report has what was done when it
+    began. Raises FolderError, and writes nothing, where somebody has been forgotten since it began."""
     study, description = folder.study, folder.description()
     folder.require({**description, "Study": study.digest()})
     if not folder.participants():
         raise FolderError(f"{folder.path}: nobody has taken part yet")
-    folder.tabulate()
     people = SIMULATED if description["Simulated"] else REAL
-    folder.replace(folder.path / "code" / "plan.json", trials.dump({
-        "people": people, "title": study.title, "conditions": list(study.conditions), "alpha": study.alpha,
-        "correction": study.correction, "outcomes": study.outcomes,
-        "tests": [{"outcome": test.outcome, "test": test.test} for test in study.tests]}))
-    for name in ("analysis.py", "inference.py"):
-        folder.replace(folder.path / "code" / name, (HERE / name).read_text(encoding="utf-8"))
-    data = analysis.Data(folder.path)
+    with folder.writing_tables():
+        withdrawn = folder.withdrawn()
+        folder.tabulate()
+        folder.replace(folder.path / "code" / "plan.json", trials.dump({
+            "people": people, "title": study.title, "conditions": list(study.conditions), "alpha": study.alpha,
+            "correction": study.correction, "outcomes": study.outcomes,
+            "tests": [{"outcome": test.outcome, "test": test.test} for test in study.tests]}))
+        for name in ("analysis.py", "inference.py"):
+            folder.replace(folder.path / "code" / name, (HERE / name).read_text(encoding="utf-8"))
+        data = analysis.Data(folder.path)
     found = analysis.tests(data)
     kinds = sorted({test.test for test in study.tests})
     sections = [
@@ -63,9 +66,14 @@ def write(folder: Folder) -> list[pathlib.Path]:
         version=description["GeneratedBy"][0]["Version"], command="python code/analysis.py",
         files="trials.csv, answers.csv, participants.csv, report.tex, code/")
     files = [folder.path / "report.html", folder.path / "report.tex", folder.path / "code" / "analysis.py"]
-    folder.replace(files[0], page)
-    folder.replace(files[1], latex(title, people, about, sections))
-    folder.hash()
+    text = latex(title, people, about, sections)
+    with folder.writing_tables():
+        if folder.withdrawn() != withdrawn:
+            raise FolderError(f"{folder.path}: somebody has been forgotten meanwhile; nothing is written, the same "
+                              "command makes the report without them")
+        folder.replace(files[0], page)
+        folder.replace(files[1], text)
+        folder.hash()
     return files
 
 

@@ -70,22 +70,24 @@ def positive(text):
 
 
 def parsers():
-    main = argparse.ArgumentParser(
+    from hapticgiant.command_line import Parser
+
+    main = Parser(
         prog="hapticgiant sweep",
         description="Many runs over a table of parameters (docs/start/sweep.md). The same command "
                     "again continues where a sweep has ended.",
         epilog="hapticgiant sweep submit|merge|check|show STUDY --help: a job array of Slurm, the "
                "table of all shards, runs played again, what would be played")
     main.add_argument("study", help="study.yaml")
-    submit = argparse.ArgumentParser(prog="hapticgiant sweep submit",
-                                     description="Writes the script of a job array, and hands it to Slurm.")
-    merge = argparse.ArgumentParser(prog="hapticgiant sweep merge",
-                                    description="Makes one table of all shards that are there.")
-    check = argparse.ArgumentParser(
+    submit = Parser(prog="hapticgiant sweep submit",
+                    description="Writes the script of a job array, and hands it to Slurm.")
+    merge = Parser(prog="hapticgiant sweep merge",
+                   description="Makes one table of all shards that are there.")
+    check = Parser(
         prog="hapticgiant sweep check",
         description="Plays runs again and compares their exit codes, hashes and measures.")
-    show = argparse.ArgumentParser(prog="hapticgiant sweep show",
-                                   description="Prints the commands of the runs, plays nothing.")
+    show = Parser(prog="hapticgiant sweep show",
+                  description="Prints the commands of the runs, plays nothing.")
     for other in (submit, merge, check, show):
         other.add_argument("study", help="study.yaml")
     for each in (main, submit, merge, check):
@@ -168,7 +170,11 @@ def main(words):
     from hapticgiant.sweep import campaign, reader, slurm, study
 
     command = words[0] if words and words[0] in COMMANDS else ""
-    arguments = parsers()[command].parse_args(words[1:] if command else words)
+    known = parsers()
+    is_word = len(words) > 1 and not any(word.startswith("-") for word in words[:2])
+    if not command and is_word and not pathlib.Path(words[0]).exists():
+        known[""].wrong(words[0], "subcommand", COMMANDS)
+    arguments = known[command].parse_args(words[1:] if command else words)
 
     try:
         described = study.load_study(arguments.study)

@@ -4,12 +4,13 @@ column and the nearest name. Sweeps and user studies are read by it.
 
 from __future__ import annotations
 
-import difflib
 import functools
 import json
 import math
 import os
 import pathlib
+
+from hapticgiant.command_line import nearest
 
 OPTIONS = {"scenario": "", "device": "--device", "twin": "--twin", "user": "--user",
            "simulation": "--simulation", "plant": "--plant", "sensors": "--sensors",
@@ -36,11 +37,6 @@ def value_of(words: str):
         except ValueError:
             continue
     return words
-
-
-def nearest(name: str, names) -> str:
-    """Of these names the most similar one."""
-    return max(names, key=lambda known: difflib.SequenceMatcher(None, name, known).ratio())
 
 
 def arguments_of(options: dict[str, str], folder: pathlib.Path) -> list[str]:
