@@ -153,8 +153,8 @@ class StudyRun(unittest.IsolatedAsyncioTestCase):
             self.assertIn("P07", await operator.ask("begin", code="P07"))
             self.assertIsNone(await operator.ask("begin", code="P01"))
             self.assertIsNone(await participant.ask("language", language="de"))
-            state = await participant.until(lambda each: each["screen"] == "instruction")
-            self.assertEqual(state["markdown"], "Guten Tag")
+            state = await participant.until(lambda each: each["language"] == "de")
+            self.assertEqual((state["screen"], state["markdown"]), ("instruction", "Guten Tag"))
             self.assertIsNone(await operator.ask("note", text="left-handed"))
 
             # a trial that has been played is put aside with a reason, and played again

@@ -152,7 +152,7 @@ class Conductor:
             if session else [],
             "position": session.position if session else None, "phase": self.phase(), "problem": self._problem,
             "run": self.run_state(), "last": self._last,
-            "notes": [{"step": note["step"], "text": note["text"]} for note in self.folder.notes(session.code)]
+            "notes": [{"step": note["step"], "text": note["text"]} for note in self.folder.remarks(session.code)]
             if session else [],
             "markers": self._markers.state() if self._markers else [], "can": self.can()}
 
@@ -387,7 +387,7 @@ class Conductor:
         finally:
             self._run = self._task = None
             self._abort_why = None
-            trials.discard(work)
+            trials.discard(work.parent)
             self._changed()
 
     def _run_changed(self):

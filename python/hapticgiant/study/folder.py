@@ -251,10 +251,10 @@ class Folder:
 
     def note(self, code: str, text: str, step: int) -> None:
         """Keeps a remark of the operator."""
-        self.write(self.path / f"sub-{code}" / f"sub-{code}_note-{len(self.notes(code)) + 1}.json",
+        self.write(self.path / f"sub-{code}" / f"sub-{code}_note-{len(self.remarks(code)) + 1}.json",
                    trials.dump({"participant": code, "step": step, "text": text}))
 
-    def notes(self, code: str) -> list[dict]:
+    def remarks(self, code: str) -> list[dict]:
         """The remarks of the operator, in their order."""
         files = (self.path / f"sub-{code}").glob("*_note-*.json")
         return [json.loads(file.read_text(encoding="utf-8"))
