@@ -113,6 +113,7 @@ class OperatorPage {
     if (link !== "") {
       this.frame = make("iframe");
       this.frame.title = "Page of the run";
+      this.frame.allow = "xr-spatial-tracking"; // a headset
       this.frame.src = `${link}&show=trial`;
       element("view").append(this.frame);
     }

@@ -78,6 +78,7 @@ export function trial_screen({ words }: Desk, first: ParticipantState): Screen {
     if (wanted === null) return;
     frame = make("iframe");
     frame.title = words.picture;
+    frame.allow = "xr-spatial-tracking"; // a headset
     frame.src = hand_link(wanted);
     root.append(frame);
   };

@@ -19,6 +19,10 @@ export async function open(browser, link, options = {}) {
   page.on("request", (request) => {
     if (!/^(http:\/\/127\.0\.0\.1:|blob:|data:)/.test(request.url())) problems.push(request.url());
   });
+  // the page of a run is drawn as cheaply as it can be
+  await page.addInitScript(() => {
+    if (location.hash.includes("show=")) history.replaceState(null, "", `${location.hash}&quality=fast`);
+  });
   await page.goto(link);
   await page.waitForFunction(() => document.body.dataset.connected === "true");
   return { page, problems, context };

@@ -353,7 +353,7 @@ export class Mock {
     const { run } = this;
     if (!run) return;
     run.time_s = Number((run.time_s + 0.2).toFixed(3));
-    run.force_N = 18 + 16 * Math.sin(run.time_s) + 3 * Math.sin(5 * run.time_s);
+    run.force_N = Math.abs(18 + 16 * Math.sin(run.time_s) + 3 * Math.sin(5 * run.time_s));
     if (this.phase === "starting") {
       this.phase = "running";
       run.mode = "running";
