@@ -319,10 +319,80 @@ def excavator(figure, runs):
     figure.text(0.06, 0.9, "(a)", fontsize=8, fontweight="bold")
 
 
+def draw_doorway(panel, run):
+    """A person who walks through, from above: body, handle and leaf; every second in full."""
+    from matplotlib.patches import Ellipse
+    doorway, person = run.facts["doorway"], run.facts["person"]
+    width, shoulder = doorway["leaf_width_m"], doorway["half_breadth_m"]
+    for x in (-0.01, doorway["clear_width_m"]):
+        side = 0.07 if x > 0.0 else -0.07
+        panel.fill_between([x, x + side], -0.07, 0.07, color="black", linewidth=0)
+    time = person["time_s"]
+    for second in np.arange(np.ceil(time[0]), time[-1]):
+        row = int(np.searchsorted(time, second))
+        x, y, angle = (person[name][row] for name in ("x_m", "y_m", "angle_rad"))
+        shade = 0.25 + 0.75 * (second - time[0]) / (time[-1] - time[0])
+        panel.plot([0.0, width * np.cos(angle)], [0.0, width * np.sin(angle)], color=COLOURS[4],
+                   alpha=shade, linewidth=1.6)
+        panel.add_patch(Ellipse((x, y), 2.0 * shoulder, 0.24, alpha=shade, fill=False,
+                                angle=np.degrees(person["heading_rad"][row]) - 90.0,
+                                edgecolor=COLOURS[0], linewidth=0.7))
+        if row and np.hypot(x - person["x_m"][row - 1], y - person["y_m"][row - 1]) > 1e-3:
+            panel.annotate(f"{second:.0f} s", (x + shoulder, y), (3, -2), textcoords="offset points",
+                           fontsize=6)
+    held = person["hold"] > 0.0
+    panel.plot(person["x_m"], person["y_m"], color=COLOURS[0], label="body")
+    panel.plot(person["handle_x_m"][held], person["handle_y_m"][held], color=COLOURS[1],
+               label="handle, held")
+    panel.plot(person["handle_x_m"][~held], person["handle_y_m"][~held], color=COLOURS[1],
+               linestyle=":", label="let go")
+    panel.plot([], [], color=COLOURS[4], linewidth=1.6, label="leaf")
+    panel.set_aspect("equal", adjustable="box", anchor="N")
+    panel.set(xlabel="along the shut leaf in m", ylabel="way it opens in m", xlim=(-0.3, 1.3))
+    from matplotlib.transforms import ScaledTranslation
+    below = ScaledTranslation(0.0, -0.36, panel.figure.dpi_scale_trans)  # label and ticks of x
+    panel.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=2, columnspacing=0.9,
+                 bbox_transform=panel.transAxes + below)
+
+
+def draw_force(panel, runs):
+    """Force of the user, and when the hand lets go."""
+    for run, style in zip(runs, STYLES):
+        panel.plot(run.time, run["force_N"], color=COLOURS[0], linestyle=style)
+        person = run.facts["person"]
+        let_go = person["time_s"][person["hold"] < 1.0]
+        if len(let_go):
+            panel.axvline(let_go[0], color=COLOURS[1], linewidth=0.8, linestyle=style,
+                          label="lets go" if run is runs[0] else None)
+    panel.set_ylabel("force in N")
+    panel.set_ylim(bottom=0)
+    legend(panel, 2)
+
+
+def draw_walk_through(figure, grid, runs):
+    grid = grid.subgridspec(2, 2, width_ratios=(1.35, 1), hspace=0.12, wspace=0.28)
+    panels = [figure.add_subplot(grid[row, 0]) for row in (0, 1)]
+    top = figure.add_subplot(grid[:, 1])
+    draw_signals(panels[0], runs, runs[0].facts["twin"], "joints in rad")
+    draw_force(panels[1], runs)
+    shade_locks(panels, runs[0])
+    finish_time_panels(figure, panels, runs)
+    draw_doorway(top, runs[0])
+    for panel, text in zip([*panels, top], "def"):
+        letter(panel, text)
+
+
 def door(figure, runs):
-    figure.set_size_inches(WIDTH, 4.6)
-    grid = figure.add_gridspec(3, 1, height_ratios=(1.4, 1, 1.2), hspace=0.14)
+    """Fig. 9; below it, if there are such runs, a person who walks through."""
+    walks = [run for run in runs if run.facts["person"]]
+    runs = [run for run in runs if not run.facts["person"]]
+    figure.set_size_inches(WIDTH, 9.0 if walks else 4.6)
+    outer = figure.add_gridspec(2 if walks else 1, 1, hspace=0.17,
+                                height_ratios=(1.2, 1.0) if walks else None)
+    grid = outer[0].subgridspec(3, 1, height_ratios=(1.4, 1, 1.2), hspace=0.14)
     panels = [figure.add_subplot(cell) for cell in grid]
+    if walks:
+        draw_walk_through(figure, outer[1], walks)
     twin = runs[0].facts["twin"]
     draw_signals(panels[0], runs, twin, "joints in rad")
     draw_speeds(panels[1], runs, twin[0])
@@ -402,6 +472,7 @@ KINDS = {"cartesian": cartesian, "excavator": excavator, "door": door, "path": p
 
 def captions(figure, runs):
     """With several runs: which line is whose, above the labels of the events."""
+    runs = [run for run in runs if run.facts["kind"] == runs[0].facts["kind"]]
     if len(runs) < 2:
         return
     from matplotlib.lines import Line2D

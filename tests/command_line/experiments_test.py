@@ -95,6 +95,18 @@ class Experiments(TemporaryFolder):
         self.assertEqual(code, 0, out)
         self.assertIn("the same in every cycle", out)
 
+    def test_the_person_walks_through_the_door(self):
+        self.assertEqual(len(self.events("door")), 8)
+        told = {entry["what"]: entry["ours_simulated"] for entry in
+                self.results("walk_through")["statements"]}
+        leaf, frame, breadth = map(float, re.match(
+            r"at least ([\d.]+) / ([\d.]+) m \(half a breadth: ([\d.]+) m\)",
+            told["middle of the body to leaf / frame"]).groups())
+        self.assertGreater(min(leaf, frame), breadth)
+        self.assertRegex(told["walked through"], r"ends [\d.]+ m behind it")
+        self.assertIn("Walking through the door: beside the paper",
+                      (self.folder / "door" / "report.html").read_text())
+
     def test_a_missing_event_is_1(self):
         code, out, _ = run("experiment", "door", "--duration", 2, "--law", "paper", "--out",
                            self.folder)

@@ -4,12 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "apps/hapticgiant/experiments/run_data.h"
@@ -22,6 +24,7 @@
 #include "hg/runtime/runtime.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/run.h"
+#include "hg/simulator/simulated_device.h"
 
 namespace hg::apps {
 namespace {
@@ -58,6 +61,61 @@ std::vector<std::string> settle(recording::Recorder& recorder, const fs::path& f
   }
   return failures;
 }
+
+/// The simulated machine of an experiment, and where the body of its person went.
+class FilmedDevice final : public device::Device {
+ public:
+  explicit FilmedDevice(const config::Scenario& scenario)
+      : device_(scenario::make_simulation(scenario)),
+        period_(scenario.device.model.dt()),
+        doorway_(scenario.script.script.walk.doorway),
+        joint_(scenario.twin.model.chain.joints()[doorway_.joint].name),
+        walks_through_(scenario.person == person::PersonKind::kScript &&
+                       scenario.script.script.walk.kind == person::WalkKind::kDoorway) {
+    if (walks_through_) film_.reserve(kFramesMax);
+  }
+
+  void read(SensorFrame& sensors) noexcept override { device_.read(sensors); }
+  void write(const CommandFrame& command) noexcept override {
+    device_.write(command);
+    time_s_ += period_;
+    if (!walks_through_ || film_.size() == kFramesMax || time_s_ < due_s_) return;
+    due_s_ += kFrame_s;
+    const person::Person& person = device_.simulation().person();
+    if (!person.is_holding(time_s_)) return;
+    const person::Walker& walker = person.walker();
+    film_.push_back(
+        {time_s_, walker.body().x(), walker.body().y(), walker.heading(), walker.hold()});
+  }
+  const Truth* truth() const noexcept override { return device_.truth(); }
+
+  /// The doorway and the body that went through it; null if nobody did.
+  Json person() const {
+    if (!walks_through_) return nullptr;
+    const auto pair = [](const Eigen::Vector2d& p) { return Json{p.x(), p.y()}; };
+    return {{"half_breadth_m", person::kHalfBreadth},
+            {"joint", joint_},
+            {"hinge_m", pair(doorway_.hinge)},
+            {"along", pair(doorway_.along)},
+            {"away", pair(doorway_.away)},
+            {"leaf_width_m", doorway_.leaf_width},
+            {"clear_width_m", doorway_.clear_width},
+            {"columns", {"time_s", "x_m", "y_m", "heading_rad", "hold"}},
+            {"film", film_}};
+  }
+
+ private:
+  static constexpr double kFrame_s = 0.01;
+  static constexpr std::size_t kFramesMax = 100'000;
+
+  simulator::SimulatedDevice device_;
+  double period_;
+  person::Doorway doorway_;
+  std::string joint_;  ///< hinge of the doorway
+  bool walks_through_;
+  double time_s_ = 0.0, due_s_ = 0.0;  ///< now, and of the next picture
+  std::vector<std::array<double, 5>> film_;
+};
 
 /// All observers of the samples of one experiment.
 struct Watcher {
@@ -119,8 +177,8 @@ void play_experiment(const PaperExperiment& experiment, const RunArguments& argu
   const config::Scenario scenario = make_scenario(arguments);
   const runtime::RuntimeOptions options = runtime_options(scenario, arguments);
   controller::Cycle cycle = scenario::make_cycle(scenario);
-  const auto device = scenario::make_simulated_device(scenario);
-  runtime::Runtime runtime(options, cycle, *device);
+  FilmedDevice device(scenario);
+  runtime::Runtime runtime(options, cycle, device);
   Watcher watcher{scenario,
                   expected_events(scenario),
                   {scenario.events, scenario.limits},
@@ -148,6 +206,7 @@ void play_experiment(const PaperExperiment& experiment, const RunArguments& argu
   run["version"] = kVersion;
   run["seed"] = scenario.device.simulation.seed;
   run["events"] = watcher.events;
+  if (Json person = device.person(); !person.is_null()) run["person"] = std::move(person);
   run["failures"] =
       watcher.recorder ? settle(*watcher.recorder, folder) : std::vector<std::string>();
   write_run(folder, run, watcher.columns);

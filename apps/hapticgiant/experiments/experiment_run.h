@@ -16,6 +16,8 @@ struct PaperExperiment {
   std::string_view scenario;  ///< scenario in models/scenarios
   std::string_view title;
   std::string_view source;  ///< place in the paper
+  /// A second scenario, played into a folder of its name, shown below the first; empty = none
+  std::string_view also = {};
 };
 
 /// Plays an experiment as fast as possible into the folder `arguments.recordings`: recording.mcap,

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr std::array<PaperExperiment, 4> kExperiments = {
     {{"cartesian", "free_space", "Cartesian admittance", "Fig. 6, section VII-A"},
      {"excavator", "excavator", "Excavator", "Fig. 8, section VII-B"},
-     {"door", "door", "Door", "Fig. 9, section VII-C"},
+     {"door", "door", "Door", "Fig. 9, section VII-C", "walk_through"},
      {"path", "path", "Path following", "Section VII-D (the path task)"}}};
 
 // command that repeats the run
@@ -44,23 +44,30 @@ std::string command_of(const PaperExperimentArguments& arguments, std::string_vi
 
 int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& arguments) {
   print_out(fmt::format("\n{} ({})\n", experiment.title, experiment.source));
-  const fs::path folder = fs::path(arguments.out) / experiment.name;
+  const auto folder_of = [&](std::string_view name) { return fs::path(arguments.out) / name; };
   std::vector<fs::path> runs;
   for (const std::string& law : arguments.law == "both" ? std::vector<std::string>{"gauss", "paper"}
                                                         : std::vector{arguments.law}) {
     RunArguments run;
-    run.world.scenario = experiment.scenario;
     run.world.seed = arguments.seed;
     run.world.law = law;
     run.world.bounds = arguments.bounds;
     run.duration_s = arguments.duration_s;
     run.is_fast = true;
-    runs.push_back(arguments.law == "both" ? folder / law : folder);
-    run.recordings = runs.back().string();
-    make_folder(run.recordings);
-    play_experiment(experiment, run, command_of(arguments, experiment.name));
+    const auto play = [&](const PaperExperiment& played) {
+      const fs::path folder = folder_of(played.name);
+      runs.push_back(arguments.law == "both" ? folder / law : folder);
+      run.world.scenario = played.scenario;
+      run.recordings = runs.back().string();
+      make_folder(run.recordings);
+      play_experiment(played, run, command_of(arguments, experiment.name));
+    };
+    play(experiment);
+    if (!experiment.also.empty()) {
+      play({experiment.also, experiment.also, experiment.title, experiment.source});
+    }
   }
-  return report_on_folder(folder.string(), arguments.docs, runs);
+  return report_on_folder(folder_of(experiment.name).string(), arguments.docs, runs);
 }
 
 // The worst code of all.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 #include "hg/config/loader.h"
 #include "hg/config/simulation/script_schema.h"
+#include "hg/core/error.h"
 
 namespace hg::config {
 namespace {
@@ -29,6 +31,19 @@ void add_twin_channels(Loader& loader, const rendering::TwinModel& twin, ScriptD
                 "'" + joint.name + "'");
     draft.channels.push_back({joint.name, joint.q_index, kJointPosition, ""});
   }
+}
+
+// Where the doorway of a walk is in B.
+void place_doorway(Loader& loader, const rendering::TwinModel& twin, ScriptDraft& draft) {
+  if (draft.walk.kind != person::WalkKind::kDoorway || draft.walk.doorway.joint < 0) return;
+  draft.hinge_channel = twin.chain.joints()[draft.walk.doorway.joint].q_index;
+  std::string fault;
+  try {
+    person::place(draft.walk.doorway, twin.chain, twin.end_effector);
+  } catch (const SetupError& error) {
+    fault = error.what();
+  }
+  loader.rule(fault.empty(), "walk", "a doorway " + fault);
 }
 
 }  // namespace
@@ -77,8 +92,10 @@ Script load_script(const std::filesystem::path& path, const rendering::TwinModel
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   ScriptDraft draft;
   draft.start[person::kGripChannel] = 1.0;
+  for (const model::Joint& joint : twin.chain.joints()) draft.joints.push_back(joint.name);
   load_file(file, [&](Loader& loader) {
     describe_frame(loader, draft);
+    place_doorway(loader, twin, draft);
     draft.channels = pose_channels(draft.frame);
     if (draft.frame == person::ScriptFrame::kTwinJoints) add_twin_channels(loader, twin, draft);
     for (const Channel& channel : common_channels()) draft.channels.push_back(channel);

@@ -34,6 +34,8 @@ struct ScriptDraft {
   std::array<double, person::kChannels> start{};
   std::array<bool, person::kChannels> start_given{};
   std::vector<person::Segment> segments;
+  std::vector<std::string> joints;  ///< names of the joints of the twin
+  int hinge_channel = -1;           ///< channel of the hinge of a doorway
   double duration_s = kNoDefault;
 };
 
@@ -68,7 +70,23 @@ void describe(V& v, person::HandImpedance& hand) {
 }
 
 template <class V>
-void describe(V& v, person::Walk& walk) {
+void describe(V& v, person::Doorway& doorway, const std::vector<std::string>& joints) {
+  doorway.joint = -1;  // until the name is found
+  v.name("hinge", doorway.joint, joints, "a joint of the twin",
+         "vertical hinge of a leaf that opens away from the person as its angle grows; z of the "
+         "handle stands at right angles on the leaf",
+         Need::kRequired);
+  v.number("leaf_width_m", doorway.leaf_width, kPositive, "from the hinge axis to its edge");
+  v.number("clear_width_m", doorway.clear_width, kPositive,
+           "from the hinge axis to the opposite side of the frame");
+  v.number("start_s", doorway.start_s, kNotNegative, "when the person sets out");
+  v.number("beyond_m", doorway.beyond, kPositive, "where the body stops, behind the shut leaf");
+  v.rule(person::has_room(doorway), "clear_width_m", "wide enough for a person");
+}
+
+template <class V>
+void describe(V& v, ScriptDraft& d) {
+  person::Walk& walk = d.walk;
   const bool has_circle =
       v.number("circle_radius_m", walk.circle_radius, kPositive,
                "the hand goes round such a circle, counterclockwise; or checkpoints");
@@ -82,17 +100,24 @@ void describe(V& v, person::Walk& walk) {
                      Need::kRequired);
       },
       "the hand goes there in this order; reached nearer than 0.10 m and 15 degrees");
+  const bool has_doorway = v.group(
+      "doorway", [&](auto& child) { describe(child, walk.doorway, d.joints); },
+      "the body goes through a doorway; the hand opens its leaf as far as the body needs, follows "
+      "the arc of the handle, and lets go once the leaf cannot fall onto the body; frame "
+      "twin_joints only");
   v.number("speed_m_per_s", walk.speed, kPositive, "of the hand on a circle, else of the body");
   v.number("azimuth_from_heading_rad", walk.azimuth_from_heading, kAnyNumber,
            "azimuth of the handle minus heading of the person who holds it");
   v.number("vertical_bob_m", walk.vertical_bob, kNotNegative,
            "of the hand, 1.8 Hz; from 0.6 m/s on, less when slower");
   v.number("lateral_bob_m", walk.lateral_bob, kNotNegative, "of the hand, 0.9 Hz; likewise");
-  v.rule(has_circle != has_checkpoints, "", "a walk needs either circle_radius_m or checkpoints");
+  v.rule(has_circle + has_checkpoints + has_doorway == 1, "",
+         "a walk needs one of circle_radius_m, checkpoints and doorway");
   v.rule(walk.checkpoints.size() <= person::kMaxCheckpoints, "checkpoints",
          "at most 16 checkpoints", std::to_string(walk.checkpoints.size()));
   if (has_circle) walk.kind = person::WalkKind::kCircle;
   if (has_checkpoints) walk.kind = person::WalkKind::kCheckpoints;
+  if (has_doorway) walk.kind = person::WalkKind::kDoorway;
   v.rule(!has_circle || person::has_room(walk), "circle_radius_m",
          "so large that the body can walk inside the circle of its hand, at this speed");
 }
@@ -107,10 +132,13 @@ void describe_frame(V& v, ScriptDraft& d) {
       "when the hand takes the handle and closes the dead-man switch; sensors are tared before. "
       "The times below count from here");
   v.group(
-      "walk", [&](auto& child) { describe(child, d.walk); },
-      "a walking person: moves x_m, y_m and azimuth_rad of the hand; frame base only");
-  v.rule(d.walk.kind == person::WalkKind::kNone || d.frame == person::ScriptFrame::kBase, "walk",
-         "a walk needs frame base");
+      "walk", [&](auto& child) { describe(child, d); },
+      "a walking person: moves x_m, y_m and azimuth_rad of the hand, frame base; or, at a doorway, "
+      "its hinge");
+  const bool is_at_a_door = d.walk.kind == person::WalkKind::kDoorway;
+  const auto frame = is_at_a_door ? person::ScriptFrame::kTwinJoints : person::ScriptFrame::kBase;
+  v.rule(d.walk.kind == person::WalkKind::kNone || d.frame == frame, "walk",
+         is_at_a_door ? "a doorway needs frame twin_joints" : "a walk needs frame base");
 }
 
 /// Calls take(channel index, value) for each channel in this map.
@@ -169,10 +197,15 @@ void describe_segments(V& v, ScriptDraft& d) {
            "length of the script; without it, until the last ramp ends");
   if (d.walk.kind == person::WalkKind::kNone) return;
   v.rule(!std::isnan(d.duration_s), "walk", "a walk needs duration_s");
+  const bool is_at_a_door = d.walk.kind == person::WalkKind::kDoorway;
   for (const person::Segment& segment : d.segments) {
-    const bool is_walked = segment.channel == 0 || segment.channel == 1 || segment.channel == 3;
+    const bool is_walked =
+        is_at_a_door ? segment.channel == d.hinge_channel
+                     : segment.channel == 0 || segment.channel == 1 || segment.channel == 3;
     v.rule(!is_walked, "segments",
-           "with a walk, no segment moves x_m, y_m or azimuth_rad, or has circle_turns");
+           is_at_a_door
+               ? "at a doorway, no segment moves the hinge"
+               : "with a walk, no segment moves x_m, y_m or azimuth_rad, or has circle_turns");
   }
 }
 

@@ -37,7 +37,9 @@ void Person::grasp(double t, const HandleMotion& handle) noexcept {
   if (has_grasped_) return;
   has_grasped_ = true;
   const auto& start = config_.script.start;
-  walker_.start({start[0], start[1], start[2]}, start[3]);
+  const bool is_at_a_door = config_.script.walk.kind == WalkKind::kDoorway;
+  walker_.start(is_at_a_door ? handle.T_B_H.p : Eigen::Vector3d(start[0], start[1], start[2]),
+                start[3]);
   last_point_ = last_p_H_ = handle.T_B_H.p.head<2>();
 }
 
@@ -70,16 +72,22 @@ Goal Person::script_goal(double t, double dt, const Pose& T_B_H) noexcept {
   const Walk& walk = config_.script.walk;
   if (walk.kind != WalkKind::kNone) {
     walker_.step(dt, T_B_H);
-    const Eigen::Vector3d hand = walker_.hand();
-    channels_[0] = hand.x();
-    channels_[1] = hand.y();
-    channels_[2] += hand.z();
-    channels_[3] = walker_.heading() + walk.azimuth_from_heading;
+    if (walk.kind == WalkKind::kDoorway) {
+      channels_[twin_.model().joints()[walk.doorway.joint].q_index] = walker_.leaf_goal();
+      for (int i = kWrenchChannel; i <= kGripChannel; ++i) channels_[i] *= walker_.hold();
+    } else {
+      const Eigen::Vector3d hand = walker_.hand();
+      channels_[0] = hand.x();
+      channels_[1] = hand.y();
+      channels_[2] += hand.z();
+      channels_[3] = walker_.heading() + walk.azimuth_from_heading;
+    }
     goal.heading = walker_.heading();
     goal.has_shoulder = true;
     goal.shoulder = walker_.shoulder();
   }
   goal.pose = channel_pose();
+  if (walk.kind == WalkKind::kDoorway) goal.pose.p += walker_.bob();
   goal.has_orientation = config_.script.frame != ScriptFrame::kCylindrical;
   return goal;
 }

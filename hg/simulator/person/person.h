@@ -47,6 +47,9 @@ class Person {
   /// Duration of the script including the time before the grasp, s; 0 without a script.
   double duration_s() const noexcept;
 
+  /// The walking body.
+  const Walker& walker() const noexcept { return walker_; }
+
   /// Score of a walk along checkpoints.
   const Score& score() const noexcept { return score_; }
 

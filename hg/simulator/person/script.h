@@ -48,7 +48,9 @@ struct Script {
   std::array<double, kChannels> start{};  ///< values before the first segment
   std::vector<Segment> segments;          ///< segments ordered by start time
   double duration_s = 0.0;                ///< time at which the script ends
-  Walk walk;  ///< kBase only: moves x, y and azimuth; segments of these channels have no effect
+  /// Moves x, y and azimuth of kBase, or the hinge of a doorway of kTwinJoints; segments of these
+  /// channels have no effect
+  Walk walk;
 };
 
 /// Minimum-jerk ramp from 0 to 1 over [start, start + duration]; [HANDBOOK] 5.2.

@@ -1,14 +1,15 @@
 /// A person on foot: the motion of the body and the resulting position of the hand.
 ///
-/// Source: [HANDBOOK] 5.2 (walking), 5.3 (checkpoints). The body accelerates with at most 1 m/s^2
-/// and turns to its path with a lag of 0.4 s; the desired position of the hand is R(heading) (0.35,
-/// -0.15) from the body, plus the bob of the gait. SI units, everything in B. No allocation,
-/// noexcept after set-up.
+/// Source: [HANDBOOK] 5.2 (walking), 5.3 (checkpoints, door). The body accelerates with at most 1
+/// m/s^2 and turns to its path with a lag of 0.4 s; the desired position of the hand is R(heading)
+/// (0.35, -0.15) from the body, plus the bob of the gait; at a door it is on the arc of its handle.
+/// SI units, everything in B. No allocation, noexcept after set-up.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "hg/simulator/person/doorway.h"
 #include "hg/simulator/person/hand.h"
 
 namespace hg::person {
@@ -17,6 +18,7 @@ enum class WalkKind {
   kNone,         ///< the person stands
   kCircle,       ///< the hand goes round a circle, counterclockwise
   kCheckpoints,  ///< the hand goes from checkpoint to checkpoint
+  kDoorway,      ///< the body goes through a doorway, the hand opens its leaf
 };
 
 inline constexpr int kMaxCheckpoints = 16;
@@ -36,10 +38,13 @@ struct Walk {
   /// Azimuth of the handle relative to the person's heading, rad
   double azimuth_from_heading = 0.0;
   std::vector<Checkpoint> checkpoints;
+  Doorway doorway;
 };
 
 /// Whether the body has room inside the circle of its hand.
 bool has_room(const Walk& walk) noexcept;
+/// Whether a person fits through the doorway beside its open leaf.
+bool has_room(const Doorway& doorway) noexcept;
 /// Throws SetupError naming the field that is out of range.
 void check_walk(const Walk& walk);
 
@@ -69,11 +74,18 @@ class Walker {
 
   /// Desired position of the hand; height 0 plus the bob.
   Eigen::Vector3d hand() const noexcept;
+  /// What the gait adds to the position of the hand.
+  Eigen::Vector3d bob() const noexcept;
   Eigen::Vector2d body() const noexcept { return p_; }
   /// Position of the shoulder, at height 0.
   Eigen::Vector3d shoulder() const noexcept;
   double heading() const noexcept { return heading_; }
   double speed() const noexcept { return v_.norm(); }
+  /// Angle at which the hand wants the leaf of the doorway, rad.
+  double leaf_goal() const noexcept { return leaf_goal_; }
+  /// How much the hand still holds the handle, 0 to 1: at a door it lets go once the leaf, falling
+  /// shut, can no longer hit the body.
+  double hold() const noexcept;
   /// Number of checkpoints reached.
   int reached() const noexcept { return reached_; }
   const Walk& walk() const noexcept { return walk_; }
@@ -81,7 +93,10 @@ class Walker {
  private:
   void walk_circle(double dt) noexcept;
   void walk_to_checkpoint(double dt, const Pose& T_B_H) noexcept;
+  void walk_through_doorway(double dt, const Pose& T_B_H) noexcept;
+  void accelerate(double dt, const Eigen::Vector2d& wanted) noexcept;
   void turn(double dt, double heading) noexcept;
+  bool is_within_reach(const Pose& T_B_H) const noexcept;
 
   Walk walk_;
   /// Position and velocity of the body
@@ -91,6 +106,9 @@ class Walker {
   double angle_ = 0.0;                                ///< angle of the body on the circle
   double gait_s_ = 0.0;                               ///< time spent walking
   int reached_ = 0;
+  double leaf_goal_ = 0.0;
+  double effort_ = 0.0;     ///< what is added to the angle that the body needs, rad
+  double let_go_s_ = -1.0;  ///< time on `gait_s_` at which the hand lets go; -1: it has not
 };
 
 }  // namespace hg::person

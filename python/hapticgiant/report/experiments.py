@@ -41,6 +41,11 @@ WINDOWS = {
         "open stop": (8.6, 11.2, "the hand walks through"),
         "velocity limit": (11.2, 12.5, "the hand has let go"),
         "closed and locked": (11.2, 14.0, "the door falls shut")},
+    "walk_through": {
+        "handle pressed": (0.8, 1.3, "the hand presses the lever"),
+        "opened": (1.2, 2.2, "the body sets out, the hand pushes"),
+        "wide enough": (1.4, 3.5, "the hand opens the leaf as far as the body needs"),
+        "shut again": (3.0, 9.0, "the hand has let go, the door falls shut")},
     "path": {},
 }
 ABOUT = {
@@ -49,7 +54,8 @@ ABOUT = {
     "excavator": "The hand holds the bucket of an excavator with four joints (swing, boom, stick, "
     "bucket), whose limits are met one after the other.",
     "door": "A door with a lever, a bolt and a closer. It resists while it is locked, opens once "
-    "the lever is pressed while it is pushed, and falls shut.",
+    "the lever is pressed while it is pushed, and falls shut. Then, as in the user study of section "
+    "VII-D, a person opens it and walks through.",
     "path": "A person walks a free body of 6 kg along six checkpoints that are spread over the "
     "workspace and force turns.",
 }
@@ -156,6 +162,10 @@ class Measured(Run):
     def limit(self, name, side):
         """A limit of the model as text."""
         return f"{next(it[side] for it in self['limits'] if it['name'] == name):g}"
+
+    def name(self):
+        """How verdicts name the run."""
+        return f"law {self.law}" + (", walking through" if self["kind"] == "walk_through" else "")
 
     def note(self, with_law=True):
         summary = self.summary
@@ -281,6 +291,44 @@ def measure_door(run):
     ]
 
 
+def measure_walk_through(run):
+    """The task of section VII-D: whether the person passes, and how near to leaf and frame."""
+    over, t = run.over, run.t
+    person, breadth = run.person(), run["person"]["half_breadth_m"]
+    if person is None:
+        run.failures.append("the person has not begun")
+        return []
+    time, y = person["time_s"], person["y_m"]
+    past, let_go = time[y > 0.0], time[person["hold"] < 1.0]
+    near = {name: person[f"to_{name}_m"] for name in ("leaf", "frame")}
+    if not len(past) or y[-1] < breadth or min(values[-1] for values in near.values()) < breadth:
+        run.failures.append("the person has not walked through")
+    for name, values in near.items():
+        if values.min() < breadth:
+            run.failures.append(f"the body came within {values.min():.2f} m of the {name}, expected "
+                                f"at least {breadth:.2f} m")
+    passed, left = (times[0] if len(times) else math.nan for times in (past, let_go))
+    released = person["hold"] < 1.0
+    beyond = np.hypot(person["x_m"], y)[released] - run["person"]["leaf_width_m"]
+    return [
+        ("opened", "as if it were a normal door handle",
+         f"at {text(t('opened'), 2)} s, {text(t('opened') - t('handle pressed'), 2)} s after the lever "
+         f"is down; at most {text(over('hinge_rad', 0.0, run.end).most, 2)} rad (limit "
+         f"{run.limit('hinge', 'upper')})"),
+        ("walked through", "20 people, three times each",
+         f"the body passes the plane of the shut leaf at {text(passed, 2)} s and ends "
+         f"{text(y[-1], 2)} m behind it"),
+        ("middle of the body to leaf / frame", "",
+         f"at least {near['leaf'].min():.2f} / {near['frame'].min():.2f} m (half a breadth: "
+         f"{breadth:.2f} m)"),
+        ("let go", "", f"at {text(left, 2)} s, "
+         + (f"{beyond.min():.2f} m beyond the reach of the leaf" if len(beyond) else "-")),
+        ("shut again", "", f"at {text(t('shut again'), 2)} s"),
+        ("force, mean while held / largest", "",
+         f"{text(over('force_N', run['grasp_s'] + 0.8, left).mean, 1)} / "
+         f"{text(over('force_N', 0.0, run.end).most, 1)} N")]
+
+
 def measure_path(run):
     """Closest approach to every checkpoint, and the way between the first and the last."""
     x, y, azimuth = (run.columns[f"hand_{name}"] for name in ("x_m", "y_m", "azimuth_rad"))
@@ -320,7 +368,7 @@ def measure_path(run):
 
 
 MEASURES = {"cartesian": measure_cartesian, "excavator": measure_excavator, "door": measure_door,
-            "path": measure_path}
+            "walk_through": measure_walk_through, "path": measure_path}
 
 
 def event_rows(runs):
@@ -373,12 +421,13 @@ def figure_rows(runs):
 def verdicts(runs):
     for run in runs:
         if not run.failures:
-            yield True, f"Law {run.law}: all {len(run.events)} events as expected, limits held."
-        yield from ((False, f"Law {run.law}: {failure}") for failure in run.failures)
+            yield True, (f"{run.name().capitalize()}: all {len(run.events)} events as expected, limits "
+                         "held.")
+        yield from ((False, f"{run.name().capitalize()}: {failure}") for failure in run.failures)
 
 
 def say(run):
-    print(f"law {run.law}")
+    print(run.name())
     for event in run.events:
         if event["found_s"] is not None:
             print(f"{event['found_s']:9.3f} s  {event['name']:<18} {event['what']}")
@@ -402,6 +451,17 @@ def write_data(run):
     run.save_csv()
 
 
+def parts(runs):
+    """What is shown of runs of one kind: titles, rows of tables and a note."""
+    kind = runs[0]["kind"]
+    before = "Walking through the door: " if kind == "walk_through" else ""
+    titles = [f"{before}{title[0].lower()}{title[1:]}" if before else title
+              for title in ("Events", "Beside the paper", "The run as a whole")]
+    rows = (event_rows(runs), statement_rows(runs), figure_rows(runs))
+    return [{"title": title, "rows": table, "note": note} for title, table, note
+            in zip(titles, rows, ("", COMMENT.get(kind, ""), ""))]
+
+
 def write(folder, run_folders, docs=None):
     """Writes the report on runs of one experiment; returns 0, 1 not as expected, 3 a fault."""
     runs = [Measured(run_folder) for run_folder in run_folders]
@@ -410,28 +470,27 @@ def write(folder, run_folders, docs=None):
         say(run)
     first = runs[0]
     kind, command = first["kind"], first["command"]
+    groups = [[run for run in runs if run["kind"] == kind], [run for run in runs if run["kind"] != kind]]
+    sections = [part for group in groups if group for part in parts(group)]
     drawn = [run.figure() for run in runs]
     svg = pages.draw(folder, lambda figure: figures.draw_runs(figure, drawn))
-    note = first.note(with_law=len(runs) == 1)
+    note = first.note(with_law=len(groups[0]) == 1)
     caption = (f"{first['title']}, as {first['source']} of the paper, from a simulated machine. Events "
                "are marked, limits are dotted"
-               + (", shaded while the door is locked." if kind == "door" else "."))
+               + (", shaded while the door is locked. (d) to (f): walking through, from above every "
+                  "second." if kind == "door" else "."))
     pages.save(folder / "report.html", pages.render(
         "page.html.jinja", title=first["title"], source=f"{first['source']} of the paper; {note}",
-        about=ABOUT[kind], verdicts=list(verdicts(runs)), figure=svg, caption=caption, sections=[
-            {"title": "Events", "rows": event_rows(runs)},
-            {"title": "Beside the paper", "rows": statement_rows(runs), "note": COMMENT[kind]},
-            {"title": "The run as a whole", "rows": figure_rows(runs)}],
-        version=first["version"], command=command,
+        about=ABOUT[kind], verdicts=list(verdicts(runs)), figure=svg, caption=caption,
+        sections=sections, version=first["version"], command=command,
         files="recording.mcap, events.json, results.json, signals.csv, figure.svg, figure.png; times "
         "of computation in timing.json"))
     if docs:
-        pages.refresh(docs / f"{kind}.md", f"`{command}`; {note}.\n\n### Events\n\n"
-                      + tables.markdown(event_rows(runs))
-                      + "\n### Beside the paper\n\nThe paper's column comes from a real machine, ours "
-                      "from a simulated one.\n\n" + tables.markdown(statement_rows(runs))
-                      + "\n### The run as a whole\n\n" + tables.markdown(figure_rows(runs)),
-                      (folder / "figure.svg").read_text(encoding="utf-8"))
+        text_of = {"Beside the paper": "The paper's column comes from a real machine, ours from a "
+                   "simulated one.\n\n"}
+        pages.refresh(docs / f"{kind}.md", f"`{command}`; {note}.\n\n" + "\n".join(
+            f"### {part['title']}\n\n" + text_of.get(part["title"], "") + tables.markdown(part["rows"])
+            for part in sections), (folder / "figure.svg").read_text(encoding="utf-8"))
     if any(run.has_fault() for run in runs):
         return 3
     return 1 if any(run.failures for run in runs) else 0

@@ -43,6 +43,33 @@ class Run:
                         "to_s": self.time[end - 1]} for first, end in zip(edges[::2], edges[1::2])]
         return sorted(phases, key=lambda phase: phase["from_s"])
 
+    def person(self):
+        """A person who walks through a doorway: columns by name, in the frame of the doorway (x along
+        the shut leaf, y the way it opens); None if nobody does."""
+        person = self.facts.get("person")
+        if not person or not person["film"]:
+            return None
+        columns = dict(zip(person["columns"], np.array(person["film"]).T))
+        axes = np.array([person["along"], person["away"]]).T
+
+        def local(x, y):
+            return (np.stack([x, y], axis=1) - person["hinge_m"]) @ axes
+
+        time = columns["time_s"]
+        x, y = local(columns["x_m"], columns["y_m"]).T
+        handle = local(*(np.interp(time, self.time, self.table["handle.p"][:, axis])
+                         for axis in (0, 1)))
+        dof = next(dof for dof in self["twin"] if dof["name"] == person["joint"])
+        angle = np.interp(time, self.time, entry(self.table["twin.q_a"], dof["q"]))
+        leaf = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        along = np.clip(x * leaf[:, 0] + y * leaf[:, 1], 0.0, person["leaf_width_m"])
+        heading = columns["heading_rad"] - math.atan2(person["along"][1], person["along"][0])
+        return {"time_s": time, "x_m": x, "y_m": y, "hold": columns["hold"], "angle_rad": angle,
+                "heading_rad": heading, "handle_x_m": handle[:, 0], "handle_y_m": handle[:, 1],
+                "to_leaf_m": np.hypot(x - along * leaf[:, 0], y - along * leaf[:, 1]),
+                "to_frame_m": np.hypot(
+                    np.maximum(np.minimum(x, person["clear_width_m"] - x), 0.0), y)}
+
     def signals(self):
         """Columns by name, as in signals.csv."""
         table, azimuth = self.table, self.table["handle.r"]
@@ -96,6 +123,8 @@ class Run:
     def figure_facts(self):
         """What a figure shows besides signals."""
         facts = {name: self[name] for name in ("title", "kind", "box", "has_elbow")}
+        facts["doorway"] = self.facts.get("person")
+        facts["person"] = self.person()
         for group in ("manipulator", "virtual", "gantry", "twin"):
             facts[group] = [joint | {"column": f"{joint['name']}_{joint['unit']}"}
                             for joint in self[group]]

@@ -212,7 +212,7 @@ TEST(BadScript, AHandHasAPresetOrValuesOfAHand) {
 
 TEST(BadScript, AWalkIsACircleOrCheckpointsAndNothingElseMovesTheHandAlong) {
   EXPECT_EQ(script_message("walk: {speed_m_per_s: 1}\nduration_s: 9\n"),
-            "script.yaml:1:7: walk: a walk needs either circle_radius_m or checkpoints");
+            "script.yaml:1:7: walk: a walk needs one of circle_radius_m, checkpoints and doorway");
   EXPECT_EQ(script_message("walk: {circle_radius_m: 0.3}\nduration_s: 9\n"),
             "script.yaml:1:25: walk.circle_radius_m: so large that the body can walk inside the "
             "circle of its hand, at this speed");
@@ -232,6 +232,32 @@ TEST(BadScript, AWalkIsACircleOrCheckpointsAndNothingElseMovesTheHandAlong) {
             "has circle_turns");
   EXPECT_EQ(script_message("frame: cylindrical\nduration_s: 9\nwalk: {circle_radius_m: 0.7}\n"),
             "script.yaml:3:7: walk: a walk needs frame base");
+}
+
+std::string door_message(const std::string& yaml) {
+  static const Twin door = load_twin("models/twins/door/twin.yaml");
+  SourceReader reader(std::vector<SourceText>{{"script.yaml", yaml}});
+  return message_of([&] { load_script("script.yaml", door.model, reader); });
+}
+
+TEST(BadScript, ADoorwayHasAHingeThatNothingElseMoves) {
+  const std::string frame = "frame: twin_joints\nduration_s: 9\n";
+  EXPECT_EQ(door_message(frame + "walk: {doorway: {hinge: hinge}}\nsegments:\n"
+                                 "  - {start_s: 1, duration_s: 1, lever: 0.8}\n"),
+            "no error");
+  EXPECT_EQ(
+      door_message(frame + "walk: {doorway: {hinge: hing}}\n"),
+      "script.yaml:3:25: walk.doorway.hinge: must be a joint of the twin, got 'hing', did you "
+      "mean 'hinge'?");
+  EXPECT_EQ(door_message(frame + "walk: {doorway: {hinge: lever}}\n"),
+            "script.yaml:3:7: walk: a doorway needs a vertical hinge beside the handle");
+  EXPECT_EQ(door_message(frame + "walk: {doorway: {hinge: hinge, clear_width_m: 0.6}}\n"),
+            "script.yaml:3:47: walk.doorway.clear_width_m: wide enough for a person");
+  EXPECT_EQ(door_message("duration_s: 9\nwalk: {doorway: {hinge: hinge}}\n"),
+            "script.yaml:2:7: walk: a doorway needs frame twin_joints");
+  EXPECT_EQ(door_message(frame + "walk: {doorway: {hinge: hinge}}\nsegments:\n"
+                                 "  - {start_s: 1, duration_s: 1, hinge: 0.8}\n"),
+            "script.yaml:5:3: segments: at a doorway, no segment moves the hinge");
 }
 
 std::string scenario_message(const std::string& yaml) {
