@@ -338,7 +338,7 @@ def draw_doorway(panel, run):
                                 angle=np.degrees(person["heading_rad"][row]) - 90.0,
                                 edgecolor=COLOURS[0], linewidth=0.7))
         if row and np.hypot(x - person["x_m"][row - 1], y - person["y_m"][row - 1]) > 1e-3:
-            panel.annotate(f"{second:.0f} s", (x + shoulder, y), (3, -2), textcoords="offset points",
+            panel.annotate(f"{second:.0f} s", (doorway["clear_width_m"] + 0.12, y), va="center",
                            fontsize=6)
     held = person["hold"] > 0.0
     panel.plot(person["x_m"], person["y_m"], color=COLOURS[0], label="body")

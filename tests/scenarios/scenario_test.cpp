@@ -35,7 +35,8 @@ config::Scenario undisturbed(const std::string& name) {
 class EveryScenario : public ::testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Shipped, EveryScenario,
-                         ::testing::Values("door", "excavator", "free_space", "path", "walk"),
+                         ::testing::Values("door", "excavator", "free_space", "path", "walk",
+                                           "walk_through"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST_P(EveryScenario, RunsSmoothlyAndSoundlyAtItsOwnRate) {
