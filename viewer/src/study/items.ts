@@ -19,6 +19,8 @@ interface Asked {
   on_answer(answer: number | string): void;
 }
 
+const SCROLL_PX = 16; // a finger that goes further up or down than that scrolls
+
 let count = 0;
 
 // "Effort: how hard ...?" has a name and a question.
@@ -139,15 +141,25 @@ function point(slider: HTMLElement, rail: HTMLElement, pointed: Pointed): void {
     const { left, width } = rail.getBoundingClientRect();
     pointed.set((clientX - left) / width);
   };
+  let start = { x: 0, y: 0 };
+  const forget = (): void => {
+    pointer = null;
+    pointed.restore(before);
+  };
   slider.addEventListener("pointerdown", (event) => {
     if (event.button !== 0 || pointer !== null) return;
+    start = { x: event.clientX, y: event.clientY };
     before = pointed.get();
     pointer = event.pointerId;
     slider.setPointerCapture(pointer);
     move(event);
   });
   slider.addEventListener("pointermove", (event) => {
-    if (event.pointerId === pointer) move(event);
+    if (event.pointerId !== pointer) return;
+    const down = Math.abs(event.clientY - start.y);
+    const is_scrolling = down > SCROLL_PX && down > Math.abs(event.clientX - start.x);
+    if (event.pointerType === "touch" && is_scrolling) forget();
+    else move(event);
   });
   slider.addEventListener("pointerup", (event) => {
     if (event.pointerId !== pointer) return;
@@ -155,8 +167,7 @@ function point(slider: HTMLElement, rail: HTMLElement, pointed: Pointed): void {
     pointed.end();
   });
   slider.addEventListener("pointercancel", () => {
-    pointer = null;
-    pointed.restore(before);
+    if (pointer !== null) forget();
   });
 }
 

@@ -12,7 +12,7 @@ import { StudyLink } from "./study_link";
 
 const LOST =
   "No connection to the study server: what is shown is old. Trying again\u2026 " +
-  "STOP and Esc still go to the run's own page, if it is there.";
+  "STOP and Esc still go to the run's own page, if it is there. After a restart of the study, open its new link.";
 const NO_TOKEN = "Please open the whole link that the study program has printed: it has a secret in it.";
 
 class OperatorPage {

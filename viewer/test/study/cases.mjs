@@ -68,6 +68,24 @@ export async function nothing_is_answered_beforehand({ browser, mock, links, exp
   expect(mock.saved.length === 0, "nothing is sent");
 }
 
+export async function a_finger_answers({ browser, mock, links, expect }) {
+  const { page, context } = await open(browser, links.participant, { hasTouch: true });
+  lead_to(mock, "form", "tlx");
+  await until(page, () => document.body.dataset.screen === "form");
+  const sliders = page.locator("[role=slider]");
+  const [first, second, third] = await Promise.all([0, 1, 2].map((i) => sliders.nth(i).boundingBox()));
+  await page.touchscreen.tap(first.x + first.width / 2, first.y + 20);
+  await page.mouse.move(second.x + 30, second.y + 20);
+  await page.mouse.down();
+  await page.mouse.move(second.x + second.width + 50, second.y + 25, { steps: 4 });
+  await page.mouse.up();
+  const tools = await context.newCDPSession(page);
+  const finger = { x: third.x + 200, y: third.y + 20, yDistance: -300, gestureSourceType: "touch" };
+  await tools.send("Input.synthesizeScrollGesture", finger);
+  const values = await sliders.evaluateAll((all) => all.slice(0, 3).map((each) => each.dataset.answered === "true" && each.ariaValueNow));
+  expect(values.join() === "50,100,false", `a tap and a drag answer, a finger that scrolls does not: ${values}`);
+}
+
 export async function draft_survives({ browser, mock, links, expect }) {
   const { page } = await open(browser, links.participant);
   lead_to(mock, "form", "impression");
