@@ -108,7 +108,7 @@ def hand_of(arguments):
 def serve(study, arguments):
     import asyncio
 
-    from hapticgiant.study import planning, trials
+    from hapticgiant.study import markers, planning, trials
     from hapticgiant.study.conductor import Conductor, expected_events
     from hapticgiant.study.folder import Folder
     from hapticgiant.study.server import Server
@@ -118,6 +118,7 @@ def serve(study, arguments):
     pages = pathlib.Path(os.environ.get("HAPTICGIANT_PAGE", ""))
     if not (pages / "study" / "operator.html").is_file():
         raise StudyError("the page is not built: cd viewer && npm ci && npm run build")
+    markers.require(study)
     hand, program = hand_of(arguments), find_program()
     trials.require_columns(study, trials.known_columns(program))
     events = expected_events(study, program, hand)

@@ -150,7 +150,8 @@ class Conductor:
                                  "language": self.language},
             "steps": [{**dataclasses.asdict(step), "is_done": session.is_done(i)} for i, step in enumerate(session.steps)]
             if session else [],
-            "position": session.position if session else None, "phase": self.phase(), "problem": self._problem,
+            "position": session.position if session else None, "phase": self.phase(),
+            "problem": self._problem or (self._markers.problem if self._markers else None) or None,
             "run": self.run_state(), "last": self._last,
             "notes": [{"step": note["step"], "text": note["text"]} for note in self.folder.remarks(session.code)]
             if session else [],
