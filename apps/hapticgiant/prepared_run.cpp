@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <future>
+#include <utility>
 
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
@@ -24,16 +25,18 @@ start_test::MachineMemory machine_memory(const RunArguments& arguments) {
           .confirmed_joints = arguments.confirmed_joints};
 }
 
-PreparedRun::PreparedRun(const RunArguments& a)
-    : arguments(a), scenario(make_scenario(a)), cycle(scenario::make_cycle(scenario)) {
+PreparedRun::PreparedRun(const RunArguments& a) : PreparedRun(a, make_scenario(a)) {}
+
+PreparedRun::PreparedRun(const RunArguments& a, config::Scenario loaded)
+    : arguments(a),
+      scenario(std::move(loaded)),
+      cycle(scenario::make_cycle(scenario)),
+      fixed_by(a.is_trial() ? "this run is a trial of a study" : "") {
   doctor::check_items(arguments.despite);
   if (arguments.device_address.empty()) {
     device = scenario::make_simulated_device(scenario);
   } else if (scenario::is_franka(arguments.device_address)) {
     connect_franka();
-  } else if (arguments.moves_to_start) {
-    throw SetupError("--move-to-start: only a Franka can be moved, got --device-address " +
-                     arguments.device_address);
   } else if (scenario::is_ethercat(arguments.device_address)) {
     connect_ethercat();
   } else {
@@ -93,12 +96,15 @@ void PreparedRun::connect_ethercat() {
 }
 
 void PreparedRun::connect_remote() {
+  // the server may not know yet that the session for the posture is over
+  constexpr double kFarewell = 0.5;  // s
   const auto connect = [&](double busy_patience_s) {
     return scenario::connect_device(arguments.device_address, scenario::key_of(arguments.key_file),
                                     scenario, fmt::format("hapticgiant run {}", kVersion),
                                     arguments.is_fast, busy_patience_s);
   };
-  auto connected = connect(0.0);
+  // nor that the one that has moved the device to the start is
+  auto connected = connect(arguments.moves_to_start ? kFarewell : 0.0);
   note = "the device says that it is a simulation: no start test is required";
   if (!connected->welcome().is_simulated) {
     const start_test::MachineMemory memory = machine_memory(arguments);
@@ -106,8 +112,6 @@ void PreparedRun::connect_remote() {
     posture = start_test::check_posture(memory, scenario.device, *connected);
     connected->close(FaultCode::kNone);
     check_computer();
-    // the server may not know yet that the session for the posture is over
-    constexpr double kFarewell = 0.5;  // s
     connected = connect(kFarewell);
     machine = connected.get();
   }
@@ -121,7 +125,7 @@ page::ShownRun PreparedRun::shown() const {
           .refusal = remote == nullptr
                          ? ""
                          : "the device at " + arguments.device_address + " keeps its own time",
-          .is_trial = arguments.is_trial()};
+          .fixed_by = fixed_by};
 }
 
 }  // namespace hg::apps

@@ -10,6 +10,7 @@
 #include "hg/controller/cycle.h"
 #include "hg/device/connected_device.h"
 #include "hg/page/run_page.h"
+#include "hg/scenario/start_posture.h"
 
 namespace hg::apps {
 
@@ -19,6 +20,8 @@ start_test::MachineMemory machine_memory(const RunArguments& arguments);
 struct PreparedRun {
   /// Prepares a run. Throws SetupError.
   explicit PreparedRun(const RunArguments& arguments);
+  /// The same with a scenario that was loaded, and changed, already.
+  PreparedRun(const RunArguments& arguments, config::Scenario loaded);
 
   /// The run for its page; valid while this exists.
   page::ShownRun shown() const;
@@ -36,6 +39,8 @@ struct PreparedRun {
   std::string start_test, posture;
   /// What the doctor finds bad about this computer and --despite has let pass; empty: nothing
   std::string computer;
+  scenario::Start goal;  ///< where the way to the start of a run ends; see move_to_start.h
+  std::string fixed_by;  ///< why pages change nothing about this run; empty = they may
 
  private:
   void connect_remote();

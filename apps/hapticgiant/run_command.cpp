@@ -15,6 +15,7 @@
 
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/lab_streams.h"
+#include "apps/hapticgiant/move_to_start.h"
 #include "apps/hapticgiant/open_page.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
@@ -158,13 +159,6 @@ void watch(runtime::Runtime& runtime, Observers& observers) {
   }
   tell_problems(observers, observers.dumps.finish(runtime.kept_problems()));
   observers.status_line.clear();
-}
-
-void close_device(device::ConnectedDevice& device, const Fault& fault) {
-  device.close(fault.code);
-  if (!device.farewell().empty()) {
-    print_out(fmt::format("message of the remote device: {}\n", device.farewell()));
-  }
 }
 
 // `goes_on`: continues after the script, until Ctrl-C
@@ -389,7 +383,8 @@ int run(const RunArguments& arguments) {
   check_writable(arguments.summary, kJson);
   const std::unique_ptr<lab_streaming::Liblsl> liblsl =
       arguments.has_lab_streams ? load_liblsl() : nullptr;
-  auto present = std::make_unique<PreparedRun>(arguments);
+  auto present =
+      moves_by_law(arguments) ? prepare_way(arguments) : std::make_unique<PreparedRun>(arguments);
   const std::atomic<bool>& interrupted = watch_interruption();
   const BackgroundOutput output(interrupted);
   std::unique_ptr<PreparedRun> last, next;  // `last` until the page shows the next one
@@ -404,6 +399,18 @@ int run(const RunArguments& arguments) {
     link = std::make_unique<live::LinkFile>(live::live_address(page->url()));
     if (!link->problem().empty())
       print_out("note        bridges need --live: {}\n", link->problem());
+  }
+  if (moves_by_law(arguments)) {
+    const std::uint32_t stops = page ? page->desk().stops() : 0;
+    std::string problem = move_to_start(*present, interrupted, output, page.get());
+    last = std::move(present);
+    if (problem.empty()) present = std::make_unique<PreparedRun>(arguments);
+    // a stop that came while it was prepared is one for it, too
+    if (problem.empty() && page && page->desk().stops() != stops) problem = "it was stopped";
+    if (!problem.empty()) {
+      print_error("--move-to-start: {}; the run does not begin\n", problem);
+      return kNotThere;
+    }
   }
   while (true) {
     const int code = play(*present, interrupted, output, page.get(), liblsl.get());

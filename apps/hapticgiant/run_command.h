@@ -20,7 +20,7 @@ struct RunArguments {
   /// HOST:PORT of a remote device, franka://HOST or ethercat://INTERFACE; empty = simulated here
   std::string device_address;
   std::string machine;          ///< machine.yaml of a bus; empty = the one beside the device file
-  bool moves_to_start = false;  ///< a Franka first moves to where the twin starts
+  bool moves_to_start = false;  ///< the device first moves to where the twin starts
   std::string key_file;         ///< file of the key shared with the device; empty = none
   /// Duration of the run, s; unset = until the script has played; on a terminal with a page until
   /// Ctrl-C.

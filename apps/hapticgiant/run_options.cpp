@@ -42,7 +42,8 @@ void add_run(CLI::App& app, const std::string& program, int& exit_code) {
       ->needs("--device-address");
   command
       ->add_flag("--move-to-start", arguments->moves_to_start,
-                 "a Franka first moves slowly to where the twin starts; keep its way clear")
+                 "the device first moves by itself, slowly, to where the twin starts: with nobody "
+                 "at the handle and the override key on; keep its way clear")
       ->needs("--device-address");
   command
       ->add_option("--key-file", arguments->key_file,

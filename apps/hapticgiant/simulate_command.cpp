@@ -57,7 +57,8 @@ std::string closing_lines(const udp::SessionReport& report, double rate_Hz) {
 int simulate(const SimulateArguments& arguments) {
   check_writable(arguments.capture, kCapture);
   const config::Scenario scenario = scenario::load(arguments.world);
-  const simulator::Simulation world = scenario::make_simulation(scenario);
+  const simulator::Simulation first_world = scenario::make_simulation(scenario);
+  scenario::Start start = scenario::find_start(scenario.device, scenario.twin);
   const udp::ServerConfig config{.actual = scenario::describe(scenario, arguments.is_fast),
                                  .server = std::string("hapticgiant simulate ") + kVersion,
                                  .is_simulated = true,
@@ -76,11 +77,14 @@ int simulate(const SimulateArguments& arguments) {
     if (!lost.empty()) print_error("{}: the capture ended early: {}\n", arguments.capture, lost);
   };
   while (server.wait_for_client(stop)) {
-    scenario::WatchedDevice device(scenario::make_simulated_device(scenario, world),
-                                   scenario.device.model);
+    scenario::WatchedDevice device(
+        scenario::make_simulated_device(
+            scenario, arguments.stays ? scenario::make_simulation(scenario, start) : first_world),
+        scenario.device.model);
     const udp::SessionReport report = server.serve(device, stop);
     print_out(fmt::format("\n{}  {:<12} {}\n", closing_lines(report, scenario.device.model.rate_Hz),
                           "truth", device.truth_text()));
+    start = {device.truth_now().T_B_H, device.truth_now().q_p, device.truth_now().q_m};
     check_capture();
   }
   check_capture();
@@ -106,6 +110,10 @@ void add_simulate(CLI::App& app, int& exit_code) {
                       "secret that clients must have, too (docs/reference/device_protocol.md)");
   command->add_flag("--fast", arguments->is_fast,
                     "lock-step: each side waits for the other (run --fast) instead of real time");
+  command->add_flag("--stays", arguments->stays,
+                    "like a machine: each client finds the device where the last one has left it, "
+                    "and the person lets go of the handle once the override key is on (run "
+                    "--move-to-start)");
   command->add_option("--capture", arguments->capture,
                       "write every datagram to this pcap file (docs/reference/device_protocol.md)");
   command->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });

@@ -17,10 +17,12 @@ struct SimulateArguments {
   std::string listen;    ///< address to listen on, HOST:PORT
   std::string key_file;  ///< file of the key that clients must have; empty = none
   bool is_fast = false;  ///< lock-step instead of real time
+  bool stays = false;    ///< each client finds the device where the last one has left it
   std::string capture;   ///< pcap file of all datagrams; empty = none
 };
 
-/// Serves one client after the other until Ctrl-C, each with a reset world. Exit code 0, or 4
+/// Serves one client after the other until Ctrl-C, each with a reset world unless the
+/// device stays where it is. Exit code 0, or 4
 /// (kNotWritten) if the capture is incomplete. Throws SetupError for bad input.
 int simulate(const SimulateArguments& arguments);
 

@@ -31,7 +31,6 @@ std::vector<double> values_of(const std::vector<config::FormField>& form) {
 }
 
 constexpr std::string_view kRunIsOver = "the run is over: start it again";
-constexpr std::string_view kTrial = "this run is a trial of a study";
 constexpr std::string_view kStopped = "a stop came after it";
 constexpr std::uint32_t kMostSamples = 10'000;  // in which a request must be seen
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // equal to no wrench
@@ -92,7 +91,7 @@ std::string_view name_of_done(const Command& command) {
 struct RunPage::Order {
   CommandName name;
   bool needs_simulation;  ///< the device has to wait, or to start anew
-  bool changes_trial;     ///< a trial would no longer be what was planned
+  bool changes_run;       ///< a trial would no longer be what was planned
   /// How it is executed; nullptr = by the server, at the operator's desk
   std::string (RunPage::*obey)(const Command&, runtime::Runtime*, const Note&);
 
@@ -135,7 +134,7 @@ viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
   scene.choices = page_choices(*run.options);
   scene.choices.law = rendering::to_string(run.scenario->device.rendering.law);
   scene.settings = page_settings(form_);
-  scene.refusal = run.is_trial ? std::string(kTrial) : run.refusal;
+  scene.refusal = run.fixed_by.empty() ? run.refusal : run.fixed_by;
   for (const Order& order : orders()) {
     if (refusal_of(order, run).empty()) scene.commands.push_back(order.name);
   }
@@ -144,7 +143,7 @@ viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
 
 // Why `run` does not take this command; empty = it does.
 std::string RunPage::refusal_of(const Order& order, const ShownRun& run) {
-  if (run.is_trial && order.changes_trial) return std::string(kTrial);
+  if (order.changes_run && !run.fixed_by.empty()) return run.fixed_by;
   return order.needs_simulation ? run.refusal : std::string();
 }
 
@@ -381,8 +380,8 @@ void RunPage::take_reference_wrench(runtime::Runtime* runtime, const Note& note)
   std::uint64_t client = 0;
   const bool is_new = server_.take_reference_wrench(w, client);
   if (runtime == nullptr) return next_wrench_.reset();
-  if (run_.is_trial) {
-    if (is_new && client != 0) server_.warn(client, "/reference_wrench: " + std::string(kTrial));
+  if (!run_.fixed_by.empty()) {
+    if (is_new && client != 0) server_.warn(client, "/reference_wrench: " + run_.fixed_by);
     return;
   }
   if (is_new && client != wrench_client_) {

@@ -35,8 +35,8 @@ struct ShownRun {
   const scenario::ScenarioOptions* options = nullptr;
   /// Why the device neither waits nor starts anew; empty = it does, being simulated here
   std::string refusal;
-  /// A trial: pages start no other run and change neither its pace nor its twin
-  bool is_trial = false;
+  /// Why pages start no other run and change neither its pace nor its twin; empty = they may
+  std::string fixed_by;
 };
 
 class RunPage {

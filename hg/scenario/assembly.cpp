@@ -153,9 +153,10 @@ void place(const config::BystanderInTheWay& bystander, const model::ChainModel& 
   plant->bystander->frame = chain.frame(bystander.hit_by);
 }
 
-simulator::Simulation simulation_of(
-    const config::SimulatedDeviceConfig& device, const Start& start, person::Person person,
-    const std::optional<config::BystanderInTheWay>& bystander = {}) {
+simulator::Simulation simulation_of(const config::SimulatedDeviceConfig& device, const Start& start,
+                                    person::Person person,
+                                    const std::optional<config::BystanderInTheWay>& bystander = {},
+                                    bool leaves_handle = false) {
   const bool has_motors = plant_of(device) != config::PlantKind::kIdeal;
   const model::ChainModel& chain =
       device.simulation.chain && has_motors ? *device.simulation.chain : device.model.chain;
@@ -166,6 +167,7 @@ simulator::Simulation simulation_of(
   }
   config.sensed.link_units = static_cast<int>(config.link_units.size());
   if (bystander) place(*bystander, chain, config);
+  config.leaves_handle_for_key = leaves_handle;
   return simulator::Simulation(config, chain, chain.frame(handle), std::move(person));
 }
 
@@ -200,6 +202,11 @@ person::Person make_person(const config::Scenario& scenario, const Start& start)
 simulator::Simulation make_simulation(const config::Scenario& scenario) {
   const Start start = find_start(scenario.device, scenario.twin);
   return simulation_of(scenario.device, start, make_person(scenario, start), scenario.bystander);
+}
+
+simulator::Simulation make_simulation(const config::Scenario& scenario, const Start& start) {
+  return simulation_of(scenario.device, start, make_person(scenario, start), scenario.bystander,
+                       true);
 }
 
 simulator::Simulation make_unheld_simulation(const config::SimulatedDeviceConfig& device,

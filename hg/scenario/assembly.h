@@ -26,6 +26,9 @@ person::Person make_person(const config::Scenario& scenario, const Start& start)
 /// A simulated world that starts where the twin starts, held by the scenario's person. Throws
 /// SetupError when the device cannot reach that pose.
 simulator::Simulation make_simulation(const config::Scenario& scenario);
+/// The same with the device at `start`, whose person lets go of the handle once the operator's
+/// override key is on: one session of several with a device that stays where it is left.
+simulator::Simulation make_simulation(const config::Scenario& scenario, const Start& start);
 /// The device alone at `start` (the pose of the handle does not matter), with a free handle.
 simulator::Simulation make_unheld_simulation(const config::SimulatedDeviceConfig& device,
                                              const Start& start);

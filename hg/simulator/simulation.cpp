@@ -56,6 +56,8 @@ void Simulation::step(const CommandFrame& command, const HardwareFaults& faults)
   const bool is_new = command.sequence == 0 || command.sequence != last_number_;
   silent_s_ = is_new ? 0.0 : silent_s_ + config_.sensed.period;
   last_number_ = command.sequence;
+  const bool leaves = config_.leaves_handle_for_key && command.panel.override_key;
+  has_left_handle_ = (has_left_handle_ || leaves) && !command.hand_target.active;
   for (int i = 0; i < config_.steps; ++i) {
     take_due_command();
     move(at_work_);
@@ -69,18 +71,16 @@ void Simulation::step(const CommandFrame& command, const HardwareFaults& faults)
 
 // The safety controller sees its own switches and speeds, not those reported to the program.
 void Simulation::watch_over(const SafetyPanel& panel) noexcept {
-  const double time_s = static_cast<double>(steps_) * config_.sensed.step;
-  safety_plc_.step(
-      {.stop_free = TwoChannels::both(!panel.emergency_stop),
-       .operator_enable = TwoChannels::both(panel.operator_enable),
-       .user_hold = TwoChannels::both(!config_.has_dead_man || person_.is_holding(time_s)),
-       .override_key = TwoChannels::both(panel.override_key),
-       .field = panel.person_in_field ? ScannerField::kSmall : ScannerField::kNone,
-       .hand_speed = truth_.twist.head<3>().norm(),
-       .gantry_speed = truth_.dq_p.norm(),
-       .drives_on = at_work_.enable,
-       .reset = panel.reset,
-       .faults = faults_});
+  safety_plc_.step({.stop_free = TwoChannels::both(!panel.emergency_stop),
+                    .operator_enable = TwoChannels::both(panel.operator_enable),
+                    .user_hold = TwoChannels::both(!config_.has_dead_man || is_held()),
+                    .override_key = TwoChannels::both(panel.override_key),
+                    .field = panel.person_in_field ? ScannerField::kSmall : ScannerField::kNone,
+                    .hand_speed = truth_.twist.head<3>().norm(),
+                    .gantry_speed = truth_.dq_p.norm(),
+                    .drives_on = at_work_.enable,
+                    .reset = panel.reset,
+                    .faults = faults_});
   frame_.safety = safety_plc_.outputs();
 }
 
@@ -124,6 +124,7 @@ void Simulation::look(const HandTarget& target) noexcept {
   truth_ = std::visit([](const auto& plant) noexcept { return plant.truth(); }, plant_);
   const double time_s = static_cast<double>(steps_) * config_.sensed.step;
   w_H_ = person_.wrench(time_s, {truth_.T_B_H, truth_.twist}, target);
+  if (has_left_handle_) w_H_.setZero();
   if (std::holds_alternative<IdealPlant>(plant_)) truth_.w_H = w_H_;
   if (config_.sensors.torque_estimate.is_used) {
     sensors_.observe(felt());
@@ -152,8 +153,11 @@ void Simulation::sample() noexcept {
   take_due_command();  // a command that arrives at the moment of the sample is in effect
   sensors_.sample(truth_, frame_);
   frame_.answered_sequence = at_work_.sequence;
-  frame_.dead_man =
-      config_.has_dead_man && person_.is_holding(static_cast<double>(steps_) * config_.sensed.step);
+  frame_.dead_man = config_.has_dead_man && is_held();
+}
+
+bool Simulation::is_held() const noexcept {
+  return !has_left_handle_ && person_.is_holding(static_cast<double>(steps_) * config_.sensed.step);
 }
 
 }  // namespace hg::simulator

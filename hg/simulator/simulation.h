@@ -32,6 +32,9 @@ struct SimulatorConfig {
   SensedDevice sensed;          ///< its step and period are those of plant and loop
   std::vector<int> link_units;  ///< frames of the plant's chain that carry an inertial unit
   bool has_dead_man = true;
+  /// The person lets go of the handle once the operator's override key is on, until a hand target
+  /// is active
+  bool leaves_handle_for_key = false;
   SafetyPlcConfig safety;  ///< its period is that of the loop
   /// Time without a new command after which the drives switch themselves off, s; [HANDBOOK] 6.6. A
   /// command is new when its number is; commands without a number (0) are always new.
@@ -68,6 +71,7 @@ class Simulation {
   void look(const HandTarget& target) noexcept;
   Truth felt() const noexcept;
   void watch_over(const SafetyPanel& panel) noexcept;
+  bool is_held() const noexcept;
   void sample() noexcept;
 
   SimulatorConfig config_;
@@ -83,6 +87,7 @@ class Simulation {
   std::size_t first_waiting_ = 0, waiting_count_ = 0;
   std::uint64_t last_number_ = 0;  ///< number of the last command
   double silent_s_ = 0.0;          ///< time since the last new command, s
+  bool has_left_handle_ = false;   ///< the person keeps off for the override key
   CommandFrame at_work_;           ///< the newest command that has reached the drives
   std::uint64_t arrived_ = 0;      ///< step of the plant at which it did
   Vector6 w_H_ = Vector6::Zero();

@@ -107,8 +107,7 @@ class Commands(unittest.TestCase):
                 ((*fci, "franka://host/speed"), "with /speeds, got 'franka://host/speed'"),
                 ((*fci, "franka://host:port"), "--device-address: expected HOST:PORT"),
                 ((*fci, nobody, "--fast"), "a Franka keeps its own time"),
-                ((*fci, nobody, "--seed", "2"), "--seed"),
-                ((*fci, "127.0.0.1:1", "--move-to-start"), "only a Franka can be moved")):
+                ((*fci, nobody, "--seed", "2"), "--seed")):
             with self.subTest(arguments):
                 result = run(*arguments)
                 self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
@@ -126,6 +125,22 @@ class Commands(unittest.TestCase):
                          server.address)
         self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
         self.assertIn("not armed: the twin cannot be where the handle is", result.stdout)
+
+    def test_a_device_moves_to_the_start_from_where_it_was_left(self):
+        with Server("door", "--fast", "--stays", "--user", "mouse") as server:
+            for scenario in ("path", "excavator", "door"):
+                result = run(scenario, "--user", "mouse", "--fast", "--duration", "1",
+                             "--device-address", server.address, "--move-to-start")
+                self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+                self.assertRegex(result.stdout, r"start +there after \d+\.\d s")
+                self.assertNotIn("not armed", result.stdout)
+
+    def test_a_start_out_of_reach_is_refused_before_anything_moves(self):
+        with Server("door", "--fast", "--stays", "--user", "mouse") as server:
+            result = run("path", "--fast", "--duration", "0.3", "--device-address", server.address,
+                         "--move-to-start", "--set", "twin.joints.root.start.z_m=1.5")
+        self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+        self.assertIn("handle", result.stderr)
 
     def test_a_description_without_noise_disables_a_rule_with_a_note(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -17,6 +17,9 @@ class WatchedDevice final : public device::Device {
   void read(SensorFrame& sensors) noexcept override { device_->read(sensors); }
   void write(const CommandFrame& command) noexcept override;
 
+  /// True state at the end of the session.
+  const Truth& truth_now() const noexcept { return *device_->truth(); }
+
   /// True maxima as text: "joint limits exceeded by at most 0.31e-3 rad or m (m4); force of the
   /// user at most 38.2 N".
   std::string truth_text() const;
