@@ -77,6 +77,8 @@ def add_run(add):
     for name, what in (("--machine", "FILE"), ("--key-file", "FILE"), ("--posture-confirmed", "NAMES"), ("--despite", "NAMES")):
         device.add_argument(name, metavar=what)
     device.add_argument("--without-start-test", action="store_true")
+    device.add_argument("--without-move-to-start", action="store_true",
+                        help="somebody else brings the device to the start of each trial")
     return command
 
 
@@ -88,7 +90,7 @@ def port(text):
 
 def hand_of(arguments):
     """Who moves the handle, from the options of `study run`."""
-    from hapticgiant.study.conductor import Hand
+    from hapticgiant.study.conductor import MOVE, Hand
     from hapticgiant.sweep.reader import StudyError
 
     options = []
@@ -97,12 +99,13 @@ def hand_of(arguments):
             options += [f"--{name.replace('_', '-')}", value]
     options += ["--without-start-test"] if arguments.without_start_test else []
     if arguments.device_address is None:
-        if options:
+        if options or arguments.without_move_to_start:
+            options.append("--without-move-to-start")
             raise StudyError(f"{options[0]}: needs --device-address")
         return Hand("script" if arguments.rehearse else "mouse")
     if arguments.rehearse:
         raise StudyError("--rehearse: is with the simulated device, leave out --device-address")
-    return Hand("device", (*options, "--move-to-start"))
+    return Hand("device", (*options, *(() if arguments.without_move_to_start else (MOVE,))))
 
 
 def serve(study, arguments):

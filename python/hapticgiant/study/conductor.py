@@ -24,6 +24,7 @@ from hapticgiant.study.trial_run import TrialRun
 from hapticgiant.sweep.program import SUMMARY, Program
 
 LONGEST_NOTE = 2000  # characters
+MOVE = "--move-to-start"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -151,11 +152,15 @@ class Conductor:
             "steps": [{**dataclasses.asdict(step), "is_done": session.is_done(i)} for i, step in enumerate(session.steps)]
             if session else [],
             "position": session.position if session else None, "phase": self.phase(),
-            "problem": self._problem or (self._markers.problem if self._markers else None) or None,
+            "problem": self._problem or self._wanted() or (self._markers.problem if self._markers else None) or None,
             "run": self.run_state(), "last": self._last,
             "notes": [{"step": note["step"], "text": note["text"]} for note in self.folder.remarks(session.code)]
             if session else [],
             "markers": self._markers.state() if self._markers else [], "can": self.can()}
+
+    def _wanted(self):
+        """What the device waits for before it moves to the start."""
+        return self._run.shown.wanted if self._run is not None and self._phase == "moving" else ""
 
     def run_state(self) -> dict | None:
         """The run that is going on; None: there is none."""
@@ -184,7 +189,7 @@ class Conductor:
             return {**state, "screen": "break", "markdown": words, "rest_s": max(0.0, self._rest_until - time.monotonic())}
         if step.kind == "form":
             return {**state, "screen": "form", "form": self._form(step)}
-        if self._phase not in ("starting", "running"):
+        if self._phase != "running":
             return state
         is_practice = step.kind == "practice"
         link = self._run.shown.link if self._run is not None and self.hand.kind == "mouse" else ""
@@ -364,7 +369,8 @@ class Conductor:
             trials.discard(work)
             work.mkdir(parents=True)
             self._keep_markers()
-            self._run = TrialRun(self._command(step, work), self._events[step.condition], self.study.pause_s, self._run_changed)
+            self._run = TrialRun(self._command(step, work), self._events[step.condition], self.study.pause_s,
+                                 self._run_changed, MOVE in self.hand.options)
             self._mark_step(position, "begin")
             code, summary, said = await self._run.play(work / "summary.json")
             self._mark_step(position, "end")
@@ -395,7 +401,8 @@ class Conductor:
         shown = self._run.shown if self._run else None
         if shown is None:
             return
-        self._phase = "ending" if self._run.is_ending else "running" if shown.link else "starting"
+        self._phase = ("ending" if self._run.is_ending else "moving" if shown.is_on_its_way
+                       else "running" if shown.link and shown.mode != "off" else "starting")
         self._changed()
 
     def _keep_markers(self):

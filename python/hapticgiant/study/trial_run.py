@@ -38,6 +38,10 @@ class Shown:
     force_N: float = 0.0
     fault: str = ""
     is_held: bool = False
+    is_on_its_way: bool = False
+    """The device moves to the start by itself."""
+    wanted: str = ""
+    """What it waits for before."""
     events: list[dict] = dataclasses.field(default_factory=list)
 
 
@@ -52,8 +56,8 @@ def _end_with(parent):
 class TrialRun:
     """A run from its start to its end."""
 
-    def __init__(self, command: list[str], expected: list[str], pause_s: float | None, changed):
-        """command: without --summary. expected: names of the task's events. pause_s: how long after the last of them the
+    def __init__(self, command: list[str], expected: list[str], pause_s: float | None, changed, has_way: bool = False):
+        """command: without --summary. has_way: the device first moves to the start. expected: names of the task's events. pause_s: how long after the last of them the
         run ends; None: it does not end by them. changed(): called when more than a number has changed."""
         self.shown = Shown()
         self._command = command
@@ -61,6 +65,7 @@ class TrialRun:
         self._missing = set(expected)
         self._pause_s = pause_s
         self._changed = changed
+        self._first_run = 2 if has_way else 1  # by the number of its frames; before it is the way
         self._process: asyncio.subprocess.Process | None = None
         self._socket: aiohttp.ClientWebSocketResponse | None = None
         self._found_link = asyncio.Event()
@@ -121,13 +126,20 @@ class TrialRun:
     def _take(self, message):
         shown = self.shown
         if message["type"] == "frame":
-            before = shown.mode, shown.fault
+            before = shown.mode, shown.fault, shown.is_on_its_way
+            shown.is_on_its_way = message["run"] < self._first_run
             shown.mode, shown.time_s = message["mode"], message["time_s"]
             shown.fault = message["fault"]
             force = [x for x in message["force_N"] if x is not None]
             shown.force_N = math.hypot(*force) if len(force) == 3 else 0.0
             shown.is_held = shown.mode == "running"
-            if before != (shown.mode, shown.fault):
+            if shown.mode == "running":
+                shown.wanted = ""
+            if before != (shown.mode, shown.fault, shown.is_on_its_way):
+                self._changed()
+        elif message["type"] == "event" and message["run"] < self._first_run:
+            if message["name"] == "start":
+                shown.wanted = message["text"]
                 self._changed()
         elif message["type"] == "event" and message["name"] in self._missing:
             self._missing.discard(message["name"])
