@@ -182,6 +182,7 @@ class StudyRun(unittest.IsolatedAsyncioTestCase):
         self.assertEqual([row["position"] for row in rows], ["1", "2"])
         for row in rows:
             self.assertTrue((self.out / "sub-P01" / row["recording"]).is_file())
+            self.assertEqual(row["ended_by"], "time")
         self.assertEqual(self.table("participants")[0]["put_aside"], "1")
         why, = self.out.glob("sub-P01/aside/*_why.json")
         self.assertEqual(json.loads(why.read_text())["why"], "the phone rang")
@@ -236,6 +237,48 @@ class StudyRun(unittest.IsolatedAsyncioTestCase):
             self.assertEqual(state["steps"][state["position"]]["kind"], "trial")
         self.assertEqual(self.table("trials"), [])
         self.assertEqual(len(list(self.out.glob("sub-P01/aside/*_recording.mcap"))), 1)
+
+    async def test_what_comes_before_the_run_ends_it(self):
+        """Stop, abort, and Ctrl-C, while the run is only being started."""
+        async with Running(self.file) as running:
+            operator = running.operator
+            self.assertIsNone(await operator.ask("begin", code="P01"))
+            state = await go_through(running, lambda each: each["phase"] == "ready")
+            for command in ({"command": "abort", "why": "too early"}, {"command": "stop"}):
+                await operator.socket.send_json({"id": 1000, "command": "start"})
+                while operator.state["phase"] == "ready":
+                    await asyncio.sleep(0)
+                self.assertIsNone(await operator.ask(**command))
+                state = await operator.until(lambda each: each["phase"] == "ready")
+                self.assertFalse(state["steps"][state["position"]]["is_done"])
+                self.assertLess(state["position"], 3)
+            for words in ({"position": 99}, {"position": None}):
+                self.assertIn("another step", await operator.ask("start", **words))
+            self.assertIsNone(await operator.ask("start"))
+            running.process.send_signal(signal.SIGINT)
+            await asyncio.wait_for(running.process.wait(), PATIENCE_S)
+        self.assertEqual(self.table("trials"), [])
+
+    async def test_a_page_that_reads_nothing_holds_nobody_up(self):
+        text = "x" * 300_000
+        self.file.write_text(STUDY.replace("en: Hello", f"en: {text}"))
+        async with Running(self.file) as running:
+            self.assertIsNone(await running.operator.ask("begin", code="P01"))
+            address, token = running.links["participant"]
+            pages = []
+            for _ in range(3):  # connected, and never reads
+                page = await running.client.ws_connect(f"{address}/ws/participant", origin=address, max_msg_size=0,
+                                                       protocols=("hapticgiant-study", f"token.{token}"))
+                page._conn.transport.pause_reading()
+                pages.append(page)
+            for number in range(30):
+                self.assertIsNone(await running.operator.ask("note", text=f"note {number}"))
+            await running.operator.until(lambda each: len(each["notes"]) == 30)
+            (self.out / "sub-P01" / "sub-P01_note-1 (copy).json").write_text("of a file manager")
+            self.assertIsNone(await running.operator.ask("note", text="the last one"))
+            await running.operator.until(lambda each: each["notes"][-1]["text"] == "the last one")
+            for page in pages:
+                page._conn.transport.abort()
 
     async def test_others_are_kept_out(self):
         async with Running(self.file) as running:

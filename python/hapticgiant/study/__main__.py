@@ -69,7 +69,8 @@ def add_run(add):
     command.add_argument("--out", help="folder of the study; default: NAME.study beside study.yaml")
     command.add_argument("--rehearse", action="store_true",
                          help="the scripted hand plays the trials, and the folder (NAME.rehearsal) says so")
-    command.add_argument("--bind", default="127.0.0.1", metavar="ADDRESS", help="IP address that the pages are served at")
+    command.add_argument("--bind", type=address, default="127.0.0.1", metavar="ADDRESS",
+                         help="IPv4 address of this machine that the pages are served at")
     command.add_argument("--port", type=port, default=0, help="of the pages; default: any free one")
     command.add_argument("--no-browser", action="store_true", help="print the links only")
     device = command.add_argument_group("a machine, as of hapticgiant run; without one a simulated device is moved with the mouse")
@@ -80,6 +81,18 @@ def add_run(add):
     device.add_argument("--without-move-to-start", action="store_true",
                         help="somebody else brings the device to the start of each trial")
     return command
+
+
+def address(text):
+    import ipaddress
+
+    try:
+        found = ipaddress.IPv4Address(text)
+    except ValueError:
+        found = None
+    if found is None or found.is_unspecified:
+        raise argparse.ArgumentTypeError(f"expected an IPv4 address of this machine, as 192.168.1.20, got '{text}'")
+    return text
 
 
 def port(text):

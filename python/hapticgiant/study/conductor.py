@@ -17,12 +17,13 @@ import time
 
 from hapticgiant.study import expressions, markers, people, questionnaires, trials
 from hapticgiant.study.description import Study
-from hapticgiant.study.folder import RUNNING, Folder
+from hapticgiant.study.folder import RUNNING, Folder, FolderError
 from hapticgiant.study.planning import Step, plan
-from hapticgiant.study.session import PLAYED, WITH_FILES, Session
+from hapticgiant.study.session import PLAYED, Session
 from hapticgiant.study.trial_run import TrialRun
 from hapticgiant.sweep.program import SUMMARY, Program
 
+AT_ONCE = ("stop", "end", "abort")
 LONGEST_NOTE = 2000  # characters
 MOVE = "--move-to-start"
 
@@ -88,10 +89,14 @@ class Conductor:
         self._stream = markers.StudyStream(study.digest()) if lab.outlets else None
         self._markers = markers.Markers(lab.markers) if lab.markers else None
         self._plan = plan(study)
+        self._order = asyncio.Lock()  # one command after another, but for those that end something
+        self._gone = folder.withdrawn()  # nobody can withdraw while the folder is in use
+        self._progress = {each.code: folder.progress(each) for each in self._plan}
         self._session: Session | None = None
         self._run: TrialRun | None = None
         self._phase = "ready"  # of a trial
         self._task: asyncio.Task | None = None
+        self._is_closing = False
         self._abort_why: str | None = None
         self._problem: str | None = None
         self._last: dict | None = None
@@ -114,7 +119,9 @@ class Conductor:
         """The operator's commands that are possible now."""
         phase, session = self.phase(), self._session
         found = []
-        if phase == "closed" and self._next() is not None:
+        if self._is_closing:
+            return ["stop"] if self._run is not None else []
+        if phase == "closed":
             found.append("begin")
         if session is None:
             return found
@@ -137,11 +144,9 @@ class Conductor:
     def operator_state(self, participant_link: str) -> dict:
         session = self._session
         known = []
-        gone = self.folder.withdrawn()
         for each in self._plan:
-            one = session if session is not None and session.code == each.code else None
-            done, count = (one.done, sum(s.kind in WITH_FILES for s in one.steps)) if one else self.folder.progress(each)
-            status = "withdrawn" if each.code in gone else "planned" if not done else "begun" if done < count else "complete"
+            done, count = self._progress[each.code]
+            status = "withdrawn" if each.code in self._gone else "planned" if not done else "begun" if done < count else "complete"
             known.append({"code": each.code, "conditions": list(each.conditions), "status": status, "done": done, "of": count})
         return {
             "kind": "state", "title": self.study.title, "people": "real" if self.hand.is_real else "simulated",
@@ -208,11 +213,11 @@ class Conductor:
 
     def _next(self) -> str | None:
         """Who is next: an interrupted one first, then the first that is planned."""
-        gone, planned = self.folder.withdrawn(), None
+        planned = None
         for each in self._plan:
-            if each.code in gone:
+            if each.code in self._gone:
                 continue
-            done, count = self.folder.progress(each)
+            done, count = self._progress[each.code]
             if 0 < done < count:
                 return each.code
             if not done and planned is None:
@@ -225,13 +230,31 @@ class Conductor:
         """A command of the operator's page. Raises Refused."""
         if command not in ("begin", "leave", "start", "end", "abort", "repeat", "go_on", "note", "stop"):
             raise Refused(f"no such command: {command!r}")
+        if command in AT_ONCE:
+            await self._obey(command, words)
+            return
+        async with self._order:
+            await self._obey(command, words)
+
+    async def _obey(self, command, words):
         if command not in self.can():
             raise Refused(f"{command} is not possible now")
-        await getattr(self, f"_{command}")(words)
-        self._changed()
+        if "position" in words and command != "go_on" and words["position"] != self._session.position:
+            raise Refused(f"{command} was asked for another step")
+        try:
+            await getattr(self, f"_{command}")(words)
+        finally:
+            self._changed()
 
     async def participant(self, command: str, words: dict) -> None:
         """A command of the participant's page. Raises Refused."""
+        async with self._order:
+            try:
+                await self._take(command, words)
+            finally:
+                self._changed()
+
+    async def _take(self, command, words):
         if command == "language":
             if words.get("language") not in self.languages:
                 raise Refused(f"no such language: {words.get('language')!r}; there are {', '.join(self.languages)}")
@@ -242,17 +265,17 @@ class Conductor:
             await self._answer(words)
         else:
             raise Refused(f"no such command: {command!r}")
-        self._changed()
 
     async def _begin(self, words):
         code = words.get("code")
         participant = next((each for each in self._plan if each.code == code), None)
         if participant is None:
             raise Refused(f"no participant is called {code!r}")
-        if code in self.folder.withdrawn():
+        if code in self._gone:
             raise Refused(f"{code} was withdrawn; a code is not given again")
         self._session = Session(self.study, self.folder, participant)
         self._last = self._problem = None
+        self.language = self.languages[0]
         self._enter()
         self._mark(f"{code} begin")
 
@@ -267,7 +290,11 @@ class Conductor:
         if self.hand.kind == "mouse" and not self.participant_pages:
             raise Refused("the participant's page is not open, on which the handle is dragged")
         self._phase, self._problem, self._abort_why = "starting", None, None
-        self._task = asyncio.create_task(self._play(self._session.position))
+        position = self._session.position
+        step = self._session.steps[position]
+        self._run = TrialRun(self._command(step), self._events[step.condition], self.study.pause_s, self._run_changed,
+                             MOVE in self.hand.options)
+        self._task = asyncio.create_task(self._play(self._run, position))
 
     async def _end(self, _):
         self._run.end()
@@ -279,7 +306,7 @@ class Conductor:
     async def _repeat(self, words):
         position = self._session.last_played()
         why = self._text(words, "why")
-        self._session.put_aside(position, why)
+        await asyncio.to_thread(self._session.put_aside, position, why)
         self._mark_step(position, "put aside")
         self._last = None
         self._enter()
@@ -296,23 +323,26 @@ class Conductor:
         self._enter()
 
     async def _note(self, words):
-        self.folder.note(self._session.code, self._text(words, "text"), self._session.position or 0)
+        position = len(self._session.steps) if self._session.position is None else self._session.position
+        await asyncio.to_thread(self.folder.note, self._session.code, self._text(words, "text"), position)
 
     async def _stop(self, _):
-        if not await self._run.emergency_stop():
-            raise Refused("the run cannot be reached; use the button of the machine")
+        if not await self._run.emergency_stop():  # it has not begun, or its page is gone
+            self._abort_why = "stopped by the operator"
+            self._run.end()
 
     async def _answer(self, words):
         step = self._session.step if self._session else None
         if step is None or words.get("position") != self._session.position or step.kind != "form":
-            return  # has been answered
+            raise Refused("this form has been answered already")
         answers, pairs = words.get("answers"), words.get("pairs", {})
         if not isinstance(answers, dict) or not isinstance(pairs, dict):
             raise Refused("expected answers and pairs by their names")
         if problem := questionnaires.problem_of(self.study.forms[step.form], answers, pairs):
             raise Refused(problem)
+        answers = {name: "\n".join(value.splitlines()) if isinstance(value, str) else value for name, value in answers.items()}
         position = self._session.position
-        self.folder.write(self.folder.file_of(self._session.code, step), trials.dump({
+        await asyncio.to_thread(self.folder.write, self.folder.file_of(self._session.code, step), trials.dump({
             "participant": self._session.code, "condition": step.condition, "form": step.form,
             "simulated": not self.hand.is_real, "language": self.language, "answers": answers, "pairs": pairs}))
         self._mark_step(position, "end")
@@ -330,6 +360,7 @@ class Conductor:
     def _enter(self):
         """The present step begins."""
         step = self._session.step
+        self._progress[self._session.code] = self._session.progress()
         self._phase = "ready"
         if step is None:
             self._mark(f"{self._session.code} complete")
@@ -346,7 +377,11 @@ class Conductor:
         """As P01 trial door 1 begin."""
         self._mark(markers.words_of(self._session.code, self._session.steps[position], what))
 
-    def _command(self, step: Step, work: pathlib.Path) -> list[str]:
+    def _work(self) -> pathlib.Path:
+        """The folder of the trial that is played."""
+        return (self.folder.path / RUNNING / "trial").absolute()
+
+    def _command(self, step: Step) -> list[str]:
         words = self.study.arguments(step.condition)
         options = [] if self.hand.kind == "device" else [
             "--seed", str(people.seed_of(self.study, self._session.code, step.condition, step.repetition))]
@@ -359,24 +394,21 @@ class Conductor:
         if self.study.lab_streaming.outlets:
             options.append("--lsl")
         return [self.program.file, "run", *words, *options, *self.hand.options,
-                "--no-browser", "--recordings", str(work), "--flight-recorder", "off"]
+                "--no-browser", "--recordings", str(self._work()), "--flight-recorder", "off"]
 
-    async def _play(self, position):
+    async def _play(self, run, position):
         session, step = self._session, self._session.steps[position]
-        work = (self.folder.path / RUNNING / "trial").absolute()
-        summary = None
+        work, summary = self._work(), None
         try:
             trials.discard(work)
             work.mkdir(parents=True)
             self._keep_markers()
-            self._run = TrialRun(self._command(step, work), self._events[step.condition], self.study.pause_s,
-                                 self._run_changed, MOVE in self.hand.options)
             self._mark_step(position, "begin")
-            code, summary, said = await self._run.play(work / "summary.json")
+            code, summary, said = await run.play(work / "summary.json")
             self._mark_step(position, "end")
             self._run = None
             if self._abort_why is not None:
-                self._put_aside(step, summary, self._abort_why)
+                await asyncio.to_thread(self._put_aside, step, summary, self._abort_why)
                 self._phase = "ready"
                 return
             if summary is None:
@@ -386,11 +418,12 @@ class Conductor:
             else:
                 self._phase = "measuring"
                 self._changed()
-                await asyncio.to_thread(self._measure, session, step, position, code, summary, work)
+                await asyncio.to_thread(self._measure, session, step, position, code, summary, run.ended_by, work)
             self._enter()
-        except (trials.TrialError, expressions.ExpressionError, OSError) as error:
-            self._phase, self._problem = "failed", str(error)
-            self._put_aside(step, summary, str(error))
+        except Exception as error:  # whatever it is, the study goes on and the operator is told
+            is_known = isinstance(error, (trials.TrialError, expressions.ExpressionError, FolderError, OSError))
+            self._phase, self._problem = "failed", str(error) if is_known else f"{type(error).__name__}: {error}"
+            await asyncio.to_thread(self._put_aside, step, summary, self._problem)
         finally:
             self._run = self._task = None
             self._abort_why = None
@@ -412,13 +445,15 @@ class Conductor:
 
     def _put_aside(self, step, summary, why):
         """Keeps the recording of a trial that does not count."""
+        if step.kind != "trial":
+            return
         recording = pathlib.Path(summary["recording"]) if summary and summary["recording"] else None
-        if step.kind == "trial" and recording is not None and recording.is_file():
-            with contextlib.suppress(OSError):  # of a full disk, which has been told
+        with contextlib.suppress(OSError):  # of a full disk, which has been told
+            if recording is not None and recording.is_file():
                 self.folder.keep(recording, self._session.code, step, "recording.mcap")
-                self.folder.put_aside(self._session.code, step, why)
+            self.folder.tidy(self._session.code, why)
 
-    def _measure(self, session, step, position, exit_code, summary, work):
+    def _measure(self, session, step, position, exit_code, summary, ended_by, work):
         found = trials.measured(self.study, self.program, summary, exit_code_of(summary, exit_code), work)
         recording = self.folder.keep(found.recording, session.code, step, "recording.mcap")
         if self._markers:
@@ -426,7 +461,7 @@ class Conductor:
         self.folder.write(self.folder.file_of(session.code, step), trials.dump({
             "participant": session.code, "condition": step.condition, "repetition": step.repetition,
             "position": session.place(position), "simulated": not self.hand.is_real, "hand": self.hand.kind,
-            "exit_code": found.exit_code, "measures": found.measures,
+            "ended_by": ended_by, "exit_code": found.exit_code, "measures": found.measures,
             "events": [{"time_s": at, "name": name} for at, name in found.events], "state_hash": found.state_hash,
             "recording_sha256": found.digest, "recording": recording.name}))
         self._last = {
@@ -437,6 +472,7 @@ class Conductor:
 
     async def close(self) -> None:
         """Ends what goes on; the trial that is played does not count."""
+        self._is_closing = True
         if self._task is not None and self._run is not None:
             self._abort_why = "the study was closed"
             self._run.end()

@@ -19,7 +19,7 @@ TESTS = ("auto", "paired_t", "wilcoxon", "friedman", "mixed", "welch_t", "mann_w
          "kruskal")
 WITHIN_TESTS, BETWEEN_TESTS = TESTS[1:5], TESTS[5:]
 TWO_CONDITIONS = ("paired_t", "wilcoxon", "welch_t", "mann_whitney")
-TRIAL_COLUMNS = ("participant", "position", "condition", "repetition", "excluded", "exit_code", "state_hash",
+TRIAL_COLUMNS = ("participant", "position", "condition", "repetition", "ended_by", "excluded", "exit_code", "state_hash",
                  "recording_sha256", "recording")
 """Columns of trials.csv beside the measures."""
 CORRECTIONS = ("holm", "bonferroni", "none")

@@ -41,8 +41,10 @@ FORMAT = 1
 DESCRIPTION = "dataset_description.json"
 TABLES = ("participants", "trials", "answers")
 RUNNING = ".running"
+LOCK = ".lock"
 ASIDE = "aside"
 TRIAL = "_trial.json"
+NOTE = re.compile(r"sub-\w+_note-([0-9]+)\.json")
 PARTIAL = re.compile(r"\..+\.[0-9]+")  # a file that is being written, see _put()
 WITHDRAWN = "withdrawn.json"
 STUDY = "study.yaml"
@@ -127,6 +129,9 @@ class Folder:
     def begin(self, version: str, is_simulated: bool, model: str = "") -> None:
         """Makes the folder, or checks that it is of this study; only one process may write there."""
         self.path.mkdir(parents=True, exist_ok=True)
+        is_ours = self.exists() or (self.path / LOCK).exists()  # also one whose begin was interrupted
+        if not is_ours and any(not each.name.startswith(".") for each in self.path.iterdir()):
+            raise FolderError(f"{self.path}: is no study and not empty: take another --out")
         self._take()
         description = {
             "Name": self.study.title, "BIDSVersion": BIDS, "DatasetType": "raw", "HapticGiantFormat": FORMAT,
@@ -144,7 +149,7 @@ class Folder:
         shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # what a crash has left
 
     def _take(self):
-        self._lock = open(self.path / ".lock", "w", encoding="utf-8")
+        self._lock = open(self.path / LOCK, "w", encoding="utf-8")
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -193,10 +198,14 @@ class Folder:
         file.parent.mkdir(parents=True, exist_ok=True)
         partial = file.with_name(f".{file.name}.{os.getpid()}")
         data = text.encode() if isinstance(text, str) else text
-        with open(partial, "wb") as out:
-            out.write(data)
-            out.flush()
-            os.fsync(out.fileno())
+        try:
+            with open(partial, "wb") as out:
+                out.write(data)
+                out.flush()
+                os.fsync(out.fileno())
+        except OSError:
+            partial.unlink(missing_ok=True)
+            raise
         if replaces:
             os.replace(partial, file)
         else:
@@ -242,12 +251,12 @@ class Folder:
         _flush(target.parent)
         return target
 
-    def tidy(self, code: str) -> None:
-        """Puts aside what a crash has left of a trial that has no file of its own."""
+    def tidy(self, code: str, why: str = "the program ended before the trial was measured") -> None:
+        """Puts aside what is there of a trial that has no file of its own, after a crash or a failure."""
         for step in steps(self.study, next(each for each in plan(self.study) if each.code == code)):
             stem = self.stem(code, step)
             if step.kind == "trial" and not self.file_of(code, step).exists() and any(stem.parent.glob(f"{stem.name}_*")):
-                self.put_aside(code, step, "the program ended before the trial was measured")
+                self.put_aside(code, step, why)
 
     def note(self, code: str, text: str, step: int) -> None:
         """Keeps a remark of the operator."""
@@ -256,9 +265,9 @@ class Folder:
 
     def remarks(self, code: str) -> list[dict]:
         """The remarks of the operator, in their order."""
-        files = (self.path / f"sub-{code}").glob("*_note-*.json")
-        return [json.loads(file.read_text(encoding="utf-8"))
-                for file in sorted(files, key=lambda each: int(each.stem.rpartition("-")[2]))]
+        files = {int(found[1]): file for file in (self.path / f"sub-{code}").glob("*_note-*.json")
+                 if (found := NOTE.fullmatch(file.name))}
+        return [json.loads(files[number].read_text(encoding="utf-8")) for number in sorted(files)]
 
     def withdrawn(self) -> list[str]:
         try:
@@ -352,7 +361,7 @@ class Folder:
                 out += bool(why)
                 found["trials"].append({
                     "participant": code, "position": each["position"], "condition": each["condition"],
-                    "repetition": each["repetition"], "excluded": why, **each["measures"],
+                    "repetition": each["repetition"], "ended_by": each.get("ended_by", "time"), "excluded": why, **each["measures"],
                     "exit_code": each["exit_code"], "state_hash": each["state_hash"],
                     "recording_sha256": each["recording_sha256"], "recording": each["recording"] or ""})
             why = self._participant_excluded(len(played), out)
@@ -423,11 +432,12 @@ class Folder:
             ("participant", "", "code"), ("order", "", "conditions in the order of the plan"),
             ("trials", "", "trials that were played, without practice"),
             ("excluded_trials", "", "of these left out by a criterion"),
-            ("put_aside", "", "trials that the operator has put aside and that were played again; not in trials"),
+            ("put_aside", "", "trials that were put aside, by the operator or because they had no result, and played again; not in trials"),
             ("excluded", "", "why all of the participant is left out; empty: counts"))]
         lines += [("trials", *each) for each in (
             ("participant", "", "code"), ("position", "", "place of the trial in the participant's plan, from 1"),
             ("condition", "", "as in study.yaml"), ("repetition", "", "from 1"),
+            ("ended_by", "", "events: all of the task have happened; operator; time: the longest one, or the script's"),
             ("excluded", "", "why the trial is left out; empty: counts"),
             *((m.name, m.unit, f"{m.what}: {m.expression}") for m in self.study.measures.values()),
             ("exit_code", "", "of hapticgiant run: 0 as expected, 1 an event is missing or a limit was exceeded, 3 fault"),

@@ -11,14 +11,16 @@ import json
 import pathlib
 import secrets
 import signal
+import traceback
 
 from aiohttp import WSMsgType, web
 
-from hapticgiant.study.conductor import Conductor, Refused
+from hapticgiant.study.conductor import AT_ONCE, Conductor, Refused
 from hapticgiant.study.folder import FolderError
 
 PROTOCOL = "hapticgiant-study"
 LARGEST_MESSAGE = 1 << 18  # bytes
+MOST_WAITING = 64  # commands of a page
 LIVE_PERIOD_S = 0.2
 PATIENCE_S = 1.0  # with a page that takes no messages
 PAGES = ("operator", "participant")
@@ -36,7 +38,7 @@ class Server:
     def __init__(self, pages: pathlib.Path, address: str, port: int):
         self._pages, self._address, self._port = pages, address, port
         self._tokens = {name: secrets.token_hex(16) for name in PAGES}
-        self._sockets: dict[str, set[web.WebSocketResponse]] = {name: set() for name in PAGES}
+        self._sockets: dict[str, dict[web.WebSocketResponse, web.Request]] = {name: {} for name in PAGES}
         self._news = asyncio.Event()
         self._end = asyncio.Event()
         self._runner: web.AppRunner | None = None
@@ -56,7 +58,7 @@ class Server:
     def origins(self) -> list[str]:
         """Addresses of the pages."""
         own = [f"http://127.0.0.1:{self._port}"]
-        if self._address not in ("127.0.0.1", "0.0.0.0"):
+        if self._address != "127.0.0.1":
             own.append(f"http://{self._address}:{self._port}")
         return own
 
@@ -74,9 +76,9 @@ class Server:
             loop.add_signal_handler(each, self._end.set)
         tasks = [asyncio.create_task(self._tell()), asyncio.create_task(self._tell_live())]
         await self._end.wait()
+        await self.conductor.close()
         for task in tasks:
             task.cancel()
-        await self.conductor.close()
         for sockets in self._sockets.values():
             for socket in list(sockets):
                 await socket.close()
@@ -100,8 +102,6 @@ class Server:
         name, _, port = host.rpartition(":")
         if port != str(self._port):
             return False
-        if self._address == "0.0.0.0":
-            return name == "localhost" or name.replace(".", "").isdigit()
         return name in ("127.0.0.1", "localhost", self._address)
 
     async def _talk(self, request):
@@ -111,42 +111,57 @@ class Server:
         origin = request.headers.get("Origin", "")
         if not hmac.compare_digest(token.encode(), self._tokens[name].encode()) or PROTOCOL not in asked:
             raise web.HTTPForbidden(text="the link has another token\n")
-        if origin.partition("://")[2] != request.host:
+        if origin != f"http://{request.host}":
             raise web.HTTPForbidden(text="a page of another server\n")
         socket = web.WebSocketResponse(protocols=(PROTOCOL,), max_msg_size=LARGEST_MESSAGE, heartbeat=10)
         await socket.prepare(request)
-        self._sockets[name].add(socket)
+        self._sockets[name][socket] = request
         self._count()
+        orders: asyncio.Queue[dict] = asyncio.Queue(MOST_WAITING)
+        worker = asyncio.create_task(self._work(name, socket, orders))
         try:
             await socket.send_json(self._state(name))
             async for message in socket:
-                if message.type == WSMsgType.TEXT:
-                    await socket.send_json(await self._take(name, message.data))
+                if message.type != WSMsgType.TEXT:
+                    continue
+                words = read(message.data)
+                if words is None:
+                    await socket.send_json(answer(None, "expected a JSON object with 'id' and 'command'"))
+                elif words["command"] in AT_ONCE:  # overtakes what waits
+                    await socket.send_json(await self._take(name, words))
+                elif orders.full():
+                    await socket.send_json(answer(words, "too many commands at a time"))
+                else:
+                    orders.put_nowait(words)
         except (ConnectionError, RuntimeError):
             pass  # it has gone
         finally:
-            self._sockets[name].discard(socket)
+            worker.cancel()
+            self._sockets[name].pop(socket, None)
             self._count()
         return socket
+
+    async def _work(self, name, socket, orders):
+        while True:
+            words = await orders.get()
+            try:
+                await socket.send_json(await asyncio.shield(self._take(name, words)))
+            except (ConnectionError, RuntimeError):
+                return
 
     def _count(self):
         self.conductor.participant_pages = len(self._sockets["participant"])
         self.changed()
 
-    async def _take(self, name, text):
-        number = None
+    async def _take(self, name, words):
         try:
-            words = json.loads(text)
-            if not isinstance(words, dict) or not isinstance(words.get("command"), str):
-                raise Refused("expected an object with 'id' and 'command'")
-            number = words.get("id")
             await getattr(self.conductor, name)(words["command"], words)
-            problem = None
+            return answer(words, None)
         except (Refused, FolderError, OSError) as error:
-            problem = str(error)
-        except (ValueError, RecursionError):
-            problem = "not valid JSON"
-        return {"kind": "answer", "id": number if isinstance(number, (int, float, str)) else None, "problem": problem}
+            return answer(words, str(error))
+        except Exception as error:  # of one command: the study goes on
+            traceback.print_exc()
+            return answer(words, f"{type(error).__name__}: {error}")
 
     def _state(self, name):
         if name == "operator":
@@ -159,22 +174,43 @@ class Server:
             self._news.clear()
             for name, sockets in self._sockets.items():
                 if sockets:
-                    await self._send(sockets, self._state(name))
+                    await self._send(sockets, lambda name=name: self._state(name))
 
     async def _tell_live(self):
         while True:
             await asyncio.sleep(LIVE_PERIOD_S)
-            run = self.conductor.run_state()
-            if run is not None:
-                await self._send(self._sockets["operator"], {"kind": "live", "run": run})
+            if self.conductor.run_state() is not None:
+                await self._send(self._sockets["operator"], lambda: {"kind": "live", "run": self.conductor.run_state()})
 
     @staticmethod
     async def _send(sockets, message):
-        for socket in list(sockets):
+        """Sends what message() gives to all of them. Nothing ends this: the operator has to see."""
+        try:
+            text = json.dumps(message())
+        except Exception:  # a file of the study that cannot be read: the next state may be whole again
+            traceback.print_exc()
+            return
+        for socket, request in list(sockets.items()):
             try:
-                await asyncio.wait_for(socket.send_json(message), PATIENCE_S)
-            except (ConnectionError, RuntimeError):
-                pass  # its reader will see that it has gone
+                await asyncio.wait_for(socket.send_str(text), PATIENCE_S)
             except asyncio.TimeoutError:  # a page that takes nothing holds nobody up
-                sockets.discard(socket)
-                socket.get_extra_info("transport").abort()
+                sockets.pop(socket, None)
+                if request.transport is not None:
+                    request.transport.abort()
+            except Exception:
+                sockets.pop(socket, None)  # it has gone
+
+
+def read(text: str) -> dict | None:
+    """The command of a message; None: it is none."""
+    try:
+        words = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return words if isinstance(words, dict) and isinstance(words.get("command"), str) else None
+
+
+def answer(words: dict | None, problem: str | None) -> dict:
+    """What a page is told of its command; None: done."""
+    number = words.get("id") if words else None
+    return {"kind": "answer", "id": number if type(number) is int and abs(number) < 1 << 53 else None, "problem": problem}

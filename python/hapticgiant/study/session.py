@@ -46,10 +46,10 @@ class Session:
     def step(self) -> Step | None:
         return None if self.position is None else self.steps[self.position]
 
-    @property
-    def done(self) -> int:
-        """How many steps with a file are done."""
-        return sum(1 for i, step in enumerate(self.steps) if step.kind in WITH_FILES and self.is_done(i))
+    def progress(self) -> tuple[int, int]:
+        """How many steps with a file are done, and how many there are."""
+        files = [i for i, step in enumerate(self.steps) if step.kind in WITH_FILES]
+        return sum(map(self.is_done, files)), len(files)
 
     def pass_by(self, position: int) -> None:
         """A step without a file is over."""

@@ -72,6 +72,8 @@ class TrialRun:
         self._said: list[str] = []
         self._id = 0
         self.is_ending = False
+        self.ended_by = "time"
+        """What has ended it: events, operator, or time (also of a script that has played)."""
 
     async def play(self, summary: pathlib.Path) -> tuple[int, dict | None, str]:
         """Plays it; exit code (minus the signal), the summary if it was written, and what standard error said."""
@@ -79,6 +81,8 @@ class TrialRun:
         self._process = await asyncio.create_subprocess_exec(
             *self._command, "--summary", str(summary), stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, preexec_fn=lambda: _end_with(parent))
+        if self.is_ending:  # somebody was faster
+            self._send_end()
         readers = [asyncio.create_task(self._read(self._process.stdout, self._take_line)),
                    asyncio.create_task(self._read(self._process.stderr, self._said.append))]
         watcher = asyncio.create_task(self._watch())
@@ -145,17 +149,23 @@ class TrialRun:
             self._missing.discard(message["name"])
             shown.events.append({"time_s": message["time_s"], "name": message["name"]})
             if not self._missing and self._pause_s is not None:
-                asyncio.get_running_loop().call_later(self._pause_s, self.end)
+                asyncio.get_running_loop().call_later(self._pause_s, self.end, "events")
             self._changed()
 
-    def end(self) -> None:
-        """Ends the run as Ctrl-C does: the device stops, recording and summary are completed. Killed if it does not end."""
-        if self._process is None or self._process.returncode is not None or self.is_ending:
+    def end(self, by: str = "operator") -> None:
+        """Ends the run as Ctrl-C does: the device stops, recording and summary are completed. Killed if it does not end.
+        One that has not begun ends when it does."""
+        if self.is_ending or self._process is not None and self._process.returncode is not None:
             return
-        self.is_ending = True
-        self._process.send_signal(signal.SIGINT)
-        asyncio.get_running_loop().call_later(PATIENCE_S, self._kill)
+        self.is_ending, self.ended_by = True, by
+        if self._process is not None:
+            self._send_end()
         self._changed()
+
+    def _send_end(self):
+        with contextlib.suppress(ProcessLookupError):
+            self._process.send_signal(signal.SIGINT)
+        asyncio.get_running_loop().call_later(PATIENCE_S, self._kill)
 
     def _kill(self):
         if self._process.returncode is None:

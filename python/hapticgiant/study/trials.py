@@ -100,9 +100,9 @@ def measured(study: Study, program: Program, summary: dict, exit_code: int, fold
         raise TrialError(f"no recording: {summary['recording_error'] or 'nothing was written'}")
     table = folder / "columns"
     done = subprocess.run([program.file, "export", recording, "--out", table, "--columns", *columns_of(study)],
-                          capture_output=True, text=True, check=False)
+                          capture_output=True, text=True, check=False, start_new_session=True)
     if done.returncode != 0:
-        raise TrialError(done.stderr.strip())
+        raise TrialError(done.stderr.strip() or f"export ended with {done.returncode}")
     columns = _read_table(table.with_suffix(".csv"))
     is_felt = columns["mode"] == RUNNING
     columns = {name: values[is_felt] for name, values in columns.items()}
@@ -115,6 +115,9 @@ def measured(study: Study, program: Program, summary: dict, exit_code: int, fold
         try:
             measures[name] = expressions.evaluate(expressions.parse(each.expression), trial)
         except expressions.ExpressionError as error:
+            if not is_felt.any():  # ended before the handle was taken
+                measures[name] = math.nan
+                continue
             raise expressions.ExpressionError(f"{study.place(f'measures.{name}')}: measures.{name}: {error}") from None
     return Measured(exit_code, summary["state_hash"], events, measures, recording, digest_of(recording))
 
@@ -132,6 +135,7 @@ def _read_table(file):
     with open(file, encoding="utf-8") as lines:
         names = next(csv.reader(lines))
         rows = np.loadtxt(lines, delimiter=",", ndmin=2)
+    rows = rows if rows.size else np.empty((0, len(names)))
     return dict(zip(names, rows.T))
 
 

@@ -105,7 +105,7 @@ export class Actions {
     const { state } = this;
     if (!state?.can.includes(described.action)) return;
     if (described.question) return this.ask(described);
-    void this.send(described.action, described.action === "go_on" ? { position: state.position } : {});
+    void this.send(described.action, { position: state.position }); // of what was shown
   }
 
   private take_key(event: KeyboardEvent): void {
@@ -138,7 +138,7 @@ export class Actions {
         write(problem, "Please give a reason: it is kept with the study.");
         return input.focus();
       }
-      void this.send(described.action, { why });
+      void this.send(described.action, { why, position: this.state?.position ?? null });
       this.close_question();
     });
     this.why.replaceChildren(form);
