@@ -40,9 +40,7 @@ void open_browser(const std::string& url) {
 
 }  // namespace
 
-std::string page_folder() {
-  return (config::installation_root() / "viewer" / "dist").string();
-}
+std::string page_folder() { return (config::installation_root() / "viewer" / "dist").string(); }
 
 std::string find_page() {
   const fs::path page = page_folder();
