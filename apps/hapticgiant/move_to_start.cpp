@@ -151,6 +151,9 @@ std::string move_to_start(PreparedRun& way, const std::atomic<bool>& interrupted
   }
   close_device(*way.remote, report.fault);
   if (!guide.is_there() && interrupted.load()) return "interrupted";
+  if (guide.is_there() && report.fault.code != FaultCode::kNone) {  // in the stop at the start
+    return fmt::format("{} {}", static_cast<int>(report.fault.code), to_string(report.fault.code));
+  }
   if (guide.is_there()) {
     print_out(
         fmt::format("start       there after {:.1f} s, {:.1f} mm and {:.1f} mrad from the "

@@ -153,7 +153,7 @@ class StudyRun(unittest.IsolatedAsyncioTestCase):
             self.assertIn("P07", await operator.ask("begin", code="P07"))
             self.assertIsNone(await operator.ask("begin", code="P01"))
             self.assertIsNone(await participant.ask("language", language="de"))
-            state = await participant.until(lambda each: each["language"] == "de")
+            state = await participant.until(lambda each: each["language"] == "de" and each["screen"] != "waiting")
             self.assertEqual((state["screen"], state["markdown"]), ("instruction", "Guten Tag"))
             self.assertIsNone(await operator.ask("note", text="left-handed"))
 

@@ -5,7 +5,7 @@ import { Store } from "./data/store";
 import { token, watch_token } from "./data/token";
 import { Drag } from "./hand/drag";
 import { HandControls } from "./hand/hand_controls";
-import type { Frame, Scene, Vec3 } from "./messages";
+import type { Event, Frame, Scene, Vec3 } from "./messages";
 import { element, write } from "./page";
 import { ChangePanel } from "./panels/change";
 import { EventsPanel } from "./panels/events";
@@ -82,6 +82,7 @@ class Page {
   private readonly plots = new PlotDrawer(element("plots"), this.store);
   private world: World | null = null;
   private has_looked = false; // the first view has turned to the handle
+  private readonly happened: Event[] = [];
   private frames = 0;
   private panels_ms = 0;
 
@@ -109,12 +110,16 @@ class Page {
       on_frame: (frame) => this.note(frame),
       on_event: (event) => {
         this.events.add(event);
-        this.world?.happened(event.name);
+        this.happened.push(event);
+        if (event.run === this.world?.scene.run) this.world.happened(event.name);
         const { scene, frame } = this.store;
         const is_new = scene?.source === "run" && event.time_s > (frame?.time_s ?? Infinity) - NEWS_S;
         if (event.name === "request" && is_new) this.notices.show("request", event.text);
       },
-      on_events_cleared: () => this.events.clear(),
+      on_events_cleared: () => {
+        this.events.clear();
+        this.happened.length = 0;
+      },
       on_values: (values) => this.change.take(values),
       on_connection: (is_connected) => {
         if (!is_connected) this.release();
@@ -158,6 +163,7 @@ class Page {
     this.stage.load(scene.box, scene.floor_z_m);
     if (is_other) {
       this.cameras.frame(scene.box);
+      if (document.body.dataset.show === "hand" && scene.checkpoints.length > 0) choose_top_view();
       this.has_looked = false;
     }
     const world = await World.load(scene, this.stage, this.layers).catch((error: unknown) => {
@@ -168,6 +174,7 @@ class Page {
     if (!world) return;
     this.world?.dispose();
     this.world = world;
+    for (const { run, name } of this.happened) if (run === scene.run) world.happened(name); // before it was there
     world.paint(current_theme());
     this.stage.scene.add(world.root);
   }
@@ -264,6 +271,13 @@ class Page {
 // Where another page drags the handle to.
 function seen_target(frame: Frame): Vec3 | null {
   return frame.hand.active ? frame.hand.p_B_m : null;
+}
+
+// From where somebody who drags the handle to places on the floor sees them.
+function choose_top_view(): void {
+  const views = element<HTMLSelectElement>("view");
+  views.value = "top";
+  views.dispatchEvent(new globalThis.Event("change"));
 }
 
 function show_connection(is_connected: boolean): void {

@@ -10,13 +10,7 @@ export function show_part(): void {
   const part = page_options().get("show") ?? "";
   if (!PARTS.includes(part)) return;
   document.body.dataset.show = part;
-  if (part === "hand") addEventListener("keydown", keep_from_page, { capture: true });
-  else addEventListener("keydown", keep_time_from_page, { capture: true });
-}
-
-// Of the keys only Escape is left, and what works buttons.
-function keep_from_page(event: KeyboardEvent): void {
-  if (event.key !== "Escape") event.stopImmediatePropagation();
+  addEventListener("keydown", keep_time_from_page, { capture: true });
 }
 
 function keep_time_from_page(event: KeyboardEvent): void {

@@ -43,6 +43,11 @@ class Hand:
                 "script": "Rehearsal: a scripted hand has played the trials; forms were answered by whoever was there."}[self.kind]
 
     @property
+    def has_way(self) -> bool:
+        """Whether the device moves to the start by a run of its own; a Franka's motion is none."""
+        return MOVE in self.options and not any(each.startswith("franka://") for each in self.options)
+
+    @property
     def is_real(self) -> bool:
         """Whether it is a person's."""
         return self.kind != "script"
@@ -179,7 +184,7 @@ class Conductor:
     def participant_state(self) -> dict:
         session = self._session
         state = {"kind": "state", "title": self.study.title, "code": session.code if session else None,
-                 "languages": self.languages, "language": self.language, "position": None, "progress": 0.0,
+                 "draft": f"{self.study.digest()} {self.hand.kind}", "languages": self.languages, "language": self.language, "position": None, "progress": 0.0,
                  "screen": "waiting"}
         if session is None:
             return state
@@ -255,6 +260,8 @@ class Conductor:
                 self._changed()
 
     async def _take(self, command, words):
+        if self._is_closing:
+            raise Refused("the study is being closed")
         if command == "language":
             if words.get("language") not in self.languages:
                 raise Refused(f"no such language: {words.get('language')!r}; there are {', '.join(self.languages)}")
@@ -275,7 +282,6 @@ class Conductor:
             raise Refused(f"{code} was withdrawn; a code is not given again")
         self._session = Session(self.study, self.folder, participant)
         self._last = self._problem = None
-        self.language = self.languages[0]
         self._enter()
         self._mark(f"{code} begin")
 
@@ -284,6 +290,7 @@ class Conductor:
         self._mark(f"{self._session.code} leave")
         self._session = None
         self._problem = None
+        self.language = self.languages[0]
         await asyncio.to_thread(self.folder.tabulate)
 
     async def _start(self, _):
@@ -293,7 +300,7 @@ class Conductor:
         position = self._session.position
         step = self._session.steps[position]
         self._run = TrialRun(self._command(step), self._events[step.condition], self.study.pause_s, self._run_changed,
-                             MOVE in self.hand.options)
+                             self.hand.has_way)
         self._task = asyncio.create_task(self._play(self._run, position))
 
     async def _end(self, _):
@@ -327,7 +334,7 @@ class Conductor:
         await asyncio.to_thread(self.folder.note, self._session.code, self._text(words, "text"), position)
 
     async def _stop(self, _):
-        if not await self._run.emergency_stop():  # it has not begun, or its page is gone
+        if not await self._run.emergency_stop() and not self._run.is_ending:  # it has not begun, or its page is gone
             self._abort_why = "stopped by the operator"
             self._run.end()
 
@@ -387,7 +394,9 @@ class Conductor:
             "--seed", str(people.seed_of(self.study, self._session.code, step.condition, step.repetition))]
         if self.hand.kind == "mouse":
             options += MOUSE
-        if self.hand.kind != "script" and "--duration" not in words:
+        if self.hand.is_real:
+            if "--duration" in words:  # of the script
+                del words[(at := words.index("--duration")):at + 2]
             options += ["--duration", f"{self.study.longest_s:g}"]
         for origin in self._origins:
             options += ["--embedded-in", origin]
@@ -409,6 +418,7 @@ class Conductor:
             self._run = None
             if self._abort_why is not None:
                 await asyncio.to_thread(self._put_aside, step, summary, self._abort_why)
+                self._mark_step(position, "put aside")
                 self._phase = "ready"
                 return
             if summary is None:
@@ -424,6 +434,7 @@ class Conductor:
             is_known = isinstance(error, (trials.TrialError, expressions.ExpressionError, FolderError, OSError))
             self._phase, self._problem = "failed", str(error) if is_known else f"{type(error).__name__}: {error}"
             await asyncio.to_thread(self._put_aside, step, summary, self._problem)
+            self._mark_step(position, "put aside")
         finally:
             self._run = self._task = None
             self._abort_why = None
@@ -451,7 +462,7 @@ class Conductor:
         with contextlib.suppress(OSError):  # of a full disk, which has been told
             if recording is not None and recording.is_file():
                 self.folder.keep(recording, self._session.code, step, "recording.mcap")
-            self.folder.tidy(self._session.code, why)
+            self.folder.put_aside(self._session.code, step, why)
 
     def _measure(self, session, step, position, exit_code, summary, ended_by, work):
         found = trials.measured(self.study, self.program, summary, exit_code_of(summary, exit_code), work)
@@ -473,21 +484,24 @@ class Conductor:
     async def close(self) -> None:
         """Ends what goes on; the trial that is played does not count."""
         self._is_closing = True
-        if self._task is not None and self._run is not None:
+        if self._task is not None and self._run is not None and not self._run.is_ending:
             self._abort_why = "the study was closed"
             self._run.end()
         if self._task is not None:
             await asyncio.gather(self._task, return_exceptions=True)
-        if self._session is not None:
-            self._keep_markers()
-        for each in (self._markers, self._stream):
-            if each is not None:
-                await asyncio.to_thread(each.close)
-        await asyncio.to_thread(self.folder.tabulate)
+        async with self._order:
+            try:
+                if self._session is not None:
+                    self._keep_markers()
+            finally:
+                for each in (self._markers, self._stream):
+                    if each is not None:
+                        await asyncio.to_thread(each.close)
+                await asyncio.to_thread(self.folder.tabulate)
 
 
 def exit_code_of(summary: dict, code: int) -> int:
     """The exit code that a run would have had if nobody had ended it: docs/reference/runtime.md."""
-    if code == 0 and (summary["missing_events"] or not summary["limits_held"]):
+    if code == 0 and (summary["missing_events"] or not summary["limits_held"] or summary["shaking"]["duration_s"] > 0):
         return 1
     return code

@@ -74,10 +74,12 @@ STORED = """\
 - Of each trial: condition, repetition, measures, names and times of events ({trial}).{recording}
 - Of each questionnaire: the answers, among them free texts as they were typed. A free text can tell who
   somebody is: read them before the data are published.{markers}
+- Remarks of the operator (sub-*/*_note-*.json), and of trials that were put aside the reason (sub-*/aside/): texts as they
+  were typed, without names if the operator keeps to it. The language in which forms were answered.
 - Times of day are not stored in tables; recordings have the date in their metadata.
 
-`hapticgiant study forget CODE` deletes everything of one participant: files, rows of tables, and reports, which
-are made anew without them. The code stays in {withdrawn}, so that nobody gets it again.
+`hapticgiant study forget CODE` deletes everything of one participant: files, rows of tables, and the reports; `study
+report` makes those anew. The code stays in {withdrawn}, so that nobody gets it again.
 """
 
 
@@ -417,7 +419,7 @@ class Folder:
             self.replace(file.with_suffix(".parquet"), sink.getvalue().to_pybytes())
             files.append(file.with_suffix(".parquet"))
         self.replace(self.path / "data_dictionary.csv", self._dictionary())
-        has_recordings = any(self.path.glob("sub-*/*.mcap"))
+        has_recordings = any(self.path.glob("sub-*/**/*.mcap"))
         self.replace(self.path / "WHAT_IS_STORED.md", STORED.format(
             codes=f"{plan(self.study)[0].code} ...", trial="sub-*/*_trial.json", withdrawn=WITHDRAWN,
             recording="\n- Recordings (sub-*/*_recording.mcap): what the device has measured and done in each cycle."

@@ -77,7 +77,7 @@ SUS = (
     ("I would imagine that most people would learn to use this system very quickly.",
      "Ich glaube, dass die meisten Menschen dieses System sehr schnell erlernen."),
     ("I found the system very cumbersome to use.", "Ich finde das System sehr umständlich."),
-    ("I felt very confident using the system.", "Ich war beim Benutzen des Systems sehr sicher."),
+    ("I felt very confident using the system.", "Ich habe mich beim Benutzen des Systems sehr sicher gefühlt."),
     ("I needed to learn a lot of things before I could get going with this system.",
      "Ich musste viel lernen, bevor ich mit dem System umgehen konnte."),
 )

@@ -136,7 +136,7 @@ class TrialRun:
             shown.fault = message["fault"]
             force = [x for x in message["force_N"] if x is not None]
             shown.force_N = math.hypot(*force) if len(force) == 3 else 0.0
-            shown.is_held = shown.mode == "running"
+            shown.is_held = shown.mode == "running" and not shown.is_on_its_way
             if shown.mode == "running":
                 shown.wanted = ""
             if before != (shown.mode, shown.fault, shown.is_on_its_way):

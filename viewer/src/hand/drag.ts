@@ -18,6 +18,7 @@ import { turned } from "./turn";
 
 const GRAB_RADIUS_PX = 40;
 const RESEND_MS = 33; // the program takes half a second of silence for a closed page
+const SPIN_PX = 8; // that a notch of the wheel or a key turns by: 3.7 degrees
 const REACH = 1.2; // m; a target never leads the handle by more
 
 // What a drag does: moves in the plane, along an axis of B, or turns the handle.
@@ -52,6 +53,7 @@ export class Drag {
     const area = stage.canvas.parentElement!;
     area.addEventListener("pointerdown", (event) => this.grab(event), { capture: true });
     area.addEventListener("pointermove", (event) => this.move(event));
+    area.addEventListener("wheel", (event) => this.take_wheel(event), { passive: false });
     for (const name of ["pointerup", "pointercancel"] as const) {
       addEventListener(name, (event) => this.end_pointer(event.pointerId), { capture: true });
     }
@@ -92,6 +94,21 @@ export class Drag {
     this.is_pressing = is_pressing;
     if (!this.is_dragging) this.target = is_pressing ? this.handle : null;
     this.send_hand();
+  }
+
+  // Turns the handle that is dragged about the vertical, whatever else the drag does; +1: to the left.
+  spin(notches: number): void {
+    const start = this.turn ?? this.frame()?.quaternion_B_H;
+    if (!this.is_dragging || !start) return;
+    this.turn = turned(start, SPIN_PX * notches, 0, this.view);
+    if (this.mode === "turn") this.restart();
+    this.send_hand();
+  }
+
+  private take_wheel(event: WheelEvent): void {
+    if (!this.is_dragging) return;
+    event.preventDefault();
+    this.spin(event.deltaY < 0 ? 1 : -1);
   }
 
   release(): void {

@@ -8,7 +8,7 @@ import type { Drag, DragMode } from "./drag";
 const MODES: [DragMode, string, string][] = [
   ["plane", "level", "Dragging moves the hand in the level plane"],
   ["z", "up / down", "Dragging moves the hand up and down (hold Shift or Z)"],
-  ["turn", "turn", "Dragging turns the hand (hold Alt)"],
+  ["turn", "turn", "Dragging turns the hand (hold Alt); the wheel, Q and E turn it while it is dragged"],
 ];
 const KEYS: Record<string, DragMode> = {
   Shift: "z",
@@ -17,6 +17,8 @@ const KEYS: Record<string, DragMode> = {
   y: "y",
   Alt: "turn",
 };
+
+const SPINS: Record<string, number> = { q: 1, e: -1 }; // turn while dragging, as the wheel does
 
 const OWN_SPACE = "button, summary, input"; // the space bar works them
 const LABEL_AWAY = 26; // px, from the handle
@@ -111,6 +113,7 @@ export class HandControls {
       event.preventDefault();
       this.drag.set_pressing(is_down);
     }
+    if (is_down && event.key in SPINS) this.drag.spin(SPINS[event.key]!);
     const mode = KEYS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (mode === undefined) return;
     if (event.key === "Alt") event.preventDefault(); // the browser's menu

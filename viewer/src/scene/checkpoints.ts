@@ -17,7 +17,7 @@ import {
 import type { SceneCheckpoint } from "../messages";
 import { FORCE_COLOR, GOOD_COLOR, TARGET_COLOR } from "../theme";
 
-const RADIUS = 0.16; // m
+const RADIUS = 0.1; // m: nearer than this it is reached (hg/signals/event_rule.h)
 const ARROW = 0.42; // m, from the middle
 const ABOVE = 0.006; // m above the floor
 const FAINT = 0.45;

@@ -138,8 +138,9 @@ export class Actions {
         write(problem, "Please give a reason: it is kept with the study.");
         return input.focus();
       }
-      void this.send(described.action, { why, position: this.state?.position ?? null });
-      this.close_question();
+      void this.send(described.action, { why, position: this.state?.position ?? null }).then(({ kind }) => {
+        if (kind === "done" && this.asked === described) this.close_question();
+      });
     });
     this.why.replaceChildren(form);
     this.why.hidden = false;

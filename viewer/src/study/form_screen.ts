@@ -15,7 +15,7 @@ export interface FormDesk extends Desk {
 export function form_screen(desk: FormDesk, state: ParticipantState): Screen {
   const form = state.form!;
   const position = state.position ?? 0;
-  const store = new DraftStore(state.code ?? "", position, form);
+  const store = new DraftStore(`${state.draft} ${state.code ?? ""}`, position, form);
   const root = make("div", "form");
   const screen: Screen = { root, heading: make("h1") };
   const show = (is_first: boolean): void => {

@@ -2,7 +2,7 @@
 
 import { HtmlRenderer, Parser } from "commonmark";
 
-const parser = new Parser({ smart: true });
+const parser = new Parser();
 const renderer = new HtmlRenderer({ safe: true });
 
 // Headings begin below that of the page.

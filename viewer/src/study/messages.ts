@@ -35,6 +35,7 @@ export interface ParticipantState {
   kind: "state";
   title: string;
   code: string | null;
+  draft: string; // differs between studies: what is kept of a form that is filled is theirs
   languages: string[];
   language: string;
   position: number | null;

@@ -80,6 +80,7 @@ class OperatorPage {
     this.state = state;
     const { dataset } = document.body;
     dataset.phase = state.phase;
+    dataset.fault = String(Boolean(state.run?.fault));
     dataset.position = String(state.position ?? "");
     document.title = `${state.participant ?? "Operator"}: ${state.title}`;
     write(element("title"), state.title);

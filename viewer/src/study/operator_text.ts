@@ -43,6 +43,7 @@ export function phase_text(state: OperatorState): string {
   if (phase === "closed") return state.next ? `Next: ${state.next}` : "Nobody is left";
   if (phase === "complete") return `${participant ?? "The session"} is complete`;
   if (phase === "participant") return `${participant} ${(step && DOES[step.kind]) ?? "is at the page"}`;
+  if (state.run?.fault) return `Stopped: ${state.run.fault}`;
   return PHASES[phase];
 }
 
@@ -55,6 +56,9 @@ export function hint_text(state: OperatorState): string {
     closed: state.next ? "No session is open." : "All sessions of the plan are done.",
     moving: "Keep clear: it moves by itself.",
     failed: "Start plays it again.",
+    running: state.run?.fault
+      ? "Throw it away and play it again; or release, Reset, Arm and Run in the tab Safety below: then it goes on, with exit code 3"
+      : "",
     complete: "Close the session to go on with the next participant.",
   };
   return [where, about[state.phase] ?? ""].filter(Boolean).join(". ");

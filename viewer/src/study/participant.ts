@@ -22,6 +22,7 @@ const PLANNED: ParticipantState = {
   kind: "state",
   title: "",
   code: null,
+  draft: "",
   languages: [],
   language: navigator.language.slice(0, 2) === "de" ? "de" : "en",
   position: null,

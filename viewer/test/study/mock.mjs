@@ -261,7 +261,7 @@ export class Mock {
   participant_state() {
     const { step, person, language } = this;
     const base = {
-      kind: "state", title: "Door and path", code: this.participant, languages: ["en", "de"], language, position: this.position,
+      kind: "state", title: "Door and path", code: this.participant, draft: "mock", languages: ["en", "de"], language, position: this.position,
       progress: person ? person.steps.filter((each) => each.is_done).length / person.steps.length : 0,
     };
     if (!person) return { ...base, screen: "waiting" };

@@ -47,6 +47,7 @@ try {
     const look = async (screen) => void screens.add(screen);
     const visited = await drive(operator.page, participant.page, { trial_s: LONGEST_TRIAL_S, language, look });
     expect(true, `${visited.at(-1).code} is complete, in ${language}: ${[...screens].join(", ")}`);
+    expect(!visited.some(({ phase }) => phase === "failed"), "every trial had a result");
     const text = await participant.page.textContent("body");
     expect(text.includes(language === "de" ? "Vielen Dank" : "Thank you"), "the last words are in this language");
     await press(operator.page, "#do-leave");
