@@ -403,7 +403,7 @@ int run(const RunArguments& arguments) {
   if (moves_by_law(arguments)) {
     const std::uint32_t stops = page ? page->desk().stops() : 0;
     std::string problem = move_to_start(*present, interrupted, output, page.get());
-    last = std::move(present);
+    last = std::exchange(present, nullptr);
     if (problem.empty()) present = std::make_unique<PreparedRun>(arguments);
     // a stop that came while it was prepared is one for it, too
     if (problem.empty() && page && page->desk().stops() != stops) problem = "it was stopped";
