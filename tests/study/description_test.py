@@ -462,5 +462,37 @@ class Faults(unittest.TestCase):
                       planning.problems_of(load(STUDY.replace("scale: 2", "scale: 1"))))
 
 
+class Run(unittest.TestCase):
+    """Parts of `study run` that need no run."""
+
+    def test_a_run_that_was_ended_has_the_exit_code_of_one_that_was_not(self):
+        from hapticgiant.study.conductor import exit_code_of
+
+        good = {"missing_events": [], "limits_held": True, "shaking": {"duration_s": 0.0}}
+        self.assertEqual(exit_code_of(good, 0), 0)
+        self.assertEqual(exit_code_of(good, 3), 3)
+        for bad in ({"missing_events": ["opened"]}, {"limits_held": False}, {"shaking": {"duration_s": 0.4}}):
+            self.assertEqual(exit_code_of(good | bad, 0), 1, bad)
+
+    def test_a_franka_has_no_way_of_its_own_to_the_start(self):
+        from hapticgiant.study.conductor import MOVE, Hand
+
+        self.assertTrue(Hand("device", ("--device-address", "10.0.0.2:4810", MOVE)).has_way)
+        self.assertFalse(Hand("device", ("--device-address", "franka://10.0.0.2", MOVE)).has_way)
+        self.assertFalse(Hand("device", ("--device-address", "10.0.0.2:4810")).has_way)
+
+    def test_a_form_that_is_not_whole_has_a_problem(self):
+        from hapticgiant.study import questionnaires
+
+        form = questionnaires.Form("nasa_tlx", "condition", questionnaires.tlx_items(), {}, (("mental", "physical"),))
+        whole = dict.fromkeys(form.items, 50)
+        self.assertIsNone(questionnaires.problem_of(form, whole, {"mental/physical": "mental"}))
+        for answers, pairs in ((whole, {}), (whole, {"mental/physical": "effort"}), (whole | {"mental": 51}, {"mental/physical": "mental"}),
+                               (whole | {"mental": True}, {"mental/physical": "mental"}),
+                               (whole | {"mental": float("nan")}, {"mental/physical": "mental"}),
+                               (whole | {"else": 1}, {"mental/physical": "mental"})):
+            self.assertIsNotNone(questionnaires.problem_of(form, answers, pairs), (answers, pairs))
+
+
 if __name__ == "__main__":
     unittest.main()

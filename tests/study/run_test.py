@@ -280,6 +280,20 @@ class StudyRun(unittest.IsolatedAsyncioTestCase):
             for page in pages:
                 page._conn.transport.abort()
 
+    async def test_a_trial_ends_after_the_last_event_of_its_task(self):
+        self.file.write_text(STUDY.replace("{scenario: door, duration_s: 3}", "{scenario: walk_through, duration_s: 30}"))
+        async with Running(self.file) as running:
+            operator = running.operator
+            self.assertIsNone(await operator.ask("begin", code="P01"))
+            await go_through(running, lambda each: each["phase"] == "ready")
+            self.assertIsNone(await operator.ask("start"))
+            state = await operator.until(lambda each: each["run"] and each["run"]["expected_events"])
+            self.assertEqual(state["run"]["expected_events"][-1], "shut again")
+            state = await operator.until(lambda each: each["last"] is not None)
+            self.assertEqual(state["last"]["exit_code"], 0)
+        row, = self.table("trials")
+        self.assertEqual((row["ended_by"], row["exit_code"]), ("events", "0"))
+
     async def test_others_are_kept_out(self):
         async with Running(self.file) as running:
             address, _ = running.links["operator"]
