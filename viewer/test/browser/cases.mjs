@@ -70,11 +70,11 @@ export async function drag_opens_door({ browser, program, expect }) {
 export async function hand_alone({ browser, program, expect }) {
   const { page, problems, close } = await open_page(browser, cheap(`${program.link}&show=hand`));
   const seen = await page.evaluate(() =>
-    ["emergency-stop", "hand", "panel", "transport", "vitals", "scenario-field", "view-tools"].filter((id) =>
+    ["emergency-stop", "hand", "view", "panel", "transport", "vitals", "scenario-field", "show-plots"].filter((id) =>
       document.getElementById(id).checkVisibility(),
     ),
   );
-  expect(seen.join(" ") === "emergency-stop hand", `only the stop and the hand: ${seen.join(" ")}`);
+  expect(seen.join(" ") === "emergency-stop hand view", `only the stop, the hand and the camera: ${seen.join(" ")}`);
   await page.keyboard.press("p");
   const { time_s } = await frame_of(page);
   const goes_on = await comes_true(page, (f) => f.time_s > time_s + 0.5 && !f.run_state.is_paused);
