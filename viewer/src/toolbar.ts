@@ -3,6 +3,7 @@
 import type { CommandName } from "./data/commands";
 import type { Link } from "./data/freshness";
 import type { Store } from "./data/store";
+import { hand_words } from "./hand/hand_words";
 import { type Icon, icon } from "./icons";
 import type { Frame, Scene } from "./messages";
 import { element, is_typing, make, make_button, make_check_box, write } from "./page";
@@ -103,7 +104,8 @@ export class Toolbar {
   }
 
   private show_note(frame: Frame): void {
-    const text = note_text(frame, this.store.scene?.source === "run");
+    const is_for_hand = document.body.dataset.show === "hand" && frame.mode === "fault";
+    const text = is_for_hand ? hand_words().stopped : note_text(frame, this.store.scene?.source === "run");
     const note = element("fault");
     write(element("fault-text"), text);
     note.hidden = text === "";
@@ -154,7 +156,7 @@ export function build_view_tools(
   const views = make("select");
   views.id = "view";
   views.title = "Camera (1 to 4)";
-  views.append(...VIEWS.map((view) => new Option(view, view)));
+  views.append(...VIEWS.map((view) => new Option(hand_words()[view], view)));
   const choose = (view: View): void => {
     views.value = view;
     cameras.choose(view);

@@ -4,11 +4,12 @@ import type { Scene } from "../messages";
 import { element, is_typing, make, make_button, make_check_box, write } from "../page";
 import type { Pixel } from "../scene/stage";
 import type { Drag, DragMode } from "./drag";
+import { hand_words } from "./hand_words";
 
-const MODES: [DragMode, string, string][] = [
-  ["plane", "level", "Dragging moves the hand in the level plane"],
-  ["z", "up / down", "Dragging moves the hand up and down (hold Shift or Z)"],
-  ["turn", "turn", "Dragging turns the hand (hold Alt); the wheel, Q and E turn it while it is dragged"],
+const MODES: ["plane" | "z" | "turn", string][] = [
+  ["plane", "Dragging moves the hand in the level plane"],
+  ["z", "Dragging moves the hand up and down (hold Shift or Z)"],
+  ["turn", "Dragging turns the hand (hold Alt); the wheel, Q and E turn it while it is dragged"],
 ];
 const KEYS: Record<string, DragMode> = {
   Shift: "z",
@@ -28,8 +29,9 @@ export function has_lever(scene: Scene): boolean {
 }
 
 export function grip_text(scene: Scene): string {
-  if (has_lever(scene)) return "Drag me: push the door open";
-  return scene.environment === "excavator" ? "Drag me: dig" : "Drag me";
+  const words = hand_words();
+  if (has_lever(scene)) return words.door;
+  return scene.environment === "excavator" ? words.dig : words.me;
 }
 
 // The side of the handle at `x` where its label is not cut off by the edge of the scene, px.
@@ -46,22 +48,23 @@ export class HandControls {
 
   constructor(private readonly drag: Drag) {
     const modes = make("span", "buttons");
-    for (const [mode, text, title] of MODES) {
-      const button = make_button(text, title, () => (drag.chosen_mode = mode));
+    const words = hand_words();
+    for (const [mode, title] of MODES) {
+      const button = make_button(words[mode], title, () => (drag.chosen_mode = mode));
       button.id = `drag-${mode}`;
       this.buttons.set(mode, button);
       modes.append(button);
     }
-    this.press_button = make("button", "", "press lever");
+    this.press_button = make("button", "", words.press);
     this.press_button.type = "button";
     this.press_button.id = "press";
     this.press_button.title = "Pushes the lever down (Space)";
-    const automatic = make_check_box("while dragging", true, (is_checked) => {
+    const automatic = make_check_box(words.automatic, true, (is_checked) => {
       drag.presses_while_dragging = is_checked;
     });
     this.automatic = automatic.querySelector("input")!;
     this.press_part = make("span", "buttons", this.press_button, automatic);
-    element("hand").replaceChildren(make("span", "quiet", "Drag:"), modes, this.press_part);
+    element("hand").replaceChildren(make("span", "quiet", words.drag), modes, this.press_part);
     this.connect_press();
     addEventListener("keydown", (event) => this.take_key(event, true));
     addEventListener("keyup", (event) => this.take_key(event, false));

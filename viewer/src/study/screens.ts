@@ -56,8 +56,8 @@ export function instruction_screen({ words, go_on }: Desk, state: ParticipantSta
 }
 
 // The run's own page: only the handle, and its stop.
-export function hand_link(link: string): string {
-  return `${link}&show=hand`;
+export function hand_link(link: string, language: string): string {
+  return `${link}&show=hand&language=${language}`;
 }
 
 export function trial_screen({ words }: Desk, first: ParticipantState): Screen {
@@ -67,7 +67,7 @@ export function trial_screen({ words }: Desk, first: ParticipantState): Screen {
   const root = make("div", "trial", heading, task, how);
   let frame: HTMLIFrameElement | null = null;
   let shown: string | null = null;
-  const update = ({ link }: ParticipantState): void => {
+  const update = ({ link, language }: ParticipantState): void => {
     const wanted = link ?? null;
     write(how, wanted === null ? words.device : words.mouse);
     root.dataset.hand = wanted === null ? "device" : "mouse";
@@ -79,7 +79,7 @@ export function trial_screen({ words }: Desk, first: ParticipantState): Screen {
     frame = make("iframe");
     frame.title = words.picture;
     frame.allow = "xr-spatial-tracking"; // a headset
-    frame.src = hand_link(wanted);
+    frame.src = hand_link(wanted, language);
     root.append(frame);
   };
   const stop = (event: KeyboardEvent): void => {

@@ -80,6 +80,20 @@ describe("Drag", () => {
     expect(drag.is_dragging).toBe(true);
   });
 
+  it("turns the handle by the wheel while it is dragged, and moves it on", () => {
+    const wheel = (deltaY: number): void => void area.dispatchEvent(Object.assign(new Event("wheel"), { deltaY }));
+    wheel(-100); // nothing is held
+    expect(sent).toHaveLength(0);
+    point("pointerdown", 1, 100, 100);
+    for (let i = 0; i < 3; i++) wheel(-100);
+    const [, , z, w] = sent.at(-1)!.quaternion_B_H!;
+    expect(2 * Math.atan2(z, w)).toBeCloseTo(3 * 0.064); // to the left, seen from above
+    point("pointermove", 1, 100, 60);
+    expect(drag.target_m![1]).toBeGreaterThan(0.1);
+    wheel(100);
+    expect(2 * Math.atan2(sent.at(-1)!.quaternion_B_H![2], sent.at(-1)!.quaternion_B_H![3])).toBeCloseTo(2 * 0.064);
+  });
+
   it("drops a held key when the page loses the keyboard", () => {
     drag.key_mode = "turn";
     point("pointerdown", 1, 100, 100);

@@ -91,7 +91,7 @@ describe("texts of the participant's page", () => {
   });
 
   it("show the handle alone", () => {
-    expect(hand_link("http://127.0.0.1:80/#token=ab")).toBe("http://127.0.0.1:80/#token=ab&show=hand");
+    expect(hand_link("http://127.0.0.1:80/#token=ab", "de")).toBe("http://127.0.0.1:80/#token=ab&show=hand&language=de");
   });
 });
 
