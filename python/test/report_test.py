@@ -85,7 +85,7 @@ def run_of(names, kind="any", note=""):
               for letter, time_s in (("a", 2.0), ("b", 2.1), ("c", 6.0))]
     facts = {"kind": kind, "note": note, "events": events, "locked": [], "manipulator": joints,
              "virtual": joints[:1], "gantry": [], "twin": joints, "has_elbow": True, "poses": [],
-             "checkpoints": [], "box": {"x": [-2, 2], "y": [-2, 2]}}
+             "checkpoints": [], "person": None, "box": {"x": [-2, 2], "y": [-2, 2]}}
     return figures.Run(facts, columns)
 
 
