@@ -60,16 +60,20 @@ class Refused(RuntimeError):
 MOUSE = ("--set", "scenario.person=mouse")  # and not --user, which is without the task's events
 
 
+def without_duration(words: list[str]) -> list[str]:
+    """The words of a run without how long its script plays."""
+    at = words.index("--duration") if "--duration" in words else len(words)
+    return words[:at] + words[at + 2:]
+
+
 def expected_events(study: Study, program: Program, hand: Hand) -> dict[str, list[str]]:
     """The events that each condition's task has, by a run of some cycles on the simulated device. Raises TrialError."""
     found = {}
     for condition in study.conditions:
-        words = study.arguments(condition)
+        words = without_duration(study.arguments(condition))
         if hand.is_real and "--user" in words:
             raise trials.TrialError(f"condition {condition}: 'user' is a simulated person's; leave it out, or --rehearse")
         words += MOUSE if hand.kind == "mouse" else ()
-        if "--duration" in words:
-            del words[(at := words.index("--duration")):at + 2]
         command = [program.file, "run", *words, "--fast", "--no-viewer", "--no-recording",
                    "--flight-recorder", "off", "--duration", "0.01", *SUMMARY]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -184,8 +188,8 @@ class Conductor:
     def participant_state(self) -> dict:
         session = self._session
         state = {"kind": "state", "title": self.study.title, "code": session.code if session else None,
-                 "draft": f"{self.study.digest()} {self.hand.kind}", "languages": self.languages, "language": self.language, "position": None, "progress": 0.0,
-                 "screen": "waiting"}
+                 "draft": f"{self.study.digest()} {self.hand.kind}", "languages": self.languages,
+                 "language": self.language, "position": None, "progress": 0.0, "screen": "waiting"}
         if session is None:
             return state
         step, position = session.step, session.position
@@ -395,8 +399,7 @@ class Conductor:
         if self.hand.kind == "mouse":
             options += MOUSE
         if self.hand.is_real:
-            if "--duration" in words:  # of the script
-                del words[(at := words.index("--duration")):at + 2]
+            words = without_duration(words)
             options += ["--duration", f"{self.study.longest_s:g}"]
         for origin in self._origins:
             options += ["--embedded-in", origin]
@@ -459,7 +462,7 @@ class Conductor:
         if step.kind != "trial":
             return
         recording = pathlib.Path(summary["recording"]) if summary and summary["recording"] else None
-        with contextlib.suppress(OSError):  # of a full disk, which has been told
+        with contextlib.suppress(OSError, FolderError):  # of a full disk, which has been told
             if recording is not None and recording.is_file():
                 self.folder.keep(recording, self._session.code, step, "recording.mcap")
             self.folder.put_aside(self._session.code, step, why)
