@@ -1,6 +1,6 @@
 // What is answered of a form, and its draft: kept for this tab until the answers are accepted.
 
-import type { Form, Item, Pair } from "./messages";
+import type { Form, Item, Pair, ParticipantState } from "./messages";
 
 export interface Draft {
   answers: Record<string, number | string>;
@@ -47,10 +47,15 @@ export function name_of_pair(form: Form, [a, b]: Pair): string {
   return pair_name(asked ?? [a, b]);
 }
 
+// Whose drafts they are: of a person in a study, so that a rehearsal's never come up in the real one.
+export function owner_of({ draft, code }: ParticipantState): string {
+  return `${draft} ${code ?? ""}`;
+}
+
 const PREFIX = "hapticgiant.draft.";
 
-function key_of(code: string, position: number, form: string): string {
-  return `${PREFIX}${code}.${position}.${form}`;
+function key_of(owner: string, position: number, form: string): string {
+  return `${PREFIX}${owner}.${position}.${form}`;
 }
 
 export class DraftStore {
@@ -58,13 +63,13 @@ export class DraftStore {
   readonly draft: Draft;
 
   constructor(
-    code: string,
+    owner: string,
     position: number,
     form: Form,
     private readonly storage: Storage = sessionStorage,
     random: () => number = Math.random,
   ) {
-    this.key = key_of(code, position, form.name);
+    this.key = key_of(owner, position, form.name);
     const kept = this.storage.getItem(this.key);
     this.draft = kept
       ? (JSON.parse(kept) as Draft)
@@ -81,10 +86,10 @@ export class DraftStore {
 }
 
 // Drafts of steps of this person that are over: their answers have been accepted.
-export function forget_other_drafts(code: string, position: number, storage: Storage = sessionStorage): void {
+export function forget_other_drafts(owner: string, position: number, storage: Storage = sessionStorage): void {
   const names = Array.from({ length: storage.length }, (_, i) => storage.key(i) ?? "");
   for (const name of names) {
-    if (!name.startsWith(`${PREFIX}${code}.`)) continue;
-    if (!name.startsWith(`${PREFIX}${code}.${position}.`)) storage.removeItem(name);
+    if (!name.startsWith(`${PREFIX}${owner}.`)) continue;
+    if (!name.startsWith(`${PREFIX}${owner}.${position}.`)) storage.removeItem(name);
   }
 }

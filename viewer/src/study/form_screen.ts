@@ -1,7 +1,7 @@
 // A form: its items on one screen, then its pairs one by one, then the answers are sent.
 
 import { make, make_button, write } from "../page";
-import { all_answers, DraftStore, missing_items, name_of_pair } from "./answers";
+import { all_answers, DraftStore, missing_items, name_of_pair, owner_of } from "./answers";
 import { item_view, name_and_question, type ItemView } from "./items";
 import { show_markdown } from "./markdown";
 import type { Form, Json, Pair, ParticipantState } from "./messages";
@@ -15,7 +15,7 @@ export interface FormDesk extends Desk {
 export function form_screen(desk: FormDesk, state: ParticipantState): Screen {
   const form = state.form!;
   const position = state.position ?? 0;
-  const store = new DraftStore(`${state.draft} ${state.code ?? ""}`, position, form);
+  const store = new DraftStore(owner_of(state), position, form);
   const root = make("div", "form");
   const screen: Screen = { root, heading: make("h1") };
   const show = (is_first: boolean): void => {

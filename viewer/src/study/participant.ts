@@ -3,7 +3,7 @@
 import { token, watch_token } from "../data/token";
 import { element, make, make_button, write } from "../page";
 import { start_theme } from "../theme";
-import { forget_other_drafts } from "./answers";
+import { forget_other_drafts, owner_of } from "./answers";
 import { form_screen } from "./form_screen";
 import type { ParticipantState } from "./messages";
 import {
@@ -67,7 +67,7 @@ class ParticipantPage {
       state.position !== this.state.position ||
       state.code !== this.state.code;
     this.state = state;
-    if (state.code !== null && state.position !== null) forget_other_drafts(state.code, state.position);
+    if (state.code !== null && state.position !== null) forget_other_drafts(owner_of(state), state.position);
     document.documentElement.lang = state.language;
     document.title = state.title || "Study";
     write(element("title"), state.title);
@@ -112,8 +112,7 @@ class ParticipantPage {
     if (state.screen === "end") return end_screen(desk);
     if (state.screen === "form" && state.form) {
       const { position } = state;
-      const submit: StudyLink["send"] = (_, answers) => this.link.send("answers", { position, ...answers });
-      return form_screen({ ...desk, submit: (answers) => submit("answers", answers) }, state);
+      return form_screen({ ...desk, submit: (answers) => this.link.send("answers", { position, ...answers }) }, state);
     }
     return waiting_screen(desk, state.code === null ? this.language_group() : null);
   }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { all_answers, drawn, DraftStore, forget_other_drafts, missing_items, name_of_pair } from "../../src/study/answers";
+import { all_answers, drawn, DraftStore, forget_other_drafts, missing_items, name_of_pair, owner_of } from "../../src/study/answers";
 import type { Form, Item, Pair } from "../../src/study/messages";
 
 const item = (name: string, kind: Item["kind"]): Item => ({ name, kind, text: name, low: 0, high: 100, step: 5, ends: [] });
@@ -95,6 +95,17 @@ describe("drafts", () => {
     for (const [code, position, name] of [["P02", 3, "tlx"], ["P01", 4, "tlx"], ["P01", 3, "sus"]] as const) {
       expect(new DraftStore(code, position, { ...FORM, name }, storage).draft.answers).toEqual({});
     }
+  });
+
+  it("of a rehearsal are not those of the study with the same code", () => {
+    const storage = new Kept();
+    const [rehearsed, real] = ["abc script", "abc device"].map((draft) => owner_of({ draft, code: "P01" } as never));
+    const store = new DraftStore(rehearsed!, 3, FORM, storage);
+    store.draft.answers.mental = 5;
+    store.keep();
+    expect(new DraftStore(real!, 3, FORM, storage).draft.answers).toEqual({});
+    forget_other_drafts(rehearsed!, 4, storage);
+    expect(storage.length).toBe(0);
   });
 
   it("of steps that are over are forgotten, those of others are not", () => {
