@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import dataclasses
-import json
 import math
 import pathlib
 import subprocess
@@ -21,7 +20,7 @@ from hapticgiant.study.folder import RUNNING, Folder, FolderError
 from hapticgiant.study.planning import Step, plan
 from hapticgiant.study.session import PLAYED, Session
 from hapticgiant.study.trial_run import TrialRun
-from hapticgiant.sweep.program import SUMMARY, Program
+from hapticgiant.sweep.program import SUMMARY, Outcome, Program
 
 AT_ONCE = ("stop", "end", "abort")
 LONGEST_NOTE = 2000  # characters
@@ -77,10 +76,10 @@ def expected_events(study: Study, program: Program, hand: Hand) -> dict[str, lis
         command = [program.file, "run", *words, "--fast", "--no-viewer", "--no-recording",
                    "--flight-recorder", "off", "--duration", "0.01", *SUMMARY]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
-        begin = done.stdout.rfind("\n{\n")
-        if begin < 0:
-            raise trials.TrialError(f"condition {condition}: {done.stderr.strip() or f'exit code {done.returncode}'}")
-        summary = json.loads(done.stdout[begin + 1:])
+        outcome = Outcome(done.returncode, done.stdout, done.stderr)
+        summary = outcome.summary()
+        if summary is None:
+            raise trials.TrialError(f"condition {condition}: {outcome.why()}")
         found[condition] = [*(event["name"] for event in summary["events"]), *summary["missing_events"]]
     return found
 
@@ -371,7 +370,7 @@ class Conductor:
     def _enter(self):
         """The present step begins."""
         step = self._session.step
-        self._progress[self._session.code] = self._session.progress()
+        self._progress[self._session.code] = self.folder.progress(self._session.participant)
         self._phase = "ready"
         if step is None:
             self._mark(f"{self._session.code} complete")

@@ -41,6 +41,7 @@ FORMAT = 1
 DESCRIPTION = "dataset_description.json"
 TABLES = ("participants", "trials", "answers")
 RUNNING = ".running"
+WITH_FILES = ("trial", "form")  # kinds of steps that leave a file
 LOCK = ".lock"
 ASIDE = "aside"
 TRIAL = "_trial.json"
@@ -253,12 +254,13 @@ class Folder:
         _flush(target.parent)
         return target
 
-    def tidy(self, code: str, why: str = "the program ended before the trial was measured") -> None:
-        """Puts aside what is there of a trial that has no file of its own, after a crash or a failure."""
-        for step in steps(self.study, next(each for each in plan(self.study) if each.code == code)):
+    def tidy(self, participant: Participant) -> None:
+        """Puts aside what a crash has left of a trial that has no file of its own."""
+        code = participant.code
+        for step in steps(self.study, participant):
             stem = self.stem(code, step)
             if step.kind == "trial" and not self.file_of(code, step).exists() and any(stem.parent.glob(f"{stem.name}_*")):
-                self.put_aside(code, step, why)
+                self.put_aside(code, step, "the program ended before the trial was measured")
 
     def note(self, code: str, text: str, step: int) -> None:
         """Keeps a remark of the operator."""
@@ -285,7 +287,7 @@ class Folder:
     def progress(self, participant: Participant) -> tuple[int, int]:
         """How many trials and forms of a participant are there, and how many there are to be."""
         files = [self.file_of(participant.code, step) for step in steps(self.study, participant)
-                 if step.kind in ("trial", "form")]
+                 if step.kind in WITH_FILES]
         return sum(file.exists() for file in files), len(files)
 
     def forget(self, code: str) -> int:

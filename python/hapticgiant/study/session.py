@@ -7,10 +7,9 @@ runs, so that a session that was interrupted goes on at the first step without a
 from __future__ import annotations
 
 from hapticgiant.study.description import Study
-from hapticgiant.study.folder import Folder
+from hapticgiant.study.folder import WITH_FILES, Folder
 from hapticgiant.study.planning import Participant, Step, steps
 
-WITH_FILES = ("trial", "form")
 PLAYED = ("trial", "practice")
 
 
@@ -18,10 +17,10 @@ class Session:
     """The steps of one participant, and how far they are."""
 
     def __init__(self, study: Study, folder: Folder, participant: Participant):
-        self.code = participant.code
+        self.participant, self.code = participant, participant.code
         self.steps = steps(study, participant)
         self._folder = folder
-        folder.tidy(self.code)
+        folder.tidy(participant)
         self._passed: set[int] = set()
         first = next((i for i, step in enumerate(self.steps) if step.kind in WITH_FILES and not self.is_done(i)),
                      len(self.steps))
@@ -44,12 +43,8 @@ class Session:
 
     @property
     def step(self) -> Step | None:
-        return None if self.position is None else self.steps[self.position]
-
-    def progress(self) -> tuple[int, int]:
-        """How many steps with a file are done, and how many there are."""
-        files = [i for i, step in enumerate(self.steps) if step.kind in WITH_FILES]
-        return sum(map(self.is_done, files)), len(files)
+        position = self.position
+        return None if position is None else self.steps[position]
 
     def pass_by(self, position: int) -> None:
         """A step without a file is over."""

@@ -57,11 +57,11 @@ class TrialRun:
     """A run from its start to its end."""
 
     def __init__(self, command: list[str], expected: list[str], pause_s: float | None, changed, has_way: bool = False):
-        """command: without --summary. has_way: the device first moves to the start. expected: names of the task's events. pause_s: how long after the last of them the
-        run ends; None: it does not end by them. changed(): called when more than a number has changed."""
+        """command: without --summary. expected: names of the task's events. pause_s: how long after the last of them the
+        run ends; None: it does not end by them. changed(): called when more than a number has changed. has_way: the
+        device first moves to the start."""
         self.shown = Shown()
         self._command = command
-        self._expected = expected
         self._missing = set(expected)
         self._pause_s = pause_s
         self._changed = changed
