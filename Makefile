@@ -71,7 +71,7 @@ BUILD := build/$(PRESET)
 RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
   head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering surfaces prepositioning tracking safety \
-  collision passivity controller person simulator faults udp franka identification analysis doctor messages \
+  collision passivity controller person simulator faults udp franka identify analysis doctor messages \
   recording live lab_streaming fuzz_replay)
 TSAN_TESTS := $(addsuffix _test, core runtime recording lab_streaming viewer_server)
 RTSAN_TESTS := $(addsuffix _test, controller runtime)

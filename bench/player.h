@@ -2,11 +2,11 @@
 #pragma once
 
 #include "hg/config/simulation/scenario.h"
-#include "hg/studies/player.h"
+#include "hg/experiments/player.h"
 
 namespace hg::bench {
 
-using studies::Player;
+using experiments::Player;
 
 /// The scenario with the law and the bounds put into its device.
 config::Scenario with_law(config::Scenario scenario, rendering::Law law, rendering::Bounds bounds);

@@ -18,8 +18,8 @@ import check_modules
 
 WIDTH, LEFT, MARGIN, ROW, BOX = 1040, 210, 24, 92, 34
 LETTER = 7.6  # width of a letter, more or less
-PROGRAMS = {"bench": ["studies"], "python": ["scenario"],
-            "apps": ["bench", "page", "studies/tuning", "scenario/remote", "recording", "lab_streaming",
+PROGRAMS = {"bench": ["experiments"], "python": ["scenario"],
+            "apps": ["bench", "page", "tune", "check", "new", "doctor", "commission", "identify", "scenario/remote", "recording", "lab_streaming",
                      "device/ethercat"]}
 
 

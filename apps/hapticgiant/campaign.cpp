@@ -23,8 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-studies::Part part_of(const std::string& text) {
-  studies::Part part;
+experiments::Part part_of(const std::string& text) {
+  experiments::Part part;
   const std::size_t slash = text.find('/');
   const auto read = [](std::string_view digits, std::size_t& value) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -87,7 +87,7 @@ void check_sweep_program() {
 
 bool play_campaign(const Campaign& campaign, const CampaignOptions& options) {
   if (!options.part.empty()) {
-    studies::Runs runs(part_of(options.part));
+    experiments::Runs runs(part_of(options.part));
     campaign.play(runs);
     json results = json::object();
     for (const auto& [number, result] : runs.results()) results[std::to_string(number)] = result;
@@ -117,7 +117,7 @@ bool play_campaign(const Campaign& campaign, const CampaignOptions& options) {
     throw SetupError(
         fmt::format("{}: not all runs have a result\n{}", campaign.command.front(), ended.said));
   }
-  studies::Runs runs(results_in(fs::path(study).replace_extension(".sweep")));
+  experiments::Runs runs(results_in(fs::path(study).replace_extension(".sweep")));
   campaign.play(runs);
   return false;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hg/config/simulation/scenario.h"
-#include "hg/studies/runs.h"
+#include "hg/experiments/runs.h"
 
 namespace CLI {
 class App;
@@ -27,8 +27,8 @@ struct Campaign {
   std::vector<std::string> command;         ///< words before --part
   std::size_t parts = 1;                    ///< shares
   std::vector<config::Scenario> scenarios;  ///< a sweep is not continued with others
-  /// Asks for the runs, see studies::Runs.
-  std::function<void(studies::Runs&)> play;
+  /// Asks for the runs, see experiments::Runs.
+  std::function<void(experiments::Runs&)> play;
 };
 
 /// With --part: plays that share and prints its results for `sweep`; returns true, and the command

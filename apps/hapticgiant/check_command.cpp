@@ -7,7 +7,7 @@
 #include "apps/hapticgiant/check_report.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/report.h"
-#include "hg/commissioning/checks/capability_map.h"
+#include "hg/check/capability_map.h"
 #include "hg/core/error.h"
 #include "hg/core/scratch_folder.h"
 
@@ -16,7 +16,7 @@ namespace hg::apps {
 int run_check(const CheckArguments& arguments) {
   check_writable(arguments.json, kJson);
   check_writable(arguments.map, kSvg);
-  const checks::CheckReport report = checks::check_files(arguments.files);
+  const check::CheckReport report = check::check_files(arguments.files);
   print(report);
   if (!arguments.json.empty()) write_output(arguments.json, to_json(report));
   if (!arguments.map.empty()) {
@@ -25,9 +25,9 @@ int run_check(const CheckArguments& arguments) {
     const ScratchFolder scratch;
     write_output(
         arguments.map,
-        report_text(scratch.path(), checks::capability_map(*report.first_device), "map.svg"));
+        report_text(scratch.path(), check::capability_map(*report.first_device), "map.svg"));
   }
-  return count(report, checks::Severity::kFault) > 0 ? 2 : 0;
+  return count(report, check::Severity::kFault) > 0 ? 2 : 0;
 }
 
 void add_check(CLI::App& app, int& exit_code) {

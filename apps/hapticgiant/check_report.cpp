@@ -11,10 +11,10 @@
 namespace hg::apps {
 namespace {
 
-using checks::CheckedFile;
-using checks::CheckReport;
-using checks::Finding;
-using checks::Severity;
+using check::CheckedFile;
+using check::CheckReport;
+using check::Finding;
+using check::Severity;
 
 std::string counted(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -28,7 +28,7 @@ int count(const CheckReport& report, Severity severity) {
 
 void print(const CheckReport& report) {
   for (const CheckedFile& file : report.files) print_out("{}: {}\n", file.name, file.kind);
-  for (const checks::Datasheet& sheet : report.datasheets) print_datasheet(sheet);
+  for (const check::Datasheet& sheet : report.datasheets) print_datasheet(sheet);
   if (!report.findings.empty()) print_out("\n");
   for (const Finding& finding : report.findings) {
     print_out("{}:{}:{}: {}: {}{}{}\n", finding.file, finding.place.line, finding.place.column,
@@ -63,7 +63,7 @@ std::string to_json(const CheckReport& report) {
   json["warnings"] = count(report, Severity::kWarning);
   json["notes"] = count(report, Severity::kNote);
   json["datasheets"] = nlohmann::json::array();
-  for (const checks::Datasheet& sheet : report.datasheets) {
+  for (const check::Datasheet& sheet : report.datasheets) {
     json["datasheets"].push_back(datasheet_json(sheet));
   }
   return json.dump(2) + "\n";

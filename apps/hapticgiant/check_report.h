@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "hg/commissioning/checks/file_check.h"
+#include "hg/check/file_check.h"
 
 namespace hg::apps {
 
-int count(const checks::CheckReport& report, checks::Severity severity);
+int count(const check::CheckReport& report, check::Severity severity);
 
-void print(const checks::CheckReport& report);
-std::string to_json(const checks::CheckReport& report);
+void print(const check::CheckReport& report);
+std::string to_json(const check::CheckReport& report);
 
 }  // namespace hg::apps

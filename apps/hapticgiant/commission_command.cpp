@@ -12,14 +12,14 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/terminal_crew.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/commissioning/bring_up/bring_up.h"
-#include "hg/commissioning/bring_up/simulated_crew.h"
-#include "hg/commissioning/start_test/machine_memory.h"
-#include "hg/commissioning/start_test/memory.h"
+#include "hg/commission/bring_up.h"
+#include "hg/commission/simulated_crew.h"
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/scenario/remote/ethercat_setup.h"
 #include "hg/scenario/remote/franka_setup.h"
+#include "hg/start_test/machine_memory.h"
+#include "hg/start_test/memory.h"
 
 namespace hg::apps {
 namespace {
@@ -43,7 +43,7 @@ int commission(const CommissionArguments& options) {
       start_test::commission_file(options.machine.recordings, scenario.device,
                                   machine.is_simulated ? "" : options.machine.device_address);
   check_writable(file);
-  const auto keep = [&](const std::vector<bring_up::Item>& items) {
+  const auto keep = [&](const std::vector<commission::Item>& items) {
     write_output(file, start_test::to_json({.device = scenario.device.name,
                                             .address = options.machine.device_address,
                                             .version = kVersion,
@@ -60,9 +60,9 @@ int commission(const CommissionArguments& options) {
   const bool is_alone =
       machine.remote == nullptr ||
       (machine.is_simulated && (options.machine.is_fast || options.has_simulated_person));
-  std::unique_ptr<bring_up::Crew> crew;
+  std::unique_ptr<commission::Crew> crew;
   if (is_alone) {
-    crew = std::make_unique<bring_up::SimulatedCrew>(interrupted, print_step);
+    crew = std::make_unique<commission::SimulatedCrew>(interrupted, print_step);
   } else {
     crew = std::make_unique<TerminalCrew>(interrupted, print_step);
   }
@@ -73,20 +73,21 @@ int commission(const CommissionArguments& options) {
     print_out(
         "keys        space bar, held: the machine may move; y, n: answers; Ctrl-C: drives off\n");
   }
-  bring_up::Rig rig(scenario.device, *machine.device, *crew);
+  commission::Rig rig(scenario.device, *machine.device, *crew);
   if (machine.remote != nullptr && !options.machine.is_fast) {
     runtime::become_real_time({.priority = options.machine.priority});
   }
-  bring_up::Options how = {.falls_silent = machine.remote != nullptr && !options.machine.is_fast &&
-                                           !scenario::is_ethercat(options.machine.device_address)};
+  commission::Options how = {.falls_silent =
+                                 machine.remote != nullptr && !options.machine.is_fast &&
+                                 !scenario::is_ethercat(options.machine.device_address)};
   if (machine.remote != nullptr) how.filled_in = [&] { return machine.remote->counts().held; };
-  const std::vector<bring_up::Item> items = bring_up::run(rig, how);
+  const std::vector<commission::Item> items = commission::run(rig, how);
   if (machine.remote != nullptr) machine.remote->close(FaultCode::kNone);
 
   const bool has_passed = start_test::has_passed(items);
   keep(items);
   const auto count = [&](Outcome outcome) {
-    return std::ranges::count(items, outcome, &bring_up::Item::outcome);
+    return std::ranges::count(items, outcome, &commission::Item::outcome);
   };
   print_out(fmt::format("\n  commission   {}: {} passed, {} failed, {} not tested\n",
                         has_passed ? "PASSED" : "FAILED", count(Outcome::kPassed),

@@ -14,8 +14,8 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/analysis/timing.h"
-#include "hg/commissioning/doctor/assessment.h"
-#include "hg/commissioning/doctor/jitter.h"
+#include "hg/doctor/assessment.h"
+#include "hg/doctor/jitter.h"
 
 namespace hg::apps {
 namespace {

@@ -27,19 +27,19 @@
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/scratch_folder.h"
+#include "hg/experiments/changes.h"
+#include "hg/experiments/contact.h"
+#include "hg/experiments/haptify/benchmark.h"
+#include "hg/experiments/haptify/free_space_variants.h"
+#include "hg/experiments/haptify/hand_figures.h"
+#include "hg/experiments/haptify/impedance.h"
+#include "hg/experiments/inertial.h"
+#include "hg/experiments/moved_scenario.h"
+#include "hg/experiments/place.h"
+#include "hg/experiments/seed_ranges.h"
+#include "hg/experiments/stability_map.h"
+#include "hg/experiments/workers.h"
 #include "hg/scenario/assembly.h"
-#include "hg/studies/changes.h"
-#include "hg/studies/contact.h"
-#include "hg/studies/haptify/benchmark.h"
-#include "hg/studies/haptify/free_space_variants.h"
-#include "hg/studies/haptify/hand_figures.h"
-#include "hg/studies/haptify/impedance.h"
-#include "hg/studies/inertial.h"
-#include "hg/studies/moved_scenario.h"
-#include "hg/studies/place.h"
-#include "hg/studies/seed_ranges.h"
-#include "hg/studies/stability_map.h"
-#include "hg/studies/workers.h"
 
 namespace hg::apps {
 namespace {
@@ -116,7 +116,7 @@ std::vector<NamedScenario> scripted_scenarios(std::vector<std::string> given,
                                               const std::vector<std::string>& shipped) {
   const bool has_own = !world.device.empty() || !world.twin.empty();
   if (given.empty() && has_own) {
-    const config::Scenario moved = studies::moved_scenario(world);
+    const config::Scenario moved = experiments::moved_scenario(world);
     return {{moved.title, moved}};
   }
   if (given.empty()) given = shipped;
@@ -138,7 +138,7 @@ void begin(const ExperimentArguments& arguments, const std::string& what) {
 
 // Says which device is measured and where, if it is not the reference device.
 void tell_place(const config::Scenario& scenario) {
-  const std::string place = studies::to_text(studies::place_of(scenario.device));
+  const std::string place = experiments::to_text(experiments::place_of(scenario.device));
   if (!place.empty()) print_out(fmt::format("{}. {}\n\n", scenario.device.name, place));
 }
 
@@ -171,12 +171,12 @@ int report(nlohmann::ordered_json results, const std::string& kind, const std::s
 nlohmann::ordered_json felt_with_units(const config::Scenario& walk) {
   config::Scenario with_units = walk;
   estimation::InertialUnitsConfig& units = with_units.device.estimation.units;
-  units.frames = studies::frames_of(walk.device, studies::unit_sets(walk.device)[0].links);
-  studies::learn_mounting(with_units);
+  units.frames = experiments::frames_of(walk.device, experiments::unit_sets(walk.device)[0].links);
+  experiments::learn_mounting(with_units);
   units.feeds_back = true;
   const std::array<const config::Scenario*, 2> scenarios = {&walk, &with_units};
   std::array<haptify::HandFigures, 2> felt;
-  studies::do_all(
+  experiments::do_all(
       scenarios.size(),
       [&](std::size_t i) { felt[i] = haptify::measure_hand_figures(*scenarios[i]); },
       progress_of("hands"));
@@ -197,7 +197,7 @@ int experiment_free_space(const ExperimentArguments& arguments) {
 }
 
 int experiment_stability_map(const ExperimentArguments& arguments) {
-  const studies::StabilityConfig config;
+  const experiments::StabilityConfig config;
   const bool is_part = !arguments.played.part.empty();
   if (!is_part) {
     check_output(arguments.json);
@@ -215,13 +215,13 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
   hand_on("--device", arguments.device);
   hand_on("--twin", arguments.twin);
   hand_on("--simulation", arguments.simulation);
-  studies::StabilityMap map;
-  const auto play = [&](studies::Runs& runs) {
-    map = studies::make_stability_map(scenario, config, runs);
+  experiments::StabilityMap map;
+  const auto play = [&](experiments::Runs& runs) {
+    map = experiments::make_stability_map(scenario, config, runs);
   };
-  const std::size_t rows = studies::rows_of(config);
+  const std::size_t rows = experiments::rows_of(config);
   if (play_campaign({words, rows, {scenario}, play}, arguments.played)) return 0;
-  return report(studies::to_json(map), "stability-map", arguments.json, "", "map.svg",
+  return report(experiments::to_json(map), "stability-map", arguments.json, "", "map.svg",
                 arguments.svg);
 }
 
@@ -233,13 +233,13 @@ int experiment_impedance(const ExperimentArguments& arguments) {
                                config.response.force));
   const config::Scenario scenario = walk_scenario(arguments);
   tell_place(scenario);
-  const studies::FreeTwin twin = studies::free_twin_of(scenario);
+  const experiments::FreeTwin twin = experiments::free_twin_of(scenario);
   const auto runs = haptify::measure_impedance(scenario, config, kSeed, progress_of("pushes"));
   return report(haptify::to_json(runs, config, twin), "impedance", arguments.json);
 }
 
 int experiment_contact(const ContactArguments& arguments) {
-  studies::ContactConfig config;
+  experiments::ContactConfig config;
   config.seeds = arguments.seeds;
   const config::Scenario scenario = walk_scenario(arguments.device);
   if (!scenario.device.model.has_closed_form) {
@@ -251,9 +251,9 @@ int experiment_contact(const ContactArguments& arguments) {
   }
   check_output(arguments.json);
   print_out(fmt::format("HapticGiant {}  Contact: the arm hits a person in its way\n\n", kVersion));
-  const studies::ContactMeasures measures =
-      studies::measure_contact(scenario, config, progress_of("cases"));
-  return report(studies::to_json(measures), "contact", arguments.json, arguments.docs);
+  const experiments::ContactMeasures measures =
+      experiments::measure_contact(scenario, config, progress_of("cases"));
+  return report(experiments::to_json(measures), "contact", arguments.json, arguments.docs);
 }
 
 int experiment_inertial(const InertialArguments& arguments) {
@@ -269,9 +269,9 @@ int experiment_inertial(const InertialArguments& arguments) {
   print_out(fmt::format(
       "HapticGiant {}  Inertial units on links: rms errors, median of seeds 1 to {}\n\n", kVersion,
       arguments.seeds));
-  const std::vector<studies::InertialRun> runs =
-      studies::measure_inertial(scenarios, names, arguments.seeds, progress_of("runs"));
-  nlohmann::ordered_json results = studies::to_json(runs);
+  const std::vector<experiments::InertialRun> runs =
+      experiments::measure_inertial(scenarios, names, arguments.seeds, progress_of("runs"));
+  nlohmann::ordered_json results = experiments::to_json(runs);
   if (arguments.feels) {
     results["felt"] = felt_with_units(walk_scenario(arguments.device, arguments.simulation));
   }
@@ -279,7 +279,7 @@ int experiment_inertial(const InertialArguments& arguments) {
 }
 
 int experiment_seeds(const SeedsArguments& arguments) {
-  std::vector<studies::Trial> trials;
+  std::vector<experiments::Trial> trials;
   std::vector<std::vector<NamedScenario>> by_hand;
   std::vector<std::string> hands;
   for (const std::string& hand : arguments.hands) {
@@ -299,9 +299,9 @@ int experiment_seeds(const SeedsArguments& arguments) {
   check_writable(arguments.markdown, kMarkdown);
   print_out(fmt::format("HapticGiant {}  seeds {} to {}\n\n", kVersion, arguments.first,
                         arguments.first + static_cast<std::uint64_t>(arguments.count) - 1));
-  const std::vector<studies::SeededRun> runs =
-      studies::play_seeds(trials, arguments.first, arguments.count, progress_of("runs"));
-  return report(studies::to_json(trials, runs), "seeds", arguments.json, "", "seeds.md",
+  const std::vector<experiments::SeededRun> runs =
+      experiments::play_seeds(trials, arguments.first, arguments.count, progress_of("runs"));
+  return report(experiments::to_json(trials, runs), "seeds", arguments.json, "", "seeds.md",
                 arguments.markdown);
 }
 

@@ -17,10 +17,10 @@
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/scratch_folder.h"
+#include "hg/experiments/moved_scenario.h"
+#include "hg/experiments/process_faults.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/options.h"
-#include "hg/studies/moved_scenario.h"
-#include "hg/studies/process_faults.h"
 
 namespace hg::apps {
 namespace {
@@ -35,10 +35,10 @@ void report(const FaultsArguments& arguments, const nlohmann::ordered_json& json
 }
 
 int process_faults(const FaultsArguments& arguments) {
-  const std::vector<studies::ProcessCase> cases = studies::play_process_faults(
+  const std::vector<experiments::ProcessCase> cases = experiments::play_process_faults(
       "/proc/self/exe", arguments.scenarios, arguments.repetitions, arguments.campaign.seed);
   report(arguments, to_json(cases));
-  return std::ranges::all_of(cases, &studies::ProcessCase::is_good) ? 0 : 1;
+  return std::ranges::all_of(cases, &experiments::ProcessCase::is_good) ? 0 : 1;
 }
 
 // The scenarios with their options.
@@ -52,7 +52,7 @@ Played scenarios_of(const FaultsArguments& arguments) {
   if (arguments.scenarios.empty()) {
     const scenario::ScenarioOptions options = {
         .scenario = "walk", .device = arguments.device, .twin = arguments.twin};
-    return {{options}, {studies::moved_scenario(options)}};
+    return {{options}, {experiments::moved_scenario(options)}};
   }
   for (const std::string& name : arguments.scenarios) {
     played.options.push_back(
@@ -63,7 +63,7 @@ Played scenarios_of(const FaultsArguments& arguments) {
 }
 
 void check_script(const config::Scenario& scenario, const std::string& name) {
-  const Interval times = studies::fault_times(scenario);
+  const Interval times = experiments::fault_times(scenario);
   if (times.lb <= times.ub) return;
   throw SetupError(name +
                    ": faults are played in scenarios with a script that continues for two seconds "
@@ -115,14 +115,14 @@ int faults(FaultsArguments arguments) {
     print_out(fmt::format("HapticGiant {}  {} injected faults, seed {}\n\n", kVersion,
                           arguments.campaign.cases, arguments.campaign.seed));
   }
-  studies::Campaign campaign;
-  const auto play = [&, &scenarios = scenarios](studies::Runs& runs) {
-    campaign = studies::run_campaign(scenarios, arguments.campaign, recordings, runs);
+  experiments::Campaign campaign;
+  const auto play = [&, &scenarios = scenarios](experiments::Runs& runs) {
+    campaign = experiments::run_campaign(scenarios, arguments.campaign, recordings, runs);
   };
   const std::size_t parts = 1 + (arguments.campaign.cases - 1) / kCasesOfAPart;
   if (play_campaign({command_of(arguments), parts, scenarios, play}, arguments.played)) return 0;
   report(arguments, to_json(campaign));
-  return studies::is_passed(campaign) ? 0 : 1;
+  return experiments::is_passed(campaign) ? 0 : 1;
 }
 
 void add_faults(CLI::App& app, int& exit_code) {

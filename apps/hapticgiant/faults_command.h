@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/hapticgiant/campaign.h"
-#include "hg/studies/fault_campaign.h"
+#include "hg/experiments/fault_campaign.h"
 
 namespace CLI {
 class App;
@@ -14,11 +14,11 @@ class App;
 namespace hg::apps {
 
 struct FaultsArguments {
-  /// Scenarios; empty: with a device or twin the one of studies::moved_scenario(), otherwise the
-  /// shipped ones
+  /// Scenarios; empty: with a device or twin the one of experiments::moved_scenario(), otherwise
+  /// the shipped ones
   std::vector<std::string> scenarios;
   std::string device, twin;  ///< files that replace those of the scenarios; empty = their own
-  studies::CampaignConfig campaign;
+  experiments::CampaignConfig campaign;
   CampaignOptions played;
   bool plays_processes = false;  ///< plays faults of the controller's process instead, in real time
   int repetitions = 1;           ///< repetitions of the process faults

@@ -15,8 +15,8 @@
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
+#include "hg/experiments/haptify/benchmark.h"
 #include "hg/scenario/options.h"
-#include "hg/studies/haptify/benchmark.h"
 
 namespace hg::apps {
 namespace {
@@ -95,13 +95,13 @@ int run_haptify(const HaptifyArguments& arguments) {
   if (arguments.only_goals) {
     const std::string light = arguments.twin.empty() ? "light" : arguments.twin;
     campaign.scenarios = {walk_with(arguments, ""), walk_with(arguments, light)};
-    campaign.play = [&](studies::Runs& runs) {
+    campaign.play = [&](experiments::Runs& runs) {
       measured = haptify::measure_goals(campaign.scenarios[0], campaign.scenarios[1],
                                         arguments.options, runs);
     };
   } else {
     campaign.scenarios = {walk_with(arguments, arguments.twin)};
-    campaign.play = [&](studies::Runs& runs) {
+    campaign.play = [&](experiments::Runs& runs) {
       measured = haptify::measure(campaign.scenarios[0], arguments.options, runs);
     };
   }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/hapticgiant/campaign.h"
-#include "hg/studies/haptify/benchmark.h"
+#include "hg/experiments/haptify/benchmark.h"
 
 namespace CLI {
 class App;

@@ -6,22 +6,22 @@
 
 #include "apps/hapticgiant/option_checks.h"
 #include "apps/hapticgiant/output.h"
-#include "hg/commissioning/identification/payload.h"
-#include "hg/commissioning/identification/static_poses.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/open_file.h"
+#include "hg/identify/payload.h"
+#include "hg/identify/static_poses.h"
 
 namespace hg::apps {
 namespace {
 
-using identification::PayloadEstimate;
-using identification::StaticPose;
+using identify::PayloadEstimate;
+using identify::StaticPose;
 
 std::vector<StaticPose> simulated_poses(const config::SimulatedDeviceConfig& device, int count) {
   std::vector<StaticPose> poses;
-  for (const VectorM& q_m : identification::static_postures(device, count)) {
-    poses.push_back(identification::measure_simulated(device, q_m));
+  for (const VectorM& q_m : identify::static_postures(device, count)) {
+    poses.push_back(identify::measure_simulated(device, q_m));
   }
   return poses;
 }
@@ -29,7 +29,7 @@ std::vector<StaticPose> simulated_poses(const config::SimulatedDeviceConfig& dev
 std::vector<StaticPose> poses_of(const std::vector<std::string>& files) {
   std::vector<StaticPose> poses;
   for (const std::string& file : files) {
-    for (const StaticPose& pose : identification::read_static_poses(file, read_file(file))) {
+    for (const StaticPose& pose : identify::read_static_poses(file, read_file(file))) {
       poses.push_back(pose);
     }
   }
@@ -96,7 +96,7 @@ int identify_payload(const IdentifyArguments& arguments) {
   print_out("{} poses {}\n\n", poses.size(),
             is_simulated ? "of the simulated " + device.name + ", handle not held"
                          : "from " + fmt::format("{}", fmt::join(arguments.files, ", ")));
-  const PayloadEstimate found = identification::identify_payload(poses);
+  const PayloadEstimate found = identify::identify_payload(poses);
   print_estimate(found);
   print_comparison(found, device.estimation.wrench.payload);
   if (!found.missing.empty()) {

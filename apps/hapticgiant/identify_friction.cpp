@@ -10,16 +10,16 @@
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "hg/commissioning/identification/recorded_friction.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
+#include "hg/identify/recorded_friction.h"
 
 namespace hg::apps {
 namespace {
 
-using identification::Figure;
-using identification::FrictionEstimate;
-using identification::JointFriction;
+using identify::Figure;
+using identify::FrictionEstimate;
+using identify::JointFriction;
 
 // One line of the table and of the device file.
 struct Line {
@@ -108,8 +108,8 @@ int identify_friction(const IdentifyRecordingArguments& arguments) {
   if (!arguments.device.empty()) {
     device = config::load_device(config::find_device(arguments.device, {}));
   }
-  const identification::RecordedFriction result =
-      identification::identify_recorded_friction(arguments.file, std::move(device));
+  const identify::RecordedFriction result =
+      identify::identify_recorded_friction(arguments.file, std::move(device));
   print_out(recording::to_text(result.losses));
   print_out("{}: {} joints, drives on for {:.1f} s\n", arguments.file, result.joints.size(),
             result.used_s);

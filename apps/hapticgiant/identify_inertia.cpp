@@ -10,18 +10,18 @@
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "hg/commissioning/identification/inertia.h"
+#include "hg/identify/inertia.h"
 
 namespace hg::apps {
 namespace {
 
-using identification::BaseFigure;
-using identification::Figure;
-using identification::InertiaEstimate;
-using identification::JointFit;
-using identification::kLinkFigures;
-using identification::LinkInertia;
-using identification::RecordedInertia;
+using identify::BaseFigure;
+using identify::Figure;
+using identify::InertiaEstimate;
+using identify::JointFit;
+using identify::kLinkFigures;
+using identify::LinkInertia;
+using identify::RecordedInertia;
 
 constexpr std::array<const char*, kLinkFigures> kNames = {
     "mass_kg",   "com_x_m",   "com_y_m",   "com_z_m",   "ixx_kg_m2",
@@ -119,7 +119,7 @@ nlohmann::ordered_json to_json(const InertiaEstimate& found) {
 int identify_inertia(const IdentifyRecordingArguments& arguments) {
   check_writable(arguments.json, kJson);
   const RecordedInertia result =
-      identification::identify_recorded_inertia(arguments.file, given_device(arguments));
+      identify::identify_recorded_inertia(arguments.file, given_device(arguments));
   const InertiaEstimate& found = result.found;
   print_out(recording::to_text(result.losses));
   print_out("{}: drives on for {:.1f} s; +- is the 95 % interval\n", arguments.file, result.used_s);

@@ -8,14 +8,14 @@
 #include "apps/hapticgiant/identify_command.h"
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "hg/commissioning/identification/recorded_elasticity.h"
+#include "hg/identify/recorded_elasticity.h"
 
 namespace hg::apps {
 namespace {
 
-using identification::Figure;
-using identification::IdentifiedJoint;
-using identification::RecordedElasticity;
+using identify::Figure;
+using identify::IdentifiedJoint;
+using identify::RecordedElasticity;
 
 std::string number(double value) { return fmt::format("{:.3g}", value); }
 
@@ -136,7 +136,7 @@ bool is_anything_found(const RecordedElasticity& result) {
 int identify_joints(const IdentifyRecordingArguments& arguments) {
   check_writable(arguments.json, kJson);
   const RecordedElasticity result =
-      identification::identify_recorded_elasticity(arguments.file, given_device(arguments));
+      identify::identify_recorded_elasticity(arguments.file, given_device(arguments));
   print_out(recording::to_text(result.losses));
   print_out("{}: {} joints, drives on for {:.1f} s; +- is the 95 % interval\n", arguments.file,
             result.joints.size(), result.used_s);

@@ -16,13 +16,13 @@
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
-#include "hg/commissioning/checks/way.h"
-#include "hg/commissioning/generator/gripper.h"
-#include "hg/commissioning/generator/scaffold.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/model/urdf.h"
+#include "hg/new/gripper.h"
+#include "hg/new/scaffold.h"
+#include "hg/workspace/way.h"
 
 namespace hg::apps {
 namespace {
@@ -46,16 +46,16 @@ fs::path output_of(const NewArguments& arguments, const char* kind) {
   return output;
 }
 
-generator::Drives drives_named(const std::string& name) {
-  if (name == "torque") return generator::Drives::kTorque;
-  return name == "ideal" ? generator::Drives::kIdeal : generator::Drives::kPosition;
+new_files::Drives drives_named(const std::string& name) {
+  if (name == "torque") return new_files::Drives::kTorque;
+  return name == "ideal" ? new_files::Drives::kIdeal : new_files::Drives::kPosition;
 }
 
 // The part as asked for; the whole of a robot is taken without its gripper, which is told.
-generator::ChainPart device_part(const NewArguments& arguments) {
-  generator::ChainPart part = arguments.part;
+new_files::ChainPart device_part(const NewArguments& arguments) {
+  new_files::ChainPart part = arguments.part;
   if (!part.root_link.empty() || !part.tip_link.empty()) return part;
-  const auto gripper = generator::find_gripper(model::read_urdf_file(part.urdf));
+  const auto gripper = new_files::find_gripper(model::read_urdf_file(part.urdf));
   if (!gripper) return part;
   part.tip_link = gripper->link;
   print_out(
@@ -69,16 +69,16 @@ generator::ChainPart device_part(const NewArguments& arguments) {
 int new_device(const NewArguments& arguments) {
   const fs::path output = output_of(arguments, "device");
   const fs::path simulation = output.parent_path() / (output.stem().string() + "_simulation.yaml");
-  const generator::Drives drives = drives_named(arguments.drives);
-  if (drives != generator::Drives::kIdeal) check_new(arguments, simulation);
-  const generator::DeviceFiles files =
-      generator::draft_device(device_part(arguments), output.parent_path(), drives,
+  const new_files::Drives drives = drives_named(arguments.drives);
+  if (drives != new_files::Drives::kIdeal) check_new(arguments, simulation);
+  const new_files::DeviceFiles files =
+      new_files::draft_device(device_part(arguments), output.parent_path(), drives,
                               simulation.filename().string(), progress_of("self-collision"));
   if (!files.simulation.empty()) {
     write_output(simulation.string(), files.simulation);
     print_out("{} written: its simulated drives and sensors, typical ones ([A]: assumed).\n",
               simulation.string());
-  } else if (drives != generator::Drives::kIdeal) {
+  } else if (drives != new_files::Drives::kIdeal) {
     print_out(
         "note        a joint is prismatic, and the known drives turn: it is simulated with "
         "ideal drives\n");
@@ -98,13 +98,13 @@ int new_twin(const NewArguments& arguments) {
   const bool is_own = !arguments.device.empty();
   const config::SimulatedDeviceConfig device = config::load_simulated_device(
       config::find_device(is_own ? arguments.device : "haptic_giant", {}));
-  const generator::TwinDraft draft = generator::draft_twin(arguments.part, output.parent_path(),
+  const new_files::TwinDraft draft = new_files::draft_twin(arguments.part, output.parent_path(),
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
   if (!draft.note.empty()) print_out("note        {}\n", draft.note);
   if (!draft.trouble.empty()) {
     print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), draft.trouble,
-                checks::kCuresOfWay);
+                workspace::kCuresOfWay);
   }
   const std::string file = is_own ? device.sources.front().name : "";
   const std::string with = is_own ? " --device " + file : "";

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "hg/commissioning/generator/chain_part.h"
+#include "hg/new/chain_part.h"
 
 namespace CLI {
 class App;
@@ -13,7 +13,7 @@ class App;
 namespace hg::apps {
 
 struct NewArguments {
-  generator::ChainPart part;
+  new_files::ChainPart part;
   std::string output;               ///< file to write; empty: named after the URDF, in this folder
   std::string device;               ///< device that a twin is placed for; empty: the HapticGiant
   std::string drives = "position";  ///< drives of a device: position, torque or ideal

@@ -7,8 +7,8 @@
 
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/commissioning/doctor/gate.h"
 #include "hg/core/error.h"
+#include "hg/doctor/gate.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/remote/ethercat_setup.h"

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "apps/hapticgiant/run_command.h"
-#include "hg/commissioning/start_test/machine_memory.h"
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/device/connected_device.h"
 #include "hg/page/run_page.h"
 #include "hg/scenario/start_posture.h"
+#include "hg/start_test/machine_memory.h"
 
 namespace hg::apps {
 

@@ -13,10 +13,10 @@
 namespace hg::apps {
 namespace {
 
-using checks::Bottleneck;
-using checks::Datasheet;
-using checks::Distribution;
-using checks::JointLine;
+using check::Bottleneck;
+using check::Datasheet;
+using check::Distribution;
+using check::JointLine;
 
 std::string or_none(double value, const char* unit) {
   return std::isfinite(value) ? fmt::format("{:.4g} {}", value, unit) : "-";
@@ -47,7 +47,7 @@ void print_joints(const Datasheet& sheet) {
 }
 
 void print_workspace(const Datasheet& sheet) {
-  const checks::HandleWorkspace& space = sheet.workspace;
+  const workspace::HandleWorkspace& space = sheet.workspace;
   if (sheet.reach > 0.0) {
     print_out("  reach               {:.2f} m, handle from the axis of the arm's first joint\n",
               sheet.reach);
@@ -113,7 +113,7 @@ void print_conditioning(const Datasheet& sheet) {
   print_out("\n");
 }
 
-void print_bandwidth(const checks::Bandwidth& bandwidth) {
+void print_bandwidth(const check::Bandwidth& bandwidth) {
   print_out("  bandwidth           control {:g} Hz, handle onto twin {:.1f} Hz", bandwidth.rate_Hz,
             bandwidth.synchronisation_Hz);
   if (bandwidth.gantry_Hz > 0.0) {
@@ -148,9 +148,9 @@ nlohmann::json joint_json(const JointLine& joint) {
 
 // prints, of axes with the same limit, the one that needs most of it
 void print_stopping(const Datasheet& sheet) {
-  std::map<std::string, const checks::Stopping*> most;
-  for (const checks::Stopping& axis : sheet.stopping) {
-    const checks::Stopping*& worst = most[axis.key];
+  std::map<std::string, const check::Stopping*> most;
+  for (const check::Stopping& axis : sheet.stopping) {
+    const check::Stopping*& worst = most[axis.key];
     if (worst == nullptr || axis.need.distance > worst->need.distance) worst = &axis;
   }
   std::string text;
@@ -164,7 +164,7 @@ void print_stopping(const Datasheet& sheet) {
 
 nlohmann::json stopping_json(const Datasheet& sheet) {
   nlohmann::json axes = nlohmann::json::array();
-  for (const checks::Stopping& axis : sheet.stopping) {
+  for (const check::Stopping& axis : sheet.stopping) {
     const std::string unit = axis.is_angle ? "rad" : "m";
     axes.push_back({{"name", axis.name},
                     {"distance_" + unit, axis.distance},
@@ -204,7 +204,7 @@ nlohmann::json datasheet_json(const Datasheet& sheet) {
   if (sheet.postures == 0) return json;
   for (const JointLine& joint : sheet.joints) json["joints"].push_back(joint_json(joint));
   json["stopping"] = stopping_json(sheet);
-  const checks::HandleWorkspace& space = sheet.workspace;
+  const workspace::HandleWorkspace& space = sheet.workspace;
   json["reach_m"] = sheet.reach;
   json["workspace"] = {{"volume_m3", space.volume},
                        {"lower_m", vector_json(space.bounds.min())},

@@ -3,12 +3,12 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "hg/commissioning/checks/datasheet.h"
+#include "hg/check/datasheet.h"
 
 namespace hg::apps {
 
-void print_datasheet(const checks::Datasheet& sheet);
+void print_datasheet(const check::Datasheet& sheet);
 /// SI units; the keys carry them.
-nlohmann::json datasheet_json(const checks::Datasheet& sheet);
+nlohmann::json datasheet_json(const check::Datasheet& sheet);
 
 }  // namespace hg::apps

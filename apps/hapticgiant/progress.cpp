@@ -7,7 +7,7 @@
 
 namespace hg::apps {
 
-studies::Progress progress_of(const std::string& what) {
+experiments::Progress progress_of(const std::string& what) {
   if (isatty(STDERR_FILENO) == 0) return {};
   return [what](std::size_t done, std::size_t total) {
     draw_error(done < total ? fmt::format("{}: {} of {}", what, done, total) : "");

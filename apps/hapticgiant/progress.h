@@ -3,11 +3,11 @@
 
 #include <string>
 
-#include "hg/studies/workers.h"
+#include "hg/experiments/workers.h"
 
 namespace hg::apps {
 
 /// Callback that shows "WHAT: 12 of 180" in place on a terminal; elsewhere it shows nothing.
-studies::Progress progress_of(const std::string& what);
+experiments::Progress progress_of(const std::string& what);
 
 }  // namespace hg::apps

@@ -13,12 +13,12 @@
 #include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/commissioning/start_test/device_station.h"
-#include "hg/commissioning/start_test/machine_memory.h"
-#include "hg/commissioning/start_test/memory.h"
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
 #include "hg/scenario/remote/franka_setup.h"
+#include "hg/start_test/device_station.h"
+#include "hg/start_test/machine_memory.h"
+#include "hg/start_test/memory.h"
 
 namespace hg::apps {
 

@@ -66,7 +66,7 @@ void TerminalCrew::say(double time_s, const std::string& words) {
   print_(time_s, words);
 }
 
-void TerminalCrew::ask(const bring_up::Question& question) {
+void TerminalCrew::ask(const commission::Question& question) {
   answer_ = 0;
   if (!question.words.empty()) print_(time_s_, "-> " + question.words + " (y or n)");
 }

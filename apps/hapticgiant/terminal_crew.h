@@ -9,11 +9,11 @@
 #include <functional>
 #include <thread>
 
-#include "hg/commissioning/bring_up/rig.h"
+#include "hg/commission/rig.h"
 
 namespace hg::apps {
 
-class TerminalCrew final : public bring_up::Crew {
+class TerminalCrew final : public commission::Crew {
  public:
   using Print = std::function<void(double time_s, const std::string& words)>;
   /// Reads single keys from now on. `interrupted` must outlive it. Throws SetupError where standard
@@ -26,7 +26,7 @@ class TerminalCrew final : public bring_up::Crew {
   bool holds_key() override;
   bool wants_to_end() override { return interrupted_.load(); }
   void say(double time_s, const std::string& words) override;
-  void ask(const bring_up::Question& question) override;
+  void ask(const commission::Question& question) override;
   std::optional<bool> answer() override;
   void pull(const Eigen::Vector3d& /*direction*/) override {}
 

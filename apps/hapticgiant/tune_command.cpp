@@ -20,17 +20,17 @@
 #include "hg/config/shipped_files.h"
 #include "hg/core/scratch_folder.h"
 #include "hg/scenario/assembly.h"
-#include "hg/studies/tuning/tuned_device.h"
+#include "hg/tune/tuned_device.h"
 
 namespace hg::apps {
 namespace {
 
-tuning::TuningProblem problem_of(const config::SimulatedDeviceConfig& device,
-                                 const TuneArguments& arguments) {
-  return {.device = tuning::device_of(device),
-          .noise = tuning::noise_of(device),
-          .plant = tuning::simulated(device),
-          .friction = tuning::unexpected_friction(device),
+tune::TuningProblem problem_of(const config::SimulatedDeviceConfig& device,
+                               const TuneArguments& arguments) {
+  return {.device = tune::device_of(device),
+          .noise = tune::noise_of(device),
+          .plant = tune::simulated(device),
+          .friction = tune::unexpected_friction(device),
           .body = {.mass = arguments.mass, .damping = arguments.damping},
           .postures = config::random_postures(device.model, arguments.postures, arguments.seed)};
 }
@@ -55,27 +55,27 @@ std::string command_of(const TuneArguments& arguments) {
 int run_tune(const TuneArguments& arguments) {
   const config::SimulatedDeviceConfig device =
       config::load_simulated_device(config::find_device(arguments.device, {}));
-  tuning::TuningProblem problem = problem_of(device, arguments);
-  const tuning::Figures now = tuning::figures_of(problem, problem.device);
+  tune::TuningProblem problem = problem_of(device, arguments);
+  const tune::Figures now = tune::figures_of(problem, problem.device);
   problem.friction_most_N = now.friction_N;
   check_report_program();  // before minutes of search
   if (!arguments.only_checks) make_folder(arguments.out);
   print_out("HapticGiant {}  {} {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
-            kVersion, arguments.only_checks ? "checks" : "tunes", device.name,
-            tuning::knobs().size(), problem.postures.size(), arguments.mass, arguments.damping);
+            kVersion, arguments.only_checks ? "checks" : "tunes", device.name, tune::knobs().size(),
+            problem.postures.size(), arguments.mass, arguments.damping);
   const double limit = arguments.vibration > 0.0 ? arguments.vibration : now.vibration;
   std::vector<double> limits;
   if (!arguments.only_checks) limits.push_back(limit);
   if (arguments.has_front) {
     for (const double share : {0.75, 0.5, 1.5, 2.0}) limits.push_back(share * limit);
   }
-  const tuning::TuningResult result = tuning::search(
+  const tune::TuningResult result = tune::search(
       problem, limits, [](const std::string& what, std::size_t done, std::size_t total) {
         if (const auto report = progress_of(what)) report(done, total);
       });
   const TuneReport report = {.problem = problem,
                              .result = result,
-                             .demands = tuning::demands_of(problem),
+                             .demands = tune::demands_of(problem),
                              .name = device.name,
                              .command = command_of(arguments)};
 
@@ -85,7 +85,7 @@ int run_tune(const TuneArguments& arguments) {
   print_out(report_text(folder, tune_json(report), "report.txt"));
   if (arguments.only_checks) return result.proof_before.holds() ? 0 : 1;
   print_out(fmt::format("\nreport      {}\n", (folder / "report.md").string()));
-  const tuning::Figures& found = result.front.front().figures;
+  const tune::Figures& found = result.front.front().figures;
   constexpr double kTolerated = 1.01;  // of limits that the search approaches from both sides
   if (!result.proofs.front().holds()) {
     print_error(

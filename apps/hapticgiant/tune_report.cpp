@@ -5,15 +5,15 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "hg/studies/tuning/feel.h"
+#include "hg/tune/feel.h"
 
 namespace hg::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using tuning::Candidate;
-using tuning::Figures;
-using tuning::Proof;
+using tune::Candidate;
+using tune::Figures;
+using tune::Proof;
 
 // A loop: its figures, how near it comes to its limits and where, and its values.
 Json loop_of(const TuneReport& report, const Candidate& candidate, const Proof& proof,
@@ -40,7 +40,7 @@ Json loop_of(const TuneReport& report, const Candidate& candidate, const Proof& 
 }
 
 // Felt over rendered impedance, largest and least over the axes and postures evaluated for feel.
-Json felt_of(const tuning::TuningProblem& problem, const tuning::TunedDevice& device) {
+Json felt_of(const tune::TuningProblem& problem, const tune::TunedDevice& device) {
   constexpr double kFrom_Hz = 0.5, kTo_Hz = 60.0, kPerDecade = 24.0;
   std::vector<double> frequencies;
   for (double f = kFrom_Hz; f <= kTo_Hz; f *= std::pow(10.0, 1.0 / kPerDecade)) {
@@ -48,13 +48,13 @@ Json felt_of(const tuning::TuningProblem& problem, const tuning::TunedDevice& de
   }
   std::vector<double> least(frequencies.size(), kInfinity), largest(frequencies.size(), 0.0);
   for (std::size_t k = 0; k < std::min(problem.felt_postures, problem.postures.size()); ++k) {
-    const tuning::HandleLoop loop =
-        tuning::linearise(device, problem.plant, problem.body, person::HandImpedance{},
-                          problem.noise, problem.postures[k]);
-    tuning::Resolvent resolvent(loop.A);
+    const tune::HandleLoop loop =
+        tune::linearise(device, problem.plant, problem.body, person::HandImpedance{}, problem.noise,
+                        problem.postures[k]);
+    tune::Resolvent resolvent(loop.A);
     for (std::size_t i = 0; i < frequencies.size(); ++i) {
       for (const auto& ratio :
-           tuning::felt_over_body(resolvent, loop, problem.body, frequencies[i])) {
+           tune::felt_over_body(resolvent, loop, problem.body, frequencies[i])) {
         least[i] = std::min(least[i], std::abs(ratio));
         largest[i] = std::max(largest[i], std::abs(ratio));
       }
@@ -75,8 +75,8 @@ Json radii_of(const std::vector<Proof>& everywhere) {
 }  // namespace
 
 Json tune_json(const TuneReport& report) {
-  const tuning::TuningProblem& problem = report.problem;
-  const tuning::TuningResult& result = report.result;
+  const tune::TuningProblem& problem = report.problem;
+  const tune::TuningResult& result = report.result;
   const std::size_t postures = problem.postures.size();
   Json json = {{"kind", "tuning"},
                {"device", report.name},
@@ -85,9 +85,9 @@ Json tune_json(const TuneReport& report) {
                {"felt_postures", std::min(problem.felt_postures, postures)},
                {"cases", postures * report.demands.cases(0).size()},
                {"held_before", std::ranges::count_if(result.everywhere_before, &Proof::holds)},
-               {"arm_limit", tuning::kArmRadius},
-               {"hand_limit", tuning::kHandRadius}};
-  for (const tuning::Knob& knob : tuning::knobs()) {
+               {"arm_limit", tune::kArmRadius},
+               {"hand_limit", tune::kHandRadius}};
+  for (const tune::Knob& knob : tune::knobs()) {
     json["knobs"].push_back({{"section", knob.section}, {"key", knob.key}});
   }
   json["before"] =
@@ -97,8 +97,7 @@ Json tune_json(const TuneReport& report) {
     json["front"].push_back(loop_of(report, result.front[i], result.proofs[i], result.limits[i]));
   }
   if (result.front.empty()) return json;
-  const tuning::TunedDevice tuned =
-      tuning::with_values(problem.device, result.front.front().values);
+  const tune::TunedDevice tuned = tune::with_values(problem.device, result.front.front().values);
   json["felt_before"] = felt_of(problem, problem.device);
   json["felt"] = felt_of(problem, tuned);
   json["radii_before"] = radii_of(result.everywhere_before);

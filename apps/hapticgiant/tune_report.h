@@ -4,14 +4,14 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "hg/studies/tuning/search.h"
+#include "hg/tune/search.h"
 
 namespace hg::apps {
 
 struct TuneReport {
-  const tuning::TuningProblem& problem;
-  const tuning::TuningResult& result;  ///< result; the first of its front is the requested one
-  tuning::Demands demands;
+  const tune::TuningProblem& problem;
+  const tune::TuningResult& result;  ///< result; the first of its front is the requested one
+  tune::Demands demands;
   std::string name, command;
 };
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "hg/commissioning/generator/postures.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/joint_range.h"
+#include "hg/workspace/postures.h"
 
 namespace hg::page {
 namespace {
@@ -12,18 +12,18 @@ namespace {
 constexpr int kPostures = 2000;
 
 double best_dexterity(DeviceModel& device) {
-  std::vector<Interval> ranges = generator::joint_ranges(device.chain);
+  std::vector<Interval> ranges = workspace::joint_ranges(device.chain);
   for (int i = 0; i < device.n_m; ++i) {
     const auto& limits = device.joint_limits[i];
     const std::size_t joint = device.n_p + i;
     const bool is_angle = !device.chain.joints()[joint].is_slide();
     ranges[joint] = model::finite_range({limits.q_min, limits.q_max}, is_angle);
   }
-  generator::PostureSampler sampler(ranges);
+  workspace::PostureSampler sampler(ranges);
   model::ChainData chain(device.chain);
   double best = 0.0;
   for (int i = 0; i < kPostures; ++i) {
-    best = std::max(best, generator::dexterity(chain, device.handle, device.n_p, sampler.draw()));
+    best = std::max(best, workspace::dexterity(chain, device.handle, device.n_p, sampler.draw()));
   }
   return best;
 }
@@ -70,7 +70,7 @@ std::optional<viewer_server::Singularity> HandAnalysis::singularity(const CycleR
   if (!has_posture) return {};
   Eigen::VectorXd q(device_.n_p + device_.n_m);
   q << record.robot.q_p, record.reference.q_m;
-  const double now = generator::dexterity(device_chain_, device_.handle, device_.n_p, q);
+  const double now = workspace::dexterity(device_chain_, device_.handle, device_.n_p, q);
   viewer_server::Singularity singularity{std::clamp(now / best_, 0.0, 1.0)};
   double nearest = kInfinity;
   for (int i = 0; i < static_cast<int>(device_.virtual_joints.size()); ++i) {

@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <string>
 
-#include "hg/commissioning/checks/workspace.h"
 #include "hg/config/law_names.h"
 #include "hg/config/shipped_files.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/model/urdf_parts.h"
 #include "hg/scenario/recorded/robot_models.h"
 #include "hg/scenario/start_posture.h"
+#include "hg/workspace/workspace.h"
 
 namespace hg::page {
 namespace {
@@ -111,7 +111,7 @@ viewer_server::SceneChain twin_chain(const config::Twin& twin) {
 Eigen::AlignedBox3d box_of(const config::Scenario& scenario) {
   constexpr double kHalf = 2.0;  // m
   const Eigen::Vector3d p = scenario::handle_start(scenario.twin.model).p;
-  Eigen::AlignedBox3d box = checks::handle_box(scenario.device.model);
+  Eigen::AlignedBox3d box = workspace::handle_box(scenario.device.model);
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(box.min()[axis])) box.min()[axis] = p[axis] - kHalf;
     if (!std::isfinite(box.max()[axis])) box.max()[axis] = p[axis] + kHalf;

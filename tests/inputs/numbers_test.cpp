@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "hg/commissioning/checks/device_inspection.h"
-#include "hg/commissioning/checks/scenario_inspection.h"
-#include "hg/commissioning/checks/survey.h"
-#include "hg/commissioning/checks/twin_inspection.h"
+#include "hg/check/device_inspection.h"
+#include "hg/check/scenario_inspection.h"
+#include "hg/check/twin_inspection.h"
 #include "hg/core/error.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/session.h"
+#include "hg/workspace/survey.h"
 #include "tests/scenarios/scenario_run.h"
 
 namespace hg {
@@ -59,10 +59,10 @@ void run(const config::Scenario& scenario) {
 }
 
 void inspect(const config::Scenario& scenario) {
-  const checks::Survey survey = checks::survey(scenario.device);
-  checks::inspect(scenario.device, survey);
-  checks::inspect(scenario.twin, scenario.device.model.dt());
-  checks::inspect(scenario.device, scenario.twin);
+  const workspace::Survey survey = workspace::survey(scenario.device);
+  check::inspect(scenario.device, survey);
+  check::inspect(scenario.twin, scenario.device.model.dt());
+  check::inspect(scenario.device, scenario.twin);
 }
 
 class AbsurdNumbers : public testing::TestWithParam<const char*> {};

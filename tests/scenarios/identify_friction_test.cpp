@@ -5,22 +5,21 @@
 #include <string>
 #include <vector>
 
-#include "hg/commissioning/identification/friction_traces.h"
+#include "hg/experiments/player.h"
+#include "hg/identify/friction_traces.h"
 #include "hg/scenario/options.h"
-#include "hg/studies/player.h"
 
 namespace hg {
 namespace {
 
-using identification::Figure;
-using identification::FrictionEstimate;
+using identify::Figure;
+using identify::FrictionEstimate;
 
 std::vector<FrictionEstimate> identified(const std::string& simulation) {
   const config::Scenario scenario =
       scenario::load({.scenario = "free_space", .user = "friction", .simulation = simulation});
-  identification::FrictionTraces traces(scenario.device.model,
-                                        scenario.device.control.loop.current_lag);
-  studies::Player player(scenario);
+  identify::FrictionTraces traces(scenario.device.model, scenario.device.control.loop.current_lag);
+  experiments::Player player(scenario);
   for (bool is_running = true; is_running; is_running = player.end()) {
     player.begin();
     player.run();
@@ -30,7 +29,7 @@ std::vector<FrictionEstimate> identified(const std::string& simulation) {
   std::vector<FrictionEstimate> found;
   for (std::size_t i = 0; i < traces.joints().size(); ++i) {
     found.push_back(
-        identification::identify_friction(traces.joints()[i], scenario.device.model.actuators[i]));
+        identify::identify_friction(traces.joints()[i], scenario.device.model.actuators[i]));
   }
   return found;
 }

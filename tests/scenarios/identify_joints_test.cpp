@@ -7,22 +7,22 @@
 #include <tuple>
 #include <vector>
 
-#include "hg/commissioning/identification/drive_delay.h"
-#include "hg/commissioning/identification/inertia.h"
-#include "hg/commissioning/identification/joint_elasticity.h"
-#include "hg/commissioning/identification/joint_recording.h"
+#include "hg/experiments/player.h"
+#include "hg/identify/drive_delay.h"
+#include "hg/identify/inertia.h"
+#include "hg/identify/joint_elasticity.h"
+#include "hg/identify/joint_recording.h"
 #include "hg/scenario/options.h"
-#include "hg/studies/player.h"
 
 namespace hg {
 namespace {
 
-using identification::Figure;
+using identify::Figure;
 
 // The motion of the joints in a scenario.
-std::vector<identification::JointMotion> moved(const config::Scenario& scenario) {
-  identification::JointRecording joints(scenario.device.model);
-  studies::Player player(scenario);
+std::vector<identify::JointMotion> moved(const config::Scenario& scenario) {
+  identify::JointRecording joints(scenario.device.model);
+  experiments::Player player(scenario);
   for (bool is_running = true; is_running; is_running = player.end()) {
     player.begin();
     player.run();
@@ -45,8 +45,8 @@ TEST(IdentifyJoints, FindsStiffnessAndDampingOfAnArmWhoseFileIsWrong) {
   for (int i = 0; i < 6; ++i) {
     SCOPED_TRACE(device.model.manipulator_joint(i));
     const ActuatorModel& nominal = device.model.actuators[static_cast<std::size_t>(i)];
-    const auto found = identification::identify_elasticity(parts, i, device.model.dt(), nominal,
-                                                           device.simulation.gear_ratio[i]);
+    const auto found = identify::identify_elasticity(parts, i, device.model.dt(), nominal,
+                                                     device.simulation.gear_ratio[i]);
     expect_covered(found.stiffness, factors.stiffness * nominal.stiffness, 0.02, "stiffness");
     expect_covered(found.damping, factors.damping * nominal.damping, 0.08, "damping");
   }
@@ -55,21 +55,21 @@ TEST(IdentifyJoints, FindsStiffnessAndDampingOfAnArmWhoseFileIsWrong) {
 TEST(IdentifyJoints, FindsTheDelayOfDrivesThatFollowPositions) {
   const config::Scenario scenario = scenario::load({.scenario = "models/arms/ur5e/move_tool.yaml"});
   const auto parts = moved(scenario);
-  std::vector<identification::DriveDelay> delays;
+  std::vector<identify::DriveDelay> delays;
   for (int i = 0; i < 6; ++i) {
-    delays.push_back(identification::identify_delay(parts, i, scenario.device.model.dt()));
+    delays.push_back(identify::identify_delay(parts, i, scenario.device.model.dt()));
   }
   // 8 ms of latency and a period of 2 ms, less the step by which the drives look ahead
-  expect_covered(identification::common_delay(delays), 9.75e-3, 0.01, "delay");
+  expect_covered(identify::common_delay(delays), 9.75e-3, 0.01, "delay");
 }
 
 TEST(IdentifyInertia, FindsThatAnArmIsHeavierThanItsFilesSay) {
   const config::Scenario scenario = scenario::load({.scenario = "models/arms/fr3/excite.yaml"});
-  const auto found = identification::identify_inertia(moved(scenario), scenario.device);
+  const auto found = identify::identify_inertia(moved(scenario), scenario.device);
   EXPECT_EQ(found.missing, "");
   EXPECT_GE(found.shown, 30);
   int large = 0;
-  for (const identification::BaseFigure& base : found.base) {
+  for (const identify::BaseFigure& base : found.base) {
     if (std::abs(base.nominal) < 0.5) continue;
     ++large;
     const double factor = base.found.value / base.nominal;

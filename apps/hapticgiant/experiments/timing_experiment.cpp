@@ -16,7 +16,7 @@
 #include "bench/cycle_table.h"
 #include "bench/machine.h"
 #include "hg/core/error.h"
-#include "hg/studies/moved_scenario.h"
+#include "hg/experiments/moved_scenario.h"
 
 namespace hg::apps {
 namespace {
@@ -37,7 +37,7 @@ Json measure(const PaperExperimentArguments& arguments, const std::string& law, 
   run.world.device = arguments.device;
   run.world.twin = arguments.twin;
   const bool is_own = arguments.device.empty() && arguments.twin.empty();
-  config::Scenario scenario = is_own ? make_scenario(run) : studies::moved_scenario(run.world);
+  config::Scenario scenario = is_own ? make_scenario(run) : experiments::moved_scenario(run.world);
   if (arguments.duration_s) scenario.duration_s = *arguments.duration_s;
   if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("law {}, {:.0f} Hz ...", law, rate_Hz));
   const bench::CycleTimes times =

@@ -19,8 +19,6 @@
 #include "apps/hapticgiant/prepared_run.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/start_test_command.h"
-#include "hg/commissioning/start_test/machine_memory.h"
-#include "hg/commissioning/start_test/memory.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/test/message_of.h"
@@ -31,6 +29,8 @@
 #include "hg/scenario/remote/ethercat_setup.h"
 #include "hg/scenario/remote/remote_setup.h"
 #include "hg/simulator/simulated_device.h"
+#include "hg/start_test/machine_memory.h"
+#include "hg/start_test/memory.h"
 
 namespace hg {
 namespace {

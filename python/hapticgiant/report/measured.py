@@ -1,6 +1,6 @@
 """Runs of `hapticgiant haptify` by measurement, and the figures, tables and curves made of them.
 
-The program writes results.json (hg/studies/haptify/benchmark.h): measurements by name, each with
+The program writes results.json (hg/experiments/haptify/benchmark.h): measurements by name, each with
 the settings and the results of its runs, in SI units.
 """
 

@@ -1,0 +1,18 @@
+/// Pairs of a device that are watched for collisions, and pairs that are not, in one line.
+#pragma once
+
+#include "hg/check/findings.h"
+#include "hg/config/device.h"
+#include "hg/workspace/survey.h"
+
+namespace hg::check {
+
+/// Adds one finding: a note, or a warning where parts of the device move unwatched.
+void inspect_collisions(const config::DeviceConfig& device, Collector& out);
+
+/// Adds findings on a floor above all places of the handle, or one that contains a part of the
+/// device in all postures.
+void inspect_floor(const config::DeviceConfig& device, const workspace::Survey& survey,
+                   Collector& out);
+
+}  // namespace hg::check

@@ -1,0 +1,250 @@
+#include "hg/check/stiffness.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hg/controller/rendering/braking.h"
+#include "hg/core/error.h"
+#include "hg/core/linear_algebra.h"
+#include "hg/model/chain_data.h"
+#include "hg/scenario/start_posture.h"
+
+namespace hg::check {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kPhase_deg = 16.5;  // see frequency_Hz()
+constexpr double kLeastWay = 0.01;   // m at the handle, over which a spring should be followed
+
+// Mean delay between a wrench and the reaction of the motors.
+double delay_of(const config::SimulatedDeviceConfig& device) {
+  double delay = device.control.loop.latency;
+  if (device.estimation.wrench.low_pass_Hz > 0.0) {
+    delay += 1.0 / (kTurn * device.estimation.wrench.low_pass_Hz);
+  }
+  // the simulation file is the only source on the sensor
+  const simulator::SensorFilterConfig& filter = device.simulation.sensors.wrench.filter;
+  if (device.simulation.is_from_file) delay += 0.5 * filter.average + filter.delay;
+  return delay;
+}
+
+// The least along the axes of B, at the start; where the device does not get there it is stated
+// itself.
+double braking_of(const config::DeviceConfig& device, const config::Twin& twin) {
+  rendering::DeviceMotion motion = {.dq_p = VectorP::Zero(device.model.n_p),
+                                    .dq_m = VectorM::Zero(device.model.n_m)};
+  try {
+    const scenario::Start start = scenario::find_start(device, twin);
+    motion.q_p = start.q_p;
+    motion.q_m = start.q_m;
+  } catch (const SetupError&) {
+    return kInfinity;
+  }
+  double least = kInfinity;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      least = std::min(least, rendering::largest_acceleration(device.model, motion,
+                                                              side * Eigen::Vector3d::Unit(axis)));
+    }
+  }
+  return least;
+}
+
+std::string kilo(double stiffness) { return fmt::format("{:.2g} kN/m", 1e-3 * stiffness); }
+
+std::string known_of(const StiffnessLimits& limits) {
+  return fmt::format(
+      "{:.2g} kg and {:.2g} Ns/m at the handle; T = {:g} ms, T_d = {:.1f} ms from "
+      "wrench to motion",
+      limits.mass, limits.damping, 1e3 * limits.period, 1e3 * limits.delay);
+}
+
+std::string acceleration_text(const StiffnessLimits& limits) {
+  if (!std::isfinite(limits.acceleration)) {
+    return "neither motors nor Cartesian limits state what the handle brakes with";
+  }
+  return fmt::format(
+      "{} = m (a / v)^2 where it is met with v = {:g} m/s and the handle brakes with "
+      "a = {:.3g} m/s^2",
+      kilo(limits.by_acceleration(kFeelingSpeed)), kFeelingSpeed, limits.acceleration);
+}
+
+struct Spring {
+  const rendering::TwinDof* dof = nullptr;
+  double inertia = 0.0;    // moving inertia, kg m^2 or kg
+  double stiffness = 0.0;  // Nm/rad or N/m; with a profile where it is steepest
+};
+
+std::string key_of(const rendering::TwinDof& dof) {
+  if (!dof.profile.empty()) return fmt::format("joints.{}.profile", dof.name);
+  return fmt::format("joints.{}.stiffness_{}", dof.name, dof.is_angle ? "Nm_per_rad" : "N_per_m");
+}
+
+// Those of which `worth` is below `least`, one finding about the worst.
+template <typename Worth, typename Text>
+void warn_of(const std::vector<Spring>& springs, double least, const Worth& worth, const Text& text,
+             Collector& out) {
+  const auto worst = std::ranges::min_element(springs, {}, worth);
+  if (worst == springs.end() || worth(*worst) >= least) return;
+  const auto others =
+      std::ranges::count_if(springs, [&](const Spring& spring) { return worth(spring) < least; }) -
+      1;
+  const rendering::TwinDof& dof = *worst->dof;
+  const double share = worth(*worst) / least;
+  out.add(
+      Severity::kWarning, key_of(dof),
+      fmt::format("{:g} {} on {:.2g} {} {}{}", worst->stiffness, dof.is_angle ? "Nm/rad" : "N/m",
+                  worst->inertia, dof.is_angle ? "kg m^2" : "kg", text(*worst),
+                  others > 0 ? fmt::format("; so do {} other joints", others) : ""),
+      fmt::format("lower it to {:.2g}, or give the joint more inertia", share * worst->stiffness));
+}
+
+void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Collector& out) {
+  model::ChainData chain(twin.model.chain);
+  chain.update(twin.model.q_start, VectorA::Zero(chain.model().nv()));
+  const Eigen::MatrixXd mobility = inverse(Eigen::MatrixXd(chain.M() * twin.model.mass_scale));
+  std::vector<Spring> springs;
+  for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
+    const rendering::TwinDof& dof = twin.model.dofs[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    const double stiffness = dof.stiffness + dof.closer.stiffness + dof.profile.steepest();
+    if (stiffness > 0.0) springs.push_back({&dof, 1.0 / mobility(k, k), stiffness});
+  }
+  const double fastest = limits.frequency_Hz();
+  warn_of(
+      springs, 1.0,
+      [&](const Spring& spring) {
+        return spring.inertia * std::pow(kTurn * fastest, 2) / spring.stiffness;
+      },
+      [&](const Spring& spring) {
+        return fmt::format(
+            "swing with {:.1f} Hz; this device shows up to {:.1f} Hz, where the "
+            "{:.1f} ms from wrench to motion are {:g} degrees",
+            std::sqrt(spring.stiffness / spring.inertia) / kTurn, fastest, 1e3 * limits.delay,
+            kPhase_deg);
+      },
+      out);
+  // how far from its rest the handle may be: its lever cancels
+  const auto way = [&](const Spring& spring) {
+    return spring.inertia * limits.acceleration / spring.stiffness;
+  };
+  warn_of(
+      springs, kLeastWay, way,
+      [&](const Spring& spring) {
+        return fmt::format(
+            "follow their spring up to {:.1f} mm of the handle, I a / K with a = "
+            "{:.3g} m/s^2, expected {:g} mm: from there on "
+            "they swing slower, and their swings may grow",
+            1e3 * way(spring), limits.acceleration, 1e3 * kLeastWay);
+      },
+      out);
+}
+
+}  // namespace
+
+double StiffnessLimits::frequency_Hz() const noexcept { return kPhase_deg / 360.0 / delay; }
+
+double StiffnessLimits::by_frequency() const noexcept {
+  return mass * std::pow(kTurn * frequency_Hz(), 2);
+}
+
+double StiffnessLimits::by_passivity(double extra) const noexcept {
+  return (damping + extra) / (0.5 * period + delay);
+}
+
+double StiffnessLimits::by_acceleration(double speed) const noexcept {
+  return mass * std::pow(acceleration / speed, 2);
+}
+
+double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
+  return acceleration * std::sqrt(mass / stiffness);
+}
+
+StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
+                                 const config::Twin& twin) {
+  const auto [mass, dq] = rendering::felt_mass(twin.model);
+  StiffnessLimits limits = {.mass = mass.lb,
+                            .period = device.model.dt(),
+                            .delay = std::max(delay_of(device), device.model.dt())};
+  for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
+    const double speed = dq[i];
+    limits.damping += twin.model.dofs[i].damping * speed * speed;
+  }
+  limits.acceleration = braking_of(device, twin);
+  return limits;
+}
+
+void inspect_stiffness(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
+                       Collector& out) {
+  const StiffnessLimits limits = stiffness_limits(device, twin);
+  out.add(Severity::kNote, "end_effector",
+          fmt::format(
+              "surfaces and springs that this device can show with this twin ({}): up to "
+              "{:.1f} Hz, where T_d is {:g} degrees, which is {} = m (2 pi f)^2; {}; passive in "
+              "any hand up to {} = b / (T / 2 + T_d), with 20 Ns/m of a surface {}",
+              known_of(limits), limits.frequency_Hz(), kPhase_deg, kilo(limits.by_frequency()),
+              acceleration_text(limits), kilo(limits.by_passivity(0.0)),
+              kilo(limits.by_passivity(20.0))),
+          "");
+  inspect_springs(twin, limits, out);
+}
+
+Findings inspect_surfaces(const config::Scenario& scenario) {
+  Collector out(scenario.sources, scenario.places);
+  if (scenario.surfaces.empty()) return {};
+  const StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);
+  const Interval mass = rendering::felt_mass(scenario.twin.model).mass;
+  for (std::size_t i = 0; i < scenario.surfaces.size(); ++i) {
+    const surfaces::Surface& surface = scenario.surfaces[i];
+    if (surface.contact == surfaces::Contact::kStop) continue;
+    const double damping = surface.damping.value_or(
+        surfaces::critical_damping(surface.stiffness, mass, limits.period));
+    if (surface.damping && damping > mass.lb / limits.period) {
+      out.add(
+          Severity::kWarning, fmt::format("surfaces[{}].damping_Ns_per_m", i),
+          fmt::format("{:g} Ns/m of '{}' is more than samples of {:g} ms allow for {:.2g} kg, "
+                      "m / T = {:.3g} Ns/m",
+                      damping, surface.name, 1e3 * limits.period, mass.lb, mass.lb / limits.period),
+          "lower it, or leave it out: then it is critical for the twin");
+    }
+    const std::array<std::pair<double, std::string>, 3> bounds = {
+        {{limits.by_frequency(),
+          fmt::format("the body swings on it up to {:.1f} Hz", limits.frequency_Hz())},
+         {limits.by_acceleration(kFeelingSpeed),
+          fmt::format("a hand at {:g} m/s needs no more than the handle's {:.3g} m/s^2",
+                      kFeelingSpeed, limits.acceleration)},
+         {limits.by_passivity(damping),
+          fmt::format("it is passive in any hand with {:.3g} Ns/m, {}", damping,
+                      surface.damping ? "as given" : "which is critical, as none is given")}}};
+    std::string beyond;
+    double most = surface.stiffness;
+    for (const auto& [bound, why] : bounds) {
+      if (surface.stiffness <= bound) continue;
+      beyond += fmt::format("{}{} ({})", beyond.empty() ? "" : ", ", kilo(bound), why);
+      most = std::min(most, bound);
+    }
+    if (beyond.empty()) continue;
+    const bool is_possible = most >= surfaces::kStiffness.lb;
+    out.add(
+        Severity::kWarning, fmt::format("surfaces[{}].stiffness_N_per_m", i),
+        fmt::format("{:g} N/m of '{}' is more than this device shows: {}; {}. A hand faster than "
+                    "{:.2f} m/s goes deeper than the spring alone would let it",
+                    surface.stiffness, surface.name, beyond, known_of(limits),
+                    limits.meeting_speed(surface.stiffness)),
+        is_possible
+            ? fmt::format("lower it to {:.0f}, or raise its damping and the mass of the twin", most)
+            : fmt::format("raise its damping and the mass of the twin: a surface has at least "
+                          "{:g} N/m",
+                          surfaces::kStiffness.lb));
+  }
+  return std::move(out.findings);
+}
+
+}  // namespace hg::check

@@ -1,0 +1,69 @@
+// Many seeds of a scenario: each one is itself, and the table names the worst.
+
+#include "hg/experiments/seed_ranges.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace hg::experiments {
+namespace {
+
+Trial short_walk() {
+  Trial trial = {
+      .name = "walk", .hand = "", .scenario = config::load_scenario("models/scenarios/walk.yaml")};
+  trial.scenario.duration_s = 2.0;
+  return trial;
+}
+
+TEST(PlaySeeds, EverySeedIsPlayedOnceInOrderAndIsTheSameAgain) {
+  const std::vector<Trial> trials = {short_walk(), short_walk()};
+  const std::vector<SeededRun> runs = play_seeds(trials, 5, 3, {});
+  ASSERT_EQ(runs.size(), 6U);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    EXPECT_EQ(runs[i].trial, i / 3);
+    EXPECT_EQ(runs[i].seed, 5 + i % 3);
+    EXPECT_TRUE(runs[i].has_held);
+    EXPECT_GT(runs[i].joint_error, 0.0);
+    EXPECT_EQ(runs[i].missing, 3U) << "too short for its events";
+  }
+  EXPECT_NE(runs[0].joint_error, runs[1].joint_error) << "another seed";
+  EXPECT_EQ(runs[0].joint_error, runs[3].joint_error) << "the same seed";
+}
+
+TEST(PlaySeeds, AFaultAndALimitThatIsLeftHaveNotHeld) {
+  Trial trial = short_walk();
+  trial.scenario.faults = {{.kind = faults::find_kind("torque_sensor_nan"), .from_s = 1.5}};
+  const std::vector<SeededRun> runs = play_seeds({trial}, 1, 1, {});
+  EXPECT_EQ(runs[0].fault.code, FaultCode::kSensorNotFinite);
+  EXPECT_NEAR(runs[0].ended_s, 1.5, 0.01);
+  EXPECT_FALSE(have_all_held(runs));
+  EXPECT_EQ(to_json({trial}, runs)["runs"][0]["fault_text"], "measured value is not finite");
+
+  Trial tight = short_walk();
+  for (LimitInfo& limit : tight.scenario.limits) {
+    if (limit.name == "hand x") limit.range = {-0.1, 0.1};
+  }
+  const std::vector<SeededRun> outside = play_seeds({tight}, 1, 1, {});
+  EXPECT_EQ(outside[0].length.name, "hand x");
+  EXPECT_GT(outside[0].length.excess, 0.3);
+  EXPECT_FALSE(have_all_held(outside));
+}
+
+TEST(PlaySeeds, TheScenariosOfStressBeginWell) {
+  std::vector<Trial> trials;
+  for (const auto& entry : std::filesystem::directory_iterator("models/stress")) {
+    if (entry.path().extension() != ".yaml") continue;
+    trials.push_back({.name = entry.path().stem().string(),
+                      .hand = "",
+                      .scenario = config::load_scenario(entry.path().string())});
+    trials.back().scenario.duration_s = 1.5;
+  }
+  EXPECT_EQ(trials.size(), 11U);
+  const std::vector<SeededRun> runs = play_seeds(trials, 1, 1, {});
+  EXPECT_TRUE(have_all_held(runs)) << to_json(trials, runs).dump(2);
+}
+
+}  // namespace
+}  // namespace hg::experiments

@@ -1,0 +1,392 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <ranges>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "hg/config/twin.h"
+#include "hg/controller/safety/collision/nearest.h"
+#include "hg/core/error.h"
+#include "hg/core/stacked.h"
+#include "hg/model/chain_data.h"
+#include "hg/new/scaffold.h"
+#include "hg/scenario/start_posture.h"
+#include "hg/workspace/postures.h"
+#include "hg/workspace/way.h"
+
+namespace hg::new_files {
+namespace {
+
+constexpr int kPostures = 24;       // in which a placement is tried
+constexpr double kNear = 0.02;      // m, from here on a joint mostly turns the end effector
+constexpr int kPlacements = 40;     // number of placements tried in all postures
+constexpr double kRoom = 0.05;      // share of a range, kept from a joint's limits at the start
+constexpr int kTrials = 8;          // number of those in which a hand leads the twin
+constexpr double kShare = 0.8;      // share of the speed and acceleration of the device's handle
+constexpr double kTurnShare = 0.5;  // share of the rating of the slowest of the last three joints
+constexpr double kCoasting = 1.5;   // s, time constant of a released joint
+
+struct Mechanism {
+  model::ChainData chain;
+  int end_effector = 0;
+  std::vector<Interval> ranges;
+  Eigen::VectorXd start;
+  Eigen::VectorXd lever;  ///< how far a joint moves the tip at most: m/rad, or 1
+};
+
+constexpr std::array kMassScales = {1.5, 2.0, 3.0, 5.0};  // tried against shaking
+
+struct Placement {
+  Pose T_B_root;
+  double yaw = 0.0;
+  double share = -1.0;  ///< share of the postures that the device reaches
+  bool has_room = false;
+  bool is_upright = true;
+};
+
+const model::Joint& joint(const Mechanism& d, int i) { return d.chain.model().joints()[i]; }
+
+Mechanism make_mechanism(const ChainPart& part) {
+  Mechanism d{.chain = model::ChainData(read_part(part)), .ranges = {}, .start = {}, .lever = {}};
+  for (const model::Joint& joint : d.chain.model().joints()) {
+    if (joint.nv == 1) continue;
+    throw SetupError(part.urdf.generic_string() + ": joint " + joint.name +
+                     ": is floating; a draft is made for joints with one coordinate");
+  }
+  d.end_effector = held_frame(d.chain.model(), 1);
+  d.ranges = workspace::joint_ranges(d.chain.model());
+  const int n = d.chain.model().nv();
+  d.start.resize(n);
+  d.lever = Eigen::VectorXd::Zero(n);
+  for (int i = 0; i < n; ++i) {
+    const Interval position = joint(d, i).position;
+    d.start[i] = std::clamp(0.0, position.lb, position.ub);
+  }
+  workspace::PostureSampler sampler(d.ranges);
+  for (int k = 0; k < 200; ++k) {
+    d.chain.update_kinematics(sampler.draw(), Eigen::VectorXd::Zero(n));
+    const model::Jacobian J = d.chain.jacobian(d.end_effector);
+    for (int i = 0; i < n; ++i) d.lever[i] = std::max(d.lever[i], J.col(i).head<3>().norm());
+  }
+  return d;
+}
+
+Pose tip(Mechanism& d, const Eigen::VectorXd& q) {
+  d.chain.update_kinematics(q, Eigen::VectorXd::Zero(q.size()));
+  return d.chain.pose(d.end_effector);
+}
+
+constexpr double kShapeRoom = 0.005;  // m, beyond the safe distance between shapes of the device
+
+// tests whether the device can hold its handle at a pose
+class Reach {
+ public:
+  explicit Reach(const config::DeviceConfig& device)
+      : device_(device),
+        chain_(device.model.chain),
+        shapes_(device.collision.shapes, device.collision.pairs.watched),
+        twin_{.name = "draft",
+              .model = {.chain = model::ChainModel::free_body({}),
+                        .end_effector = 0,
+                        .q_start = ConfigurationA::Zero(7)}} {}
+
+  std::optional<scenario::Start> start_at(const Pose& T_B_H) {
+    ConfigurationA& q = twin_.model.q_start;
+    q.head<3>() = T_B_H.p;
+    q.segment<4>(3) = Eigen::Quaterniond(T_B_H.R).normalized().coeffs();
+    try {
+      const scenario::Start start = scenario::find_start(device_, twin_);
+      if (is_clear(start)) return start;
+    } catch (const SetupError&) {
+    }
+    return {};
+  }
+
+ private:
+  // whether all watched shapes of the device have some room to move
+  bool is_clear(const scenario::Start& start) {
+    chain_.update_poses(stacked(start.q_p, start.q_m));
+    return shapes_.distance(chain_) > device_.collision.safe_distance + kShapeRoom;
+  }
+
+  const config::DeviceConfig& device_;
+  model::ChainData chain_;
+  const collision::Nearest shapes_;
+  config::Twin twin_;
+};
+
+// Whether gantry, joints and sums of joints are well inside their ranges.
+bool has_room(const DeviceModel& device, const scenario::Start& start) {
+  const auto is_inside = [](double q, const Interval& range) {
+    const double room = kRoom * (range.ub - range.lb);
+    return !std::isfinite(room) || std::min(q - range.lb, range.ub - q) >= room;
+  };
+  for (int i = 0; i < device.n_p; ++i) {
+    if (!is_inside(start.q_p[i], device.gantry_range[i])) return false;
+  }
+  for (int i = 0; i < device.n_m; ++i) {
+    const limits::JointLimits& limits = device.joint_limits[i];
+    if (!is_inside(start.q_m[i], {limits.q_min, limits.q_max})) return false;
+  }
+  return std::ranges::all_of(device.virtual_joints, [&](const VirtualJoint& sum) {
+    return is_inside(sum.weights.dot(start.q_m), {sum.limits.q_min, sum.limits.q_max});
+  });
+}
+
+// the handle with every joint of the device at its goal or in the middle of its range
+Pose nominal_handle(const config::DeviceConfig& device) {
+  model::ChainData chain(device.model.chain);
+  const std::vector<Interval> ranges = workspace::joint_ranges(device.model.chain);
+  Eigen::VectorXd q(chain.model().nq());
+  for (int i = 0; i < q.size(); ++i) {
+    const Interval range = ranges[i];
+    q[i] = 0.5 * (range.lb + range.ub);
+    const int goal = i - device.model.n_p;
+    if (goal >= 0 && goal < device.model.posture.size() &&
+        std::isfinite(device.model.posture[goal])) {
+      q[i] = device.model.posture[goal];
+    }
+  }
+  chain.update_kinematics(q, Eigen::VectorXd::Zero(chain.model().nv()));
+  return chain.pose(device.model.handle);
+}
+
+// offsets from the nominal handle, near ones first
+std::vector<Eigen::Vector3d> offsets() {
+  std::vector<Eigen::Vector3d> grid;
+  for (const int z : {-1, 0, 1}) {
+    for (const int y : {-1, 0, 1}) {
+      for (const int x : {-1, 0, 1}) grid.emplace_back(0.3 * x, 0.3 * y, 0.15 * z);
+    }
+  }
+  std::ranges::stable_sort(grid, {}, [](const Eigen::Vector3d& p) { return p.norm(); });
+  return grid;
+}
+
+// Upright, turned and moved: placements at which the device reaches the start, best first. Those
+// with room at the start come before the others, then the share of other postures that it reaches
+// counts. Without any, one that is tilted. Ends early with as many good ones as are tried.
+std::vector<Placement> find_placements(Mechanism& d, const config::DeviceConfig& device) {
+  Reach reach(device);
+  const Pose nominal = nominal_handle(device);
+  const Pose T_root_start = tip(d, d.start);
+  std::vector<Pose> others;
+  workspace::PostureSampler sampler(d.ranges);
+  for (int k = 0; k < kPostures; ++k) others.push_back(tip(d, sampler.draw()));
+
+  std::vector<Placement> found;
+  int good = 0;
+  for (const Eigen::Vector3d& offset : offsets()) {
+    for (int turn = 0; turn < 12; ++turn) {
+      if (std::ssize(found) >= kPlacements || good >= kTrials) break;
+      const double yaw = turn * M_PI / 6.0;
+      const Eigen::Matrix3d R(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+      const Pose T_B_root{nominal.p + offset - R * T_root_start.p, R};
+      const std::optional<scenario::Start> start = reach.start_at(T_B_root * T_root_start);
+      const bool is_roomy = start && has_room(device.model, *start);
+      if (!start || (!is_roomy && !found.empty())) continue;  // one without room is enough
+      const auto count = std::ranges::count_if(others, [&](const Pose& T_root_E) {
+        return reach.start_at(T_B_root * T_root_E).has_value();
+      });
+      found.push_back({.T_B_root = T_B_root,
+                       .yaw = yaw,
+                       .share = static_cast<double>(count) / kPostures,
+                       .has_room = is_roomy});
+      if (is_roomy && count == kPostures) ++good;
+    }
+  }
+  std::ranges::stable_sort(found, std::greater(), [](const Placement& placement) {
+    return std::tuple(placement.has_room, placement.share);
+  });
+  if (found.empty()) {
+    found.push_back(
+        {.T_B_root = nominal * inverse(T_root_start), .share = 0.0, .is_upright = false});
+  }
+  return found;
+}
+
+std::string placement_line(const Placement& placement) {
+  const Eigen::Vector3d& p = placement.T_B_root.p;
+  std::string text =
+      fmt::format("placement: {{x_m: {:.3f}, y_m: {:.3f}, z_m: {:.3f}", p.x(), p.y(), p.z());
+  if (placement.is_upright) {
+    if (placement.yaw != 0.0) text += fmt::format(", yaw_rad: {:.6f}", placement.yaw);
+    return text + fmt::format("}}  # [V] the device reaches {:.0f} % of the twin's postures\n",
+                              100.0 * placement.share);
+  }
+  const Eigen::Matrix3d& R = placement.T_B_root.R;
+  const double pitch = -std::asin(std::clamp(R(2, 0), -1.0, 1.0));
+  text += fmt::format(", roll_rad: {:.6f}, pitch_rad: {:.6f}, yaw_rad: {:.6f}",
+                      std::atan2(R(2, 1), R(2, 2)), pitch, std::atan2(R(1, 0), R(0, 0)));
+  return text +
+         "}  # [V] tilted: upright the device cannot hold this end effector at the start;\n"
+         "# give the URDF a frame turned like the handle of the device to place it upright\n";
+}
+
+// how fast the end effector of the twin may be for the handle of the device to follow
+struct TipRatings {
+  double speed = 1.2;          // m/s
+  double braking = 4.0;        // m/s^2
+  double turn_speed = 2.5;     // rad/s
+  double turn_braking = 20.0;  // rad/s^2
+};
+
+TipRatings tip_ratings(const config::DeviceConfig& device) {
+  limits::JointLimits hand{.dq_max = 1.5, .ddq_max = 5.0};
+  for (const limits::JointLimits& axis : handle_limits(device.model)) {
+    hand.dq_max = std::min(hand.dq_max, axis.dq_max);
+    hand.ddq_max = std::min(hand.ddq_max, axis.ddq_max);
+  }
+  TipRatings ratings{.speed = kShare * hand.dq_max, .braking = kShare * hand.ddq_max};
+  for (std::size_t i = device.model.joint_limits.size() - 3; i < device.model.joint_limits.size();
+       ++i) {
+    const limits::JointLimits& wrist = device.model.joint_limits[i];
+    ratings.turn_speed = std::min(ratings.turn_speed, kTurnShare * wrist.dq_max);
+    ratings.turn_braking = std::min(ratings.turn_braking, kTurnShare * wrist.ddq_max);
+  }
+  return ratings;
+}
+
+std::string joint_lines(Mechanism& d, const TipRatings& ratings, double mass_scale) {
+  const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(d.chain.model().nv());
+  d.chain.update(d.start, at_rest);
+  const Eigen::MatrixXd M = d.chain.M();
+  std::string text =
+      "\njoints:  # positions and speeds that do not stand here are those of the URDF\n";
+  for (int i = 0; i < d.chain.model().nv(); ++i) {
+    const model::Joint& j = joint(d, i);
+    const bool turns = !j.is_slide();
+    const std::string unit = turns ? "rad" : "m";
+    const double lever = std::max(d.lever[i], 1e-6);
+    const double speed =
+        turns ? std::min(ratings.turn_speed, ratings.speed / lever) : ratings.speed;
+    const double braking =
+        turns ? std::min(ratings.turn_braking, ratings.braking / lever) : ratings.braking;
+    text += fmt::format("  {}:\n", quoted(j.name));
+    const std::string where = !turns          ? "moves the end effector along"
+                              : lever > kNear ? rounded(lever) + " m from the end effector"
+                                              : "turns the end effector";
+    text += fmt::format("    ddq_max_{}_per_s2: {}  # [V] {}\n", unit, rounded(braking), where);
+    if (j.velocity_max > speed) {
+      text += fmt::format("    dq_max_{}_per_s: {}  # [V] the hand of the device is no faster\n",
+                          unit, rounded(speed));
+    }
+    if (j.damping > 0.0 || j.friction > 0.0) {
+      text += fmt::format("    # damping {} and friction {} are those of the URDF\n",
+                          rounded(j.damping), rounded(j.friction));
+      continue;
+    }
+    text += fmt::format("    damping_{}: {}  # [A] let go it coasts for about {} s\n",
+                        turns ? "Nms_per_rad" : "Ns_per_m",
+                        rounded(mass_scale * M(i, i) / kCoasting), rounded(kCoasting));
+  }
+  return text;
+}
+
+std::string yaml_of(Mechanism& d, const Placement& placement, double mass_scale,
+                    const ChainPart& part, const std::filesystem::path& folder,
+                    const config::DeviceConfig& device) {
+  return fmt::format(
+             "# {} as a twin, from {}, placed for the device {}.\n"
+             "# [V] worked out from the URDF, [A] assumed: look at these first. All keys: "
+             "docs/reference/configuration.md\n\n"
+             "name: {}\n{}"
+             "end_effector: {}  # [A] frame that the hand holds\n",
+             d.chain.model().name(), part.urdf.filename().generic_string(), device.name,
+             quoted(d.chain.model().name()), part_lines(part, folder),
+             quoted(d.chain.model().frame_names()[d.end_effector])) +
+         placement_line(placement) +
+         "gravity: false  # true: the hand carries the weight of the twin\n" +
+         (mass_scale == 1.0
+              ? ""
+              : fmt::format("mass_scale: {:g}  # [V] lighter it shakes in a hand on this device\n",
+                            mass_scale)) +
+         joint_lines(d, tip_ratings(device), mass_scale);
+}
+
+// A trial of a draft. The worst is one that cannot begin.
+struct Trial {
+  workspace::Way way;
+  std::string refusal;  ///< why it cannot; empty: it began
+
+  std::string trouble() const { return refusal.empty() ? workspace::trouble_of(way) : refusal; }
+};
+
+// Leads a hand through the twin of a draft that stands beside its URDF.
+Trial try_out(const std::string& yaml, const std::string& urdf, const std::string& urdf_name,
+              const config::SimulatedDeviceConfig& device) {
+  config::SourceReader reader({{"twin.yaml", yaml}, {urdf_name, urdf}});
+  try {
+    return {.way = workspace::lead(device, config::load_twin("twin.yaml", reader)), .refusal = {}};
+  } catch (const SetupError& error) {
+    return {.way = {.share = -1.0}, .refusal = error.what()};
+  }
+}
+
+// Whether `a` went better than `b`: farther, then without a fault, then with fewer limits in the
+// way.
+bool is_better(const workspace::Way& a, const workspace::Way& b) {
+  const auto whole = [](const workspace::Way& way) {
+    return std::min(way.share, workspace::kWholeWay);
+  };
+  if (whole(a) != whole(b)) return whole(a) > whole(b);
+  return std::tuple(!a.fault.empty(), a.excess, a.at_limit_s, a.rushed_s) <
+         std::tuple(!b.fault.empty(), b.excess, b.at_limit_s, b.rushed_s);
+}
+
+// Whether nothing but an oscillation of hand and device was in the way.
+bool is_only_shaken(const Trial& trial) {
+  workspace::Way calm = trial.way;
+  calm.shaken_s = 0.0;
+  return trial.refusal.empty() && trial.way.shaken_s > 0.0 && workspace::trouble_of(calm).empty();
+}
+
+}  // namespace
+
+TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
+                     const config::SimulatedDeviceConfig& device,
+                     const std::function<void(std::size_t, std::size_t)>& progress) {
+  Mechanism d = make_mechanism(part);
+  std::vector<Placement> placements = find_placements(d, device);
+  const std::string urdf = config::SourceReader().read(part.urdf);
+  const std::filesystem::path beside = part.urdf.parent_path();
+  const std::string urdf_name = urdf_in(part, beside);
+  Trial best;
+  const Placement* chosen = nullptr;
+  const std::size_t most = std::min<std::size_t>(kTrials, placements.size());
+  std::size_t trials = 0;
+  for (const Placement& placement : placements | std::views::take(most)) {
+    const Trial trial =
+        try_out(yaml_of(d, placement, 1.0, part, beside, device), urdf, urdf_name, device);
+    if (progress) progress(++trials, most);
+    if (chosen != nullptr && !is_better(trial.way, best.way)) continue;
+    chosen = &placement;
+    best = trial;
+    if (best.trouble().empty()) break;
+  }
+  double mass_scale = 1.0;
+  for (const double scale : kMassScales) {
+    if (!is_only_shaken(best)) break;
+    const Trial trial =
+        try_out(yaml_of(d, *chosen, scale, part, beside, device), urdf, urdf_name, device);
+    if (!trial.trouble().empty()) continue;
+    best = trial;
+    mass_scale = scale;
+  }
+  if (progress) progress(most, most);
+  return {.yaml = yaml_of(d, *chosen, mass_scale, part, folder, device),
+          .trouble = best.trouble(),
+          .note = mass_scale == 1.0
+                      ? ""
+                      : fmt::format("{:g} times as heavy as in its URDF (mass_scale): lighter it "
+                                    "shakes in a hand on this device",
+                                    mass_scale)};
+}
+
+}  // namespace hg::new_files

@@ -1,0 +1,32 @@
+/// Parameters of a device that `tune` changes, named as in its file.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "hg/tune/handle_loop.h"
+
+namespace hg::tune {
+
+struct Knob {
+  std::string_view section, key;   ///< section and key in device.yaml
+  double least = 0.0, most = 0.0;  ///< range of the search
+  double (*get)(const TunedDevice&);
+  void (*set)(TunedDevice&, double);
+};
+
+std::span<const Knob> knobs();
+
+/// One value per knob.
+using Values = Eigen::VectorXd;
+
+Values values_of(const TunedDevice& device);
+/// The device with these values; values outside the search range are clamped.
+TunedDevice with_values(TunedDevice device, const Values& values);
+
+/// Normalised values within the range of each knob, 0 to 1, logarithmic where the range is, and
+/// back.
+Eigen::VectorXd place_of(const Values& values);
+Values values_at(const Eigen::VectorXd& place);
+
+}  // namespace hg::tune
