@@ -13,6 +13,7 @@ namespace hg::safety {
 namespace {
 
 constexpr double kClockMemory = 0.02;       // share of the newest sample in the clock's mean error
+constexpr double kClockErrorMax = 1e6;      // of one sample, periods: one wild stamp is forgotten
 constexpr double kPullMemory_s = 0.2;       // time constant of forgetting shifts of the reference
 constexpr double kGapMemory_s = 2.0;        // time constant of forgetting errors of the drive model
 constexpr double kDriftMemory_s = 60.0;     // the same for slow drift
@@ -94,25 +95,26 @@ Monitor::Monitor(const MonitorConfig& config, const DeviceModel& device,
   }
 }
 
-// A threshold of zero is passed by any value above it.
+// A threshold of zero is passed by any value above it, every threshold by NaN: a value that could
+// not be computed is no proof that a limit holds.
 template <FaultCode kCode>
 void Monitor::look(int index, double value, double limit) noexcept {
   constexpr std::size_t kRule = rule_index(kCode);
   static_assert(kRule < kRuleCount);
   Worst& worst = worst_[kRule];
-  if (!(value > worst.share * limit)) return;
-  worst = {limit > 0.0 ? value / limit : kInfinity, value, limit, index};
+  const bool is_known = !std::isnan(value);
+  if (is_known && !(value > worst.share * limit)) return;
+  worst = {is_known && limit > 0.0 ? value / limit : kInfinity, value, limit, index};
 }
 
 bool Monitor::has_jumped(const SensorFrame& sensors, const MonitorState& state) const noexcept {
   if (!state.has_sample) return false;
   const double far = config_.jump_factor * dt_;
   for (int i = 0; i < n_m_; ++i) {
-    if (std::abs(turned(sensors.q_m[i] - state.q_m[i])) > far * joint_limits_[i].dq_max) {
-      return true;
-    }
+    const double moved = std::abs(turned(sensors.q_m[i] - state.q_m[i]));
+    if (!(moved <= far * joint_limits_[i].dq_max)) return true;
   }
-  return ((sensors.q_p - state.q_p).array().abs() > far * drive_.dq_max).any();
+  return !((sensors.q_p - state.q_p).array().abs() <= far * drive_.dq_max).all();
 }
 
 MonitorResult Monitor::watch(const SensorFrame& sensors, const Rendered& rendered,
@@ -344,7 +346,8 @@ Fault Monitor::look_for_shaking(const SensorFrame& sensors, const Rendered& rend
 void Monitor::check_clocks(const SensorFrame& sensors, const Watched& watched,
                            MonitorState& state) noexcept {
   if (state.has_sample) {
-    const double error = (sensors.time_s - state.time_s) / dt_ - 1.0;
+    const double error =
+        std::clamp((sensors.time_s - state.time_s) / dt_ - 1.0, -kClockErrorMax, kClockErrorMax);
     state.clock_error += kClockMemory * (error - state.clock_error);
     look<FaultCode::kClockWrong>(-1, std::abs(state.clock_error), config_.clock_tolerance);
   }
@@ -423,7 +426,7 @@ MonitorResult Monitor::judge(MonitorState& state) const noexcept {
   double nearest = 0.0;
   for (std::size_t i = 0; i < kRuleCount; ++i) {
     const Worst& worst = worst_[i];
-    if (!(worst.value > 0.0)) {  // far from the threshold
+    if (worst.value <= 0.0) {  // far from the threshold
       state.broken[i] = 0;
       continue;
     }

@@ -337,6 +337,35 @@ TEST(Monitor, AClockThatStopsJumpsOrRunsWrongIsSeenAndOneThatJittersIsNot) {
             -1);
 }
 
+// 1e308 s make the mean of the clock's error infinite, and the step back makes it NaN
+TEST(Monitor, OneWildTimeStampIsSeenAndTheClockIsWatchedAfterIt) {
+  for (const double wild : {1e308, -1e308, 1e12}) {
+    Bench bench;
+    const double before = bench.sensors.time_s;
+    bench.sensors.time_s = wild;
+    bench.step();
+    bench.sensors.time_s = before + 1e-3;
+    EXPECT_GT(bench.until_fault(FaultCode::kClockWrong, [] {}), 0) << wild;
+    bench.run(2000);
+    EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << wild;
+    EXPECT_GT(bench.until_fault(FaultCode::kClockWrong, [&] { bench.sensors.time_s -= 1e-3; }), 0)
+        << wild;
+  }
+}
+
+TEST(Monitor, AValueThatCannotBeComputedBreaksItsRule) {
+  Bench bench;
+  bench.sensors.q_m[2] = bench.sensors.theta_m[2] = 1e308;
+  bench.step();
+  bench.sensors.q_m[2] = bench.sensors.theta_m[2] = -1e308;  // the difference is infinite
+  bench.step();
+  EXPECT_EQ(bench.verdict.fault.code, FaultCode::kSensorJump);
+  EXPECT_TRUE(bench.monitor.has_jumped(good_sensors(), bench.state));
+  Bench results;
+  EXPECT_GT(results.until_fault(FaultCode::kSyncLost, [&] { results.results.sync_error = kNan; }),
+            0);
+}
+
 TEST(Monitor, LateCyclesAreForgivenWhenTheyAreFewAndFarBetween) {
   Bench rare;
   int k = 0;
