@@ -70,6 +70,8 @@ MODELS = {
 PROTOCOLS = {
     ("libfranka-common", "d96c221"): ("Apache-2.0", "layout of messages: hg/device/franka/protocol.h"),
 }
+# in no package: only hapticgiant-design, which is in none, is linked with it
+UNPACKED = {"libpagmo-dev"}
 SPDX_TEXT = "that of this name in the SPDX list"
 IMPLIED = ["g++", "libc6", "libfastrtps-dev", "libpagmo-dev", "rustc"]  # not in the list of setup.sh that libraries are in
 
@@ -275,7 +277,7 @@ def write_texts(file):
     texts = {}  # by text: the components that have it
     rows = [*system_rows(), *wheel_rows(), *crate_rows(), *npm_rows(), *protocol_rows()]
     for source, name, version, licence, how, _ in rows:
-        if (source == "Debian" and name in ("g++", "libc6") or how == "while compiling" or
+        if (source == "Debian" and name in UNPACKED | {"g++", "libc6"} or how == "while compiling" or
                 re.match(r"windows|winapi", name)):
             continue  # not in it
         if source == "Debian":
