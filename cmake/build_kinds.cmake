@@ -86,3 +86,12 @@ function(hg_build_kind target kind)
   endif()
   target_precompile_headers(${target} REUSE_FROM ${donor})
 endfunction()
+
+# hg_library_path(TARGET FOLDER...)
+# Where the installed target looks for libraries, relative to its own folder. They stand in its
+# RUNPATH in the build folder as well: CMake makes room for the longer of the two by empty entries,
+# and an empty entry is the working directory.
+function(hg_library_path target)
+  list(TRANSFORM ARGN PREPEND "$ORIGIN/")
+  set_target_properties(${target} PROPERTIES INSTALL_RPATH "${ARGN}" BUILD_RPATH "${ARGN}")
+endfunction()

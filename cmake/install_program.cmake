@@ -9,8 +9,9 @@ get_property(programs GLOBAL PROPERTY HG_PROGRAMS)
 add_custom_target(hg_programs)
 add_dependencies(hg_programs ${programs})
 # where the Debian package has its libraries, or the wheels beside ours theirs
-set_target_properties(${programs} PROPERTIES
-  INSTALL_RPATH "$ORIGIN/../lib/hapticgiant/lib:$ORIGIN/../../cmeel.prefix/lib")
+foreach(program IN LISTS programs)
+  hg_library_path(${program} ../lib/hapticgiant/lib ../../cmeel.prefix/lib)
+endforeach()
 install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET hg_libraries
   RUNTIME DESTINATION ${HG_PROGRAM_PREFIX}bin COMPONENT program)
 set(share ${HG_PROGRAM_PREFIX}share/hapticgiant)

@@ -1,8 +1,11 @@
 """What the linker and the compiler must have put into a program or library.
 
-Usage: hardening_test.py [--unoptimised] FILE...   reads it with readelf; exit code 1 where it is missing
+Usage: hardening_test.py [--unoptimised] FILE|FOLDER...
+reads them with readelf; exit code 1 where something is missing. Of a FOLDER all programs and libraries
+are read, and only for where they look for libraries.
 """
 
+import pathlib
 import re
 import subprocess
 import sys
@@ -32,13 +35,34 @@ def missing_in(file, is_optimised):
     return [what for what, is_held in held.items() if not is_held]
 
 
+def open_folders(file):
+    """Entries of its RUNPATH that depend on the working directory: empty or relative ones."""
+    found = re.search(r"\((?:RUNPATH|RPATH)\).*\[(.*)\]", readelf("--dynamic", file))
+    entries = found[1].split(":") if found else []
+    return [entry for entry in entries if not entry.startswith(("/", "$ORIGIN/"))]
+
+
+def linked_files(folder):
+    """Programs and libraries below `folder`."""
+    for path in sorted(pathlib.Path(folder).rglob("*")):
+        if path.is_file() and not path.is_symlink() and (path.suffix == ".so" or path.stat().st_mode & 1):
+            with path.open("rb") as file:
+                if file.read(4) == b"\x7fELF":
+                    yield str(path)
+
+
 def main():
-    files = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
-    if not files:
+    arguments = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
+    if not arguments:
         sys.exit(__doc__)
+    folders = [argument for argument in arguments if pathlib.Path(argument).is_dir()]
+    files = [argument for argument in arguments if argument not in folders]
     faults = [f"{file}: {what} is missing" for file in files
               for what in missing_in(file, "--unoptimised" not in sys.argv)]
-    print("\n".join(faults) or f"{len(files)} hardened")
+    linked = files + [file for folder in folders for file in linked_files(folder)]
+    faults += [f"{file}: looks for libraries in '{entry}' of the working directory"
+               for file in linked for entry in open_folders(file)]
+    print("\n".join(faults) or f"{len(files)} hardened, {len(linked)} without an open RUNPATH")
     sys.exit(1 if faults else 0)
 
 

@@ -133,6 +133,11 @@ class Installed:
             check(re.match("win", component) or re.search(rf"^{component} ", texts, re.MULTILINE),
                   f"{component}: its licence is not in the package")
 
+    def test_library_folders(self):
+        print(run(sys.executable, ROOT / "tests/hardening/hardening_test.py",
+                  *self.prefix.glob("bin/hapticgiant*"),
+                  *{file.parent for file in self.libraries}, *self.prefix.glob("_core*.so")), end="")
+
     def test_the_bridge(self, is_in_it):
         done = subprocess.run([*self.command, "bridge", "ros2", "--help"], text=True,
                               capture_output=True, **self.options())
@@ -148,6 +153,7 @@ class Installed:
         self.test_files()
         self.test_the_page()
         self.test_licences()
+        self.test_library_folders()
 
 
 def get(url, token):
