@@ -2,7 +2,8 @@
 #
 #   make demo    sets up, builds, and runs the main job; ARGS="..." are handed on
 #   make test    sets up, builds and runs every test
-#   make build   sets up and builds the program: build/release/hapticgiant
+#   make build   sets up and builds all programs: build/release/hapticgiant and those behind its
+#                offline commands (experiment, export, identify, design, bridge ros2, ...)
 #   make wheel   packs what `make build` has made for pip, into build/wheel
 #   make deb     the same for apt, into build/deb
 #   make test-wheel
@@ -96,13 +97,16 @@ endef
   franka foxglove ros2 ros1 notebooks pictures sweep-engines soak soak-machines \
   bench bench-instructions experiments arms
 
-demo: build
+demo:
+	@tools/setup.sh build
+	@tools/configure.sh $(PRESET) build
+	@cmake --build $(BUILD) --target hapticgiant
 	@$(BUILD)/hapticgiant run $(ARGS)
 
 build:
 	@tools/setup.sh build
 	@tools/configure.sh $(PRESET) build
-	@cmake --build $(BUILD) --target hapticgiant
+	@cmake --build $(BUILD) --target programs
 
 test:
 	@tools/setup.sh test
@@ -143,7 +147,7 @@ bench:
 	@tools/setup.sh bench
 	@tools/configure.sh $(PRESET) build
 	@cmake --log-level=ERROR $(BUILD) >/dev/null  # finds what set-up has just fetched
-	@cmake --build $(BUILD) --target hapticgiant
+	@cmake --build $(BUILD) --target programs
 	@$(BUILD)/hapticgiant bench --out $(RESULTS) $(ARGS)
 
 experiments: build  # each one refreshes its page, also after one that is not as expected
@@ -172,7 +176,7 @@ foxglove: build
 notebooks: build
 	@tools/setup.sh test
 	@tools/configure.sh $(PRESET) test
-	@cmake --build $(BUILD) --target hapticgiant _core _core_stubs
+	@cmake --build $(BUILD) --target programs _core _core_stubs
 	@.venv/bin/python tools/notebooks.py
 	@.venv/bin/python tests/connect/notebooks_test.py $(BUILD) $(BUILD)/hapticgiant
 

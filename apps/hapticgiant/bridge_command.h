@@ -1,10 +1,10 @@
 /// `hapticgiant bridge NAME`: runs the bridge to another world of tools, a program of its own.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace hg::apps {
 
-void add_bridge(CLI::App& app, int& exit_code);
+class Command;
+
+void add_bridge(Command app);
 
 }  // namespace hg::apps

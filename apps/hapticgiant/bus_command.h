@@ -5,11 +5,9 @@
 
 #include "hg/device/ethercat/bus_scan.h"
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 /// Takes all slaves behind a network interface to PRE-OP and prints what they are. Throws
 /// SetupError.
@@ -24,6 +22,6 @@ int bus_watch(const std::string& interface_name, const ethercat::BusWatchOptions
 int bus_check(const std::string& interface_name, const std::string& file);
 
 /// Adds the subcommand to the program; running it sets `exit_code`.
-void add_bus(CLI::App& app, int& exit_code);
+void add_bus(Command app, int& exit_code);
 
 }  // namespace hg::apps

@@ -1,9 +1,9 @@
 #include "apps/hapticgiant/check_command.h"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/command_line/command.h"
 #include "apps/hapticgiant/check_report.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/report.h"
@@ -30,24 +30,24 @@ int run_check(const CheckArguments& arguments) {
   return count(report, check::Severity::kFault) > 0 ? 2 : 0;
 }
 
-void add_check(CLI::App& app, int& exit_code) {
+void add_check(Command app, int& exit_code) {
   const auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "check", "What is wrong with configuration files, and how to fix it; datasheet of a device.");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  hapticgiant check models/scenarios/door.yaml\n"
       "  hapticgiant check my_device.yaml my_twin.yaml   each, and whether they fit together\n"
       "  hapticgiant check models/haptic_giant/device.yaml --map capability.svg");
   command
-      ->add_option("files", arguments->files,
-                   "device, twin, scenario, tool or script files; the kind follows from their keys")
-      ->required();
-  command->add_option("--json", arguments->json,
-                      "write findings and datasheets as JSON to this file");
-  command->add_option("--map", arguments->map,
-                      "draw the force over the workspace of the first device to this SVG file");
-  command->callback([arguments, &exit_code] { exit_code = run_check(*arguments); });
+      .add_option("files", arguments->files,
+                  "device, twin, scenario, tool or script files; the kind follows from their keys")
+      .required();
+  command.add_option("--json", arguments->json,
+                     "write findings and datasheets as JSON to this file");
+  command.add_option("--map", arguments->map,
+                     "draw the force over the workspace of the first device to this SVG file");
+  command.callback([arguments, &exit_code] { exit_code = run_check(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -5,11 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 struct CheckArguments {
   std::vector<std::string> files;
@@ -21,6 +19,6 @@ struct CheckArguments {
 int run_check(const CheckArguments& arguments);
 
 /// Adds the subcommand to the program; running it sets `exit_code`.
-void add_check(CLI::App& app, int& exit_code);
+void add_check(Command app, int& exit_code);
 
 }  // namespace hg::apps

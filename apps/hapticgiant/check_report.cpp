@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/print_datasheet.h"
 
 namespace hg::apps {

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <ctime>
 #include <memory>
 
+#include "apps/command_line/command.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/interruption.h"
-#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/terminal_crew.h"
 #include "apps/hapticgiant/version.h"
@@ -96,24 +96,24 @@ int commission(const CommissionArguments& options) {
   return has_passed ? 0 : 1;
 }
 
-void add_commission(CLI::App& app, int& exit_code) {
+void add_commission(Command app, int& exit_code) {
   const auto options = std::make_shared<CommissionArguments>();
-  CLI::App* command =
+  const Command command =
       app.add_subcommand("commission",
                          "First motions of a new machine: is it connected as its file says? "
                          "(docs/reference/commission.md)");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  hapticgiant commission                   the simulated device, with a simulated person\n"
       "  hapticgiant commission ur5e/open_drawer  the same of another arm: a scenario where it "
       "stands\n"
       "  hapticgiant commission --device my_arm_device.yaml --device-address 192.168.1.20:4810");
-  add_machine_options(*command, options->machine);
+  add_machine_options(command, options->machine);
   command
-      ->add_flag("--simulated-person", options->has_simulated_person,
-                 "of a remote device that is simulated: no key is held, and nobody is asked")
-      ->needs("--device-address");
-  command->callback([options, &exit_code] { exit_code = commission(*options); });
+      .add_flag("--simulated-person", options->has_simulated_person,
+                "of a remote device that is simulated: no key is held, and nobody is asked")
+      .needs("--device-address");
+  command.callback([options, &exit_code] { exit_code = commission(*options); });
 }
 
 }  // namespace hg::apps

@@ -5,6 +5,8 @@
 
 namespace hg::apps {
 
+class Command;
+
 struct CommissionArguments {
   MachineOptions machine;
   bool has_simulated_person = false;  ///< at a remote device, if that says that it is simulated
@@ -15,6 +17,6 @@ struct CommissionArguments {
 int commission(const CommissionArguments& options);
 
 /// Adds the subcommand to the program; running it sets `exit_code`.
-void add_commission(CLI::App& app, int& exit_code);
+void add_commission(Command app, int& exit_code);
 
 }  // namespace hg::apps

@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "apps/hapticgiant/option_checks.h"
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/command.h"
+#include "apps/command_line/option_checks.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/analysis/timing.h"
@@ -101,23 +101,23 @@ int doctor(const DoctorArguments& arguments) {
   return doctor::exit_code(lines);
 }
 
-void add_doctor(CLI::App& app, int& exit_code) {
+void add_doctor(Command app, int& exit_code) {
   const auto arguments = std::make_shared<DoctorArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "doctor", "How ready this computer is for a control loop, and what to change.");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  hapticgiant doctor                       a quarter of a minute\n"
       "  hapticgiant doctor --seconds 600 --cpu 3 --json doctor.json");
-  command->add_option("--seconds", arguments->seconds, "of each of the four measurements")
-      ->check(number_that("from 0.1 to 100000", [](double v) { return v >= 0.1 && v <= 1e5; }))
-      ->capture_default_str();
-  command->add_option("--priority", arguments->priority, "as in run")
-      ->check(number_that("from 1 to 99", [](double v) { return v >= 1.0 && v <= 99.0; }))
-      ->capture_default_str();
-  command->add_option("--cpu", arguments->cpu, "as in run")->check(at_least(0));
-  command->add_option("--json", arguments->json, "write everything as JSON to this file");
-  command->callback([arguments, &exit_code] { exit_code = doctor(*arguments); });
+  command.add_option("--seconds", arguments->seconds, "of each of the four measurements")
+      .check(number_that("from 0.1 to 100000", [](double v) { return v >= 0.1 && v <= 1e5; }))
+      .capture_default_str();
+  command.add_option("--priority", arguments->priority, "as in run")
+      .check(number_that("from 1 to 99", [](double v) { return v >= 1.0 && v <= 99.0; }))
+      .capture_default_str();
+  command.add_option("--cpu", arguments->cpu, "as in run").check(at_least(0));
+  command.add_option("--json", arguments->json, "write everything as JSON to this file");
+  command.callback([arguments, &exit_code] { exit_code = doctor(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -3,11 +3,9 @@
 
 #include <string>
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 struct DoctorArguments {
   double seconds = 3.0;  ///< duration of each of the four measurements
@@ -20,6 +18,6 @@ struct DoctorArguments {
 int doctor(const DoctorArguments& arguments);
 
 /// Adds the subcommand to the program; running it sets `exit_code`.
-void add_doctor(CLI::App& app, int& exit_code);
+void add_doctor(Command app, int& exit_code);
 
 }  // namespace hg::apps

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/command.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "hg/analysis/run_story.h"
 #include "hg/core/error.h"
@@ -112,15 +112,15 @@ int explain_recording(const std::string& file) {
   return 0;
 }
 
-void add_explain(CLI::App& app, int& exit_code) {
+void add_explain(Command app, int& exit_code) {
   const auto file = std::make_shared<std::string>();
-  CLI::App* command =
+  const Command command =
       app.add_subcommand("explain", "Describes what happened in a recording, in order.");
-  command->footer("Example:\n  hapticgiant explain recordings/latest.mcap");
-  command->add_option("file", *file, "recording, also one that a crash has cut off")
-      ->required()
-      ->check(CLI::ExistingFile);
-  command->callback([file, &exit_code] { exit_code = explain_recording(*file); });
+  command.footer("Example:\n  hapticgiant explain recordings/latest.mcap");
+  command.add_option("file", *file, "recording, also one that a crash has cut off")
+      .required()
+      .existing_file();
+  command.callback([file, &exit_code] { exit_code = explain_recording(*file); });
 }
 
 }  // namespace hg::apps

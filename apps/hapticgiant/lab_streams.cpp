@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/report.h"
 
 namespace hg::apps {

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <utility>
 
-#include "apps/hapticgiant/option_checks.h"
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/command.h"
+#include "apps/command_line/option_checks.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/run_setup.h"
@@ -22,7 +22,7 @@
 
 namespace hg::apps {
 
-void add_machine_options(CLI::App& command, MachineOptions& options) {
+void add_machine_options(Command command, MachineOptions& options) {
   add_scenario_options(command, options.world);
   command.add_option("--device-address", options.device_address,
                      "HOST:PORT of a remote device instead of a simulated one, or "
@@ -30,27 +30,27 @@ void add_machine_options(CLI::App& command, MachineOptions& options) {
   command
       .add_option("--machine", options.machine,
                   "machine.yaml of a bus; default: the one beside the device file")
-      ->needs("--device-address");
+      .needs("--device-address");
   command
       .add_option("--key-file", options.key_file,
                   "secret that the remote device has, too (docs/reference/device_protocol.md)")
-      ->needs("--device-address");
+      .needs("--device-address");
   command.add_flag("--fast", options.is_fast, "lock-step with a remote device that is simulated")
-      ->needs("--device-address");
+      .needs("--device-address");
   command
       .add_option("--priority", options.priority,
                   "SCHED_FIFO priority with a remote device, 1..99; 0: an ordinary thread")
-      ->check(number_that("from 0 to 99", [](double v) { return v >= 0.0 && v <= 99.0; }))
-      ->capture_default_str();
+      .check(number_that("from 0 to 99", [](double v) { return v >= 0.0 && v <= 99.0; }))
+      .capture_default_str();
   command
       .add_option("--despite", options.despite,
                   "items of the doctor that are bad about this computer and are to be let pass, as "
                   "NAME,NAME")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->needs("--device-address");
+      .delimiter(',')
+      .allow_extra_args(false)
+      .needs("--device-address");
   command.add_option("--recordings", options.recordings, "folder that keeps the result")
-      ->capture_default_str();
+      .capture_default_str();
 }
 
 config::Scenario make_machine_scenario(const MachineOptions& options) {

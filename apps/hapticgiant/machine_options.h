@@ -9,11 +9,9 @@
 #include "hg/device/connected_device.h"
 #include "hg/scenario/options.h"
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 struct MachineOptions {
   scenario::ScenarioOptions world{.scenario = "free_space"};
@@ -29,7 +27,7 @@ struct MachineOptions {
 };
 
 /// Adds these options to a subcommand.
-void add_machine_options(CLI::App& command, MachineOptions& options);
+void add_machine_options(Command command, MachineOptions& options);
 
 /// The scenario whose device it is. Creates the folder of the results. Throws SetupError.
 config::Scenario make_machine_scenario(const MachineOptions& options);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/prepared_run.h"
 #include "hg/page/run_page.h"
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -13,7 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/command.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
 #include "hg/config/shipped_files.h"
@@ -179,51 +179,50 @@ int new_driver(const NewDriverArguments& arguments) {
   return 0;
 }
 
-void add_new(CLI::App& app, int& exit_code) {
+void add_new(Command app, int& exit_code) {
   const auto arguments = std::make_shared<NewArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "new", "Write a first device.yaml or twin.yaml for a URDF, or a driver to fill in.");
-  command->require_subcommand(1);
-  command->footer(
+  command.require_subcommand(1);
+  command.footer(
       "Examples:\n"
       "  hapticgiant new device my_arm.urdf\n"
       "  hapticgiant new twin my_gate.urdf --device my_arm_device.yaml\n"
       "  hapticgiant new driver my_arm --device my_arm_device.yaml");
   const auto add = [&](const char* kind, const char* text, int (*run)(const NewArguments&)) {
-    CLI::App* what = command->add_subcommand(kind, text);
-    what->add_option("urdf", arguments->part.urdf, "URDF of the robot or mechanism")
-        ->required()
-        ->check(CLI::ExistingFile);
-    what->add_option("--root-link", arguments->part.root_link,
-                     "first link of the part that is taken");
-    what->add_option("--tip-link", arguments->part.tip_link, "last link of the part that is taken");
-    what->add_option("-o,--output", arguments->output,
-                     "file to write; default: URDF name + _device.yaml or _twin.yaml");
-    what->add_flag("--force", arguments->may_overwrite, "overwrite the file");
-    what->callback([arguments, &exit_code, run] { exit_code = run(*arguments); });
+    const Command what = command.add_subcommand(kind, text);
+    what.add_option("urdf", arguments->part.urdf, "URDF of the robot or mechanism")
+        .required()
+        .existing_file();
+    what.add_option("--root-link", arguments->part.root_link,
+                    "first link of the part that is taken");
+    what.add_option("--tip-link", arguments->part.tip_link, "last link of the part that is taken");
+    what.add_option("-o,--output", arguments->output,
+                    "file to write; default: URDF name + _device.yaml or _twin.yaml");
+    what.add_flag("--force", arguments->may_overwrite, "overwrite the file");
+    what.callback([arguments, &exit_code, run] { exit_code = run(*arguments); });
     return what;
   };
   add("device", "the robot whose handle is held", new_device)
-      ->add_option("--drives", arguments->drives,
-                   "how its joints take commands, and how they are simulated: position, torque, or "
-                   "ideal (positions, followed exactly)")
-      ->check(CLI::IsMember({"position", "torque", "ideal"}));
+      .add_option("--drives", arguments->drives,
+                  "how its joints take commands, and how they are simulated: position, torque, or "
+                  "ideal (positions, followed exactly)")
+      .one_of({"position", "torque", "ideal"});
   add("twin", "the mechanism that is felt", new_twin)
-      ->add_option(
-          "--device", arguments->device,
-          "device.yaml that the twin is placed for, or the name of a shipped device (fr3)");
+      .add_option("--device", arguments->device,
+                  "device.yaml that the twin is placed for, or the name of a shipped device (fr3)");
   const auto driver = std::make_shared<NewDriverArguments>();
-  CLI::App* what = command->add_subcommand(
+  const Command what = command.add_subcommand(
       "driver", "a driver of your own machine, to fill in: docs/start/own_driver.md");
-  what->add_option("name", driver->name, "of the driver, and of the folder that is written")
-      ->required();
-  what->add_option("--language", driver->language,
-                   "python: over the network, slow and quick to begin with; cpp: 1 kHz")
-      ->check(CLI::IsMember({"python", "cpp"}))
-      ->capture_default_str();
-  what->add_option("--device", driver->device,
-                   "device.yaml of the machine, or the name of a shipped device");
-  what->callback([driver, &exit_code] { exit_code = new_driver(*driver); });
+  what.add_option("name", driver->name, "of the driver, and of the folder that is written")
+      .required();
+  what.add_option("--language", driver->language,
+                  "python: over the network, slow and quick to begin with; cpp: 1 kHz")
+      .one_of({"python", "cpp"})
+      .capture_default_str();
+  what.add_option("--device", driver->device,
+                  "device.yaml of the machine, or the name of a shipped device");
+  what.callback([driver, &exit_code] { exit_code = new_driver(*driver); });
 }
 
 }  // namespace hg::apps

@@ -6,11 +6,9 @@
 
 #include "hg/new/chain_part.h"
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 struct NewArguments {
   new_files::ChainPart part;
@@ -35,6 +33,6 @@ struct NewDriverArguments {
 int new_driver(const NewDriverArguments& arguments);
 
 /// Adds the subcommands to the program; running it sets `exit_code`.
-void add_new(CLI::App& app, int& exit_code);
+void add_new(Command app, int& exit_code);
 
 }  // namespace hg::apps

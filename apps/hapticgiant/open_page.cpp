@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/output.h"
 #include "hg/config/shipped_files.h"
 
 namespace hg::apps {

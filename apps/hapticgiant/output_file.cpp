@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/interruption.h"
-#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/version.h"
 
 namespace hg::apps {

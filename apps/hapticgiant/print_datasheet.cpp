@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/output.h"
 
 namespace hg::apps {
 namespace {

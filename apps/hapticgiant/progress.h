@@ -1,13 +1,15 @@
 /// Progress display of long tasks.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
-
-#include "hg/experiments/workers.h"
 
 namespace hg::apps {
 
+using Progress = std::function<void(std::size_t done, std::size_t total)>;
+
 /// Callback that shows "WHAT: 12 of 180" in place on a terminal; elsewhere it shows nothing.
-experiments::Progress progress_of(const std::string& what);
+Progress progress_of(const std::string& what);
 
 }  // namespace hg::apps

@@ -1,8 +1,8 @@
 #include "apps/hapticgiant/python_commands.h"
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "apps/command_line/command.h"
 #include "apps/hapticgiant/python_program.h"
 
 namespace hg::apps {
@@ -22,13 +22,11 @@ constexpr PythonCommand kCommands[] = {
 
 }  // namespace
 
-void add_python_commands(CLI::App& app) {
+void add_python_commands(Command app) {
   for (const auto& [name, description] : kCommands) {
-    CLI::App* command = app.add_subcommand(name, description);
-    command->set_help_flag();  // everything is Python's, --help too
-    command->prefix_command();
-    command->callback(
-        [command] { become_python_program(command->get_name(), command->remaining()); });
+    const Command command = app.add_subcommand(name, description);
+    command.take_all_words();  // --help is Python's, too
+    command.callback([command] { become_python_program(command.name(), command.remaining()); });
   }
 }
 

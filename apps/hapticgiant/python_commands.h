@@ -1,13 +1,11 @@
 /// The subcommands that are written in Python: `sweep`, `imus`, `study`.
 #pragma once
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
 
+class Command;
+
 /// Adds the subcommands to the program; running one replaces the process by its Python part.
-void add_python_commands(CLI::App& app);
+void add_python_commands(Command app);
 
 }  // namespace hg::apps

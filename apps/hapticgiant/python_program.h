@@ -30,11 +30,11 @@ pid_t start_program(std::vector<std::string>& words, int end, int stream);
 /// Words that start python/hapticgiant/`part`, or its module where the package is installed.
 std::vector<std::string> python_program(const std::string& part);
 
-/// The same; sets HAPTICGIANT_PROGRAM, which names this program to parts that run it, and
+/// The same; sets HAPTICGIANT_PROGRAM, which names hapticgiant to parts that run it, and
 /// HAPTICGIANT_PAGE, the folder of the page.
 std::vector<std::string> python_program_that_runs_us(const std::string& part);
 
-/// Replaces this process by that program with these arguments; HAPTICGIANT_PROGRAM names this one.
+/// Replaces this process by that program with these arguments; HAPTICGIANT_PROGRAM names hapticgiant.
 /// Does not return; throws SetupError where the interpreter cannot be started.
 [[noreturn]] void become_python_program(const std::string& part,
                                         const std::vector<std::string>& arguments);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -10,11 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "apps/hapticgiant/experiments/rerun.h"
+#include "apps/command_line/command.h"
+#include "apps/command_line/option_checks.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/open_page.h"
-#include "apps/hapticgiant/option_checks.h"
-#include "apps/hapticgiant/output.h"
+#include "apps/hapticgiant/rerun.h"
 #include "hg/live/link_file.h"
 #include "hg/page/recording_page.h"
 #include "hg/viewer_server/viewer_server.h"
@@ -91,36 +91,35 @@ int replay(const ReplayArguments& arguments) {
   return 0;
 }
 
-void add_replay(CLI::App& app, int& exit_code) {
+void add_replay(Command app, int& exit_code) {
   const auto arguments = std::make_shared<ReplayArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "replay", "Runs the cycle of a recording again, bit for bit; or look at it again.");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  hapticgiant replay recordings/latest.mcap        does the cycle still give the same?\n"
       "  hapticgiant replay recordings/latest.mcap --view\n"
       "  hapticgiant replay one.mcap --compare two.mcap --view --speed 0.5");
-  command->add_option("file", arguments->file, "recording of hapticgiant run")
-      ->required()
-      ->check(CLI::ExistingFile);
-  CLI::Option* view = command->add_flag("--view", arguments->has_view,
-                                        "in the page, with play, pause and scrubbing");
-  command
-      ->add_option("--compare", arguments->compare, "a second recording, shown through the first")
-      ->needs(view)
-      ->check(CLI::ExistingFile);
-  command->add_option("--speed", arguments->speed, "recorded seconds per second, 0.1..8")
-      ->needs(view)
-      ->check(number_that("from 0.1 to 8", [](double v) { return v >= 0.1 && v <= 8.0; }));
-  command->add_option("--bind", arguments->address, "as in run")
-      ->needs(view)
-      ->transform(without_brackets)
-      ->capture_default_str();
-  command->add_option("--port", arguments->port, "as in run")
-      ->needs(view)
-      ->check(whole_number(0.0, 65535.0));
-  command->add_flag("!--no-browser", arguments->opens_browser, "as in run");
-  command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
+  command.add_option("file", arguments->file, "recording of hapticgiant run")
+      .required()
+      .existing_file();
+  const Option view = command.add_flag("--view", arguments->has_view,
+                                       "in the page, with play, pause and scrubbing");
+  command.add_option("--compare", arguments->compare, "a second recording, shown through the first")
+      .needs(view)
+      .existing_file();
+  command.add_option("--speed", arguments->speed, "recorded seconds per second, 0.1..8")
+      .needs(view)
+      .check(number_that("from 0.1 to 8", [](double v) { return v >= 0.1 && v <= 8.0; }));
+  command.add_option("--bind", arguments->address, "as in run")
+      .needs(view)
+      .transform(without_brackets)
+      .capture_default_str();
+  command.add_option("--port", arguments->port, "as in run")
+      .needs(view)
+      .check(whole_number(0.0, 65535.0));
+  command.add_flag("!--no-browser", arguments->opens_browser, "as in run");
+  command.callback([arguments, &exit_code] { exit_code = replay(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -5,11 +5,9 @@
 #include <cstdint>
 #include <string>
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 struct ReplayArguments {
   std::string file;
@@ -25,6 +23,6 @@ struct ReplayArguments {
 int replay(const ReplayArguments& arguments);
 
 /// Adds the subcommand to the program; running it sets `exit_code`.
-void add_replay(CLI::App& app, int& exit_code);
+void add_replay(Command app, int& exit_code);
 
 }  // namespace hg::apps

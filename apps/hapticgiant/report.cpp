@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/python_program.h"
 #include "hg/core/error.h"

@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/lab_streams.h"
 #include "apps/hapticgiant/move_to_start.h"
 #include "apps/hapticgiant/open_page.h"
-#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/prepared_run.h"
 #include "apps/hapticgiant/run_setup.h"

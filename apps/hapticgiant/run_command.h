@@ -8,11 +8,9 @@
 
 #include "hg/scenario/options.h"
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 struct RunArguments {
   std::string program = "hapticgiant";  ///< program name as called, for printed commands
@@ -58,6 +56,6 @@ struct RunArguments {
 int run(const RunArguments& arguments);
 
 /// Adds the subcommand to the program, which was called as `program`; running it sets `exit_code`.
-void add_run(CLI::App& app, const std::string& program, int& exit_code);
+void add_run(Command app, const std::string& program, int& exit_code);
 
 }  // namespace hg::apps

@@ -2,73 +2,72 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
-#include "apps/hapticgiant/option_checks.h"
+#include "apps/command_line/command.h"
+#include "apps/command_line/option_checks.h"
 #include "hg/config/law_names.h"
 #include "hg/config/simulation/script_schema.h"
 
 namespace hg::apps {
-void add_choice(CLI::App& command, const char* option, std::string& value,
+void add_choice(Command command, const char* option, std::string& value,
                 std::vector<std::string> names, const char* what) {
-  const CLI::IsMember check(names);
+  const std::vector<std::string> all = names;
   const std::string last = names.back();
   names.pop_back();
   command
       .add_option(
           option, value,
           fmt::format("{} or {}{}; default: the device's", fmt::join(names, ", "), last, what))
-      ->check(check);
+      .one_of(all);
 }
 
-void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
+void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
   command
       .add_option(
           "scenario", world.scenario,
           "scenario file, or door, excavator, free_space, path, walk, surfaces, ARM/SCENARIO")
-      ->capture_default_str();
+      .capture_default_str();
   command.add_option(
       "--device", world.device,
       "device.yaml, or the name of a shipped device (fr3), instead of the scenario's");
   command.add_option(
       "--twin", world.twin,
       "twin.yaml, or the name of a shipped one (light, fr3/drawer), instead of the scenario's");
-  command
-      .add_option("--plant", world.plant, "elastic: with springs, friction and delays; or ideal")
-      ->check(CLI::IsMember({"elastic", "ideal"}));
+  command.add_option("--plant", world.plant, "elastic: with springs, friction and delays; or ideal")
+      .one_of({"elastic", "ideal"});
   command.add_option("--simulation", world.simulation, kSimulationHelp);
   command.add_option("--sensors", world.sensors, "real: with errors and noise; or ideal")
-      ->check(CLI::IsMember({"real", "ideal"}));
+      .one_of({"real", "ideal"});
   command.add_option("--hand", world.hand, "stiffness of the simulated hand")
-      ->check(CLI::IsMember(names_of(config::kHandPresets)));
+      .one_of(names_of(config::kHandPresets));
   command
       .add_option("--seed", world.seed,
                   "seed of noise and tremor: the same seed gives the same run")
-      ->check(whole_number(0.0));
+      .check(whole_number(0.0));
   command.add_option("--step", world.step_s, "largest step of the simulated machine, s")
-      ->check(number_that("from 1e-5 to 2e-3",
-                          [](double value) { return value >= 1e-5 && value <= 2e-3; }));
+      .check(number_that("from 1e-5 to 2e-3",
+                         [](double value) { return value >= 1e-5 && value <= 2e-3; }));
   command
       .add_option("--set", world.changes,
                   "another value for a key of scenario, device, simulation, twin or script, as "
                   "twin.mass_scale=2; may be given several times")
-      ->allow_extra_args(false);
+      .allow_extra_args(false);
   command.add_option("--user", world.user, "file or name of a script, mouse or none");
   command.add_option("--rate-hz", world.rate_Hz, "control rate, 100..20000; default: the device's")
-      ->check(number_that("from 100 to 20000",
-                          [](double value) { return value >= 100.0 && value <= 20000.0; }));
+      .check(number_that("from 100 to 20000",
+                         [](double value) { return value >= 100.0 && value <= 20000.0; }));
 }
 
-void add_law_options(CLI::App& command, scenario::ScenarioOptions& world) {
+void add_law_options(Command command, scenario::ScenarioOptions& world) {
   add_choice(command, "--law", world.law, names_of(config::kLaws));
   add_choice(command, "--bounds", world.bounds, names_of(config::kBounds));
   add_choice(command, "--gantry", world.gantry, names_of(config::kGantries));
   add_choice(command, "--braking", world.braking, names_of(config::kBrakings));
 }
 
-void add_passivity_option(CLI::App& command, scenario::ScenarioOptions& world) {
+void add_passivity_option(Command command, scenario::ScenarioOptions& world) {
   add_choice(command, "--passivity", world.passivity, names_of(config::kPassivityReactions),
              " on a hand and a device that shake each other");
 }

@@ -6,11 +6,9 @@
 
 #include "hg/scenario/options.h"
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 /// Help text of --simulation.
 inline constexpr char kSimulationHelp[] =
@@ -19,15 +17,15 @@ inline constexpr char kSimulationHelp[] =
 
 /// Adds scenario, device, twin, person and what is simulated; not the law. `world` must outlive
 /// parsing.
-void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world);
+void add_scenario_options(Command command, scenario::ScenarioOptions& world);
 
 /// Adds law, bounds, gantry and braking. `world` must outlive parsing.
-void add_law_options(CLI::App& command, scenario::ScenarioOptions& world);
-void add_passivity_option(CLI::App& command, scenario::ScenarioOptions& world);
+void add_law_options(Command command, scenario::ScenarioOptions& world);
+void add_passivity_option(Command command, scenario::ScenarioOptions& world);
 
 /// Adds an option that takes one of `names`; its help lists them, then `what` they are about.
 /// Without it the device decides.
-void add_choice(CLI::App& command, const char* option, std::string& value,
+void add_choice(Command command, const char* option, std::string& value,
                 std::vector<std::string> names, const char* what = "");
 
 /// Names of a list of choices such as config::kLaws.

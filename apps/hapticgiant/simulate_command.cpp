@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <memory>
 #include <string>
 
+#include "apps/command_line/command.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/interruption.h"
-#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
@@ -91,32 +91,31 @@ int simulate(const SimulateArguments& arguments) {
   return lost.empty() ? 0 : kNotWritten;
 }
 
-void add_simulate(CLI::App& app, int& exit_code) {
+void add_simulate(Command app, int& exit_code) {
   const auto arguments = std::make_shared<SimulateArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "simulate", "Device and person of a scenario for a controller elsewhere, over UDP.");
-  command->footer(
+  command.footer(
       "Examples:\n"
       "  hapticgiant simulate door --listen 127.0.0.1:4810     then, in another terminal:\n"
       "  hapticgiant run door --device-address 127.0.0.1:4810");
-  add_scenario_options(*command, arguments->world);
+  add_scenario_options(command, arguments->world);
   command
-      ->add_option(
-          "--listen", arguments->listen,
-          "HOST:PORT to serve at; whoever can reach it can move the device, or has to have "
-          "the key")
-      ->required();
-  command->add_option("--key-file", arguments->key_file,
-                      "secret that clients must have, too (docs/reference/device_protocol.md)");
-  command->add_flag("--fast", arguments->is_fast,
-                    "lock-step: each side waits for the other (run --fast) instead of real time");
-  command->add_flag("--stays", arguments->stays,
-                    "like a machine: each client finds the device where the last one has left it, "
-                    "and the person lets go of the handle once the override key is on (run "
-                    "--move-to-start)");
-  command->add_option("--capture", arguments->capture,
-                      "write every datagram to this pcap file (docs/reference/device_protocol.md)");
-  command->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
+      .add_option("--listen", arguments->listen,
+                  "HOST:PORT to serve at; whoever can reach it can move the device, or has to have "
+                  "the key")
+      .required();
+  command.add_option("--key-file", arguments->key_file,
+                     "secret that clients must have, too (docs/reference/device_protocol.md)");
+  command.add_flag("--fast", arguments->is_fast,
+                   "lock-step: each side waits for the other (run --fast) instead of real time");
+  command.add_flag("--stays", arguments->stays,
+                   "like a machine: each client finds the device where the last one has left it, "
+                   "and the person lets go of the handle once the override key is on (run "
+                   "--move-to-start)");
+  command.add_option("--capture", arguments->capture,
+                     "write every datagram to this pcap file (docs/reference/device_protocol.md)");
+  command.callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -6,11 +6,9 @@
 
 #include "hg/scenario/options.h"
 
-namespace CLI {
-class App;
-}
-
 namespace hg::apps {
+
+class Command;
 
 struct SimulateArguments {
   scenario::ScenarioOptions world;
@@ -27,6 +25,6 @@ struct SimulateArguments {
 int simulate(const SimulateArguments& arguments);
 
 /// Adds the subcommand to the program; running it sets `exit_code`.
-void add_simulate(CLI::App& app, int& exit_code);
+void add_simulate(Command app, int& exit_code);
 
 }  // namespace hg::apps

@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <ctime>
 #include <memory>
 #include <utility>
 
+#include "apps/command_line/command.h"
+#include "apps/command_line/output.h"
 #include "apps/hapticgiant/interruption.h"
-#include "apps/hapticgiant/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
@@ -81,17 +81,18 @@ int start_test(const MachineOptions& arguments) {
   return has_passed ? 0 : 1;
 }
 
-void add_start_test(CLI::App& app, int& exit_code) {
+void add_start_test(Command app, int& exit_code) {
   const auto arguments = std::make_shared<MachineOptions>();
-  CLI::App* command = app.add_subcommand("start-test",
-                                         "Brakes and stop inputs, step by step, before the first "
-                                         "run of a day (docs/reference/start_test.md).");
-  command->footer(
+  const Command command =
+      app.add_subcommand("start-test",
+                         "Brakes and stop inputs, step by step, before the first "
+                         "run of a day (docs/reference/start_test.md).");
+  command.footer(
       "Examples:\n"
       "  hapticgiant start-test                   the simulated device, with a simulated operator\n"
       "  hapticgiant start-test --device my_arm_device.yaml --device-address 192.168.1.20:4810");
-  add_machine_options(*command, *arguments);
-  command->callback([arguments, &exit_code] { exit_code = start_test(*arguments); });
+  add_machine_options(command, *arguments);
+  command.callback([arguments, &exit_code] { exit_code = start_test(*arguments); });
 }
 
 }  // namespace hg::apps

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apps/hapticgiant/output.h"
+#include "apps/command_line/output.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/signals/state.h"
 

@@ -29,8 +29,6 @@ struct JointRanges {
 };
 JointRanges joint_ranges(const config::DeviceConfig& device);
 
-using hg::Random;
-
 /// Whether the virtual joints of the device permit `q` (gantry first).
 bool permits_virtual_joints(const DeviceModel& model, const Eigen::VectorXd& q);
 /// Whether all Cartesian limits permit the posture of `chain`, after update_poses().

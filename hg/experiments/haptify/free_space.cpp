@@ -17,7 +17,7 @@ constexpr int kAzimuth = 3;  // channel of a script in the base frame
 
 person::Script exploration(const FreeSpaceConfig& config, const config::HandPose& start,
                            std::uint64_t seed) {
-  check::Random random(seed);
+  Random random(seed);
   const auto between = [&](double low, double high) { return std::lerp(low, high, random.next()); };
   person::Script script;
   Eigen::Vector3d p = start.p;

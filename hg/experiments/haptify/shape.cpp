@@ -43,7 +43,7 @@ std::vector<std::pair<std::string, double>> binding_limits(const DeviceModel& mo
 // when the limits permit none.
 Eigen::VectorXd farthest(const config::DeviceConfig& device, const ShapeConfig& config,
                          std::uint64_t seed, int axis, double side) {
-  check::Random random(seed);
+  Random random(seed);
   const workspace::JointRanges ranges = workspace::joint_ranges(device);
   model::ChainData chain(device.model.chain);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(chain.model().nv());
@@ -66,7 +66,7 @@ Eigen::VectorXd farthest(const config::DeviceConfig& device, const ShapeConfig& 
 
 workspace::HandleWorkspace measure_shape(const config::DeviceConfig& device,
                                          const ShapeConfig& config, std::uint64_t seed) {
-  check::Random random(seed);
+  Random random(seed);
   workspace::Survey survey;
   survey.options.seed = seed;
   survey.cloud = workspace::cloud(device, config.postures, true, random);
@@ -76,7 +76,7 @@ workspace::HandleWorkspace measure_shape(const config::DeviceConfig& device,
 std::vector<View> workspace_views(const config::DeviceConfig& device, const ShapeConfig& config,
                                   std::uint64_t seed) {
   constexpr double kCell = 0.05;  // m
-  check::Random random(seed);
+  Random random(seed);
   const workspace::Cloud cloud = workspace::cloud(device, config.postures, true, random);
   Eigen::AlignedBox3d bounds;
   for (const auto& position : cloud.positions) bounds.extend(position.p);

@@ -21,7 +21,7 @@ double at(std::size_t i) { return static_cast<double>(i) / kRate; }
 using Signal = std::vector<Eigen::Vector3d>;
 
 Signal noise(std::size_t count, std::uint64_t seed) {
-  check::Random random(seed);
+  Random random(seed);
   Signal signal(count);
   for (Eigen::Vector3d& value : signal) {
     for (int axis = 0; axis < 3; ++axis) value[axis] = random.next() - 0.5;
@@ -150,7 +150,7 @@ TEST(FitDynamics, FindsWhatTheForceIsMadeOf) {
   for (const double value : f) mean += value / static_cast<double>(f.size());
   for (const double value : f)
     variance += (value - mean) * (value - mean) / static_cast<double>(f.size());
-  check::Random random(5);
+  Random random(5);
   for (double& value : f) value += std::sqrt(12.0 * variance) * (random.next() - 0.5);
   const DynamicFit noisy = fit_dynamics(f, v, a);
   EXPECT_NEAR(noisy.inertia, 6.0, 0.3);

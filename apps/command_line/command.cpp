@@ -1,0 +1,168 @@
+#include "apps/command_line/command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <sstream>
+#include <utility>
+
+#include "apps/command_line/output.h"
+#include "hg/core/nearest_name.h"
+
+namespace hg::apps {
+namespace {
+
+constexpr int kBadInput = 2;
+
+// The subcommand of `app` that was missed, and which there are.
+std::string missing_subcommand(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const std::string& word : app.remaining()) {
+    if (word.starts_with('-')) continue;
+    return fmt::format("{}: no such subcommand of {}, did you mean '{}'?", word, app.get_name(),
+                       nearest_name(word, names));
+  }
+  return fmt::format("{}: expected a subcommand: {}", app.get_name(), fmt::join(names, ", "));
+}
+
+int explain(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().back();
+  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr ||
+      last->get_require_subcommand_min() == 0) {
+    std::ostringstream out, errors;
+    const int code = app.exit(error, out, errors);
+    print_out(out.str());
+    print_error(errors.str());
+    return code == 0 ? 0 : kBadInput;
+  }
+  print_error("{}\nRun with --help for more information.\n", missing_subcommand(*last));
+  return kBadInput;
+}
+
+// An empty text (a variable of a script that is not set) is no file, key or name.
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() > 0) {
+      option->check(
+          [](const std::string& text) { return text.empty() ? "must not be empty" : ""; });
+    }
+  }
+  for (CLI::App* command : app.get_subcommands({})) refuse_empty_values(*command);
+}
+
+}  // namespace
+
+Option Option::check(const OptionCheck& check) const { return Option(self_->check(check)); }
+
+Option Option::one_of(const std::vector<std::string>& values) const {
+  return Option(self_->check(CLI::IsMember(values)));
+}
+
+Option Option::existing_file() const { return Option(self_->check(CLI::ExistingFile)); }
+
+Option Option::transform(const std::function<std::string(const std::string&)>& change) const {
+  return Option(self_->transform([change](const std::string& text) { return change(text); }));
+}
+
+Option Option::required() const { return Option(self_->required()); }
+Option Option::needs(const std::string& other) const { return Option(self_->needs(other)); }
+Option Option::needs(Option other) const { return Option(self_->needs(other.self_)); }
+Option Option::excludes(const std::string& other) const { return Option(self_->excludes(other)); }
+Option Option::excludes(Option other) const { return Option(self_->excludes(other.self_)); }
+Option Option::capture_default_str() const { return Option(self_->capture_default_str()); }
+Option Option::delimiter(char separator) const { return Option(self_->delimiter(separator)); }
+Option Option::allow_extra_args(bool allowed) const {
+  return Option(self_->allow_extra_args(allowed));
+}
+Option Option::expected(int count) const { return Option(self_->expected(count)); }
+Option Option::expected(int least, int most) const { return Option(self_->expected(least, most)); }
+Option Option::envname(const std::string& name) const { return Option(self_->envname(name)); }
+std::size_t Option::count() const { return self_->count(); }
+
+Command Command::add_subcommand(const std::string& name, const std::string& description) const {
+  return Command(self_->add_subcommand(name, description));
+}
+
+template <typename T>
+Option Command::add_option(const std::string& name, T& value, const std::string& help) const {
+  return Option(self_->add_option(name, value, help));
+}
+
+template Option Command::add_option(const std::string&, std::string&, const std::string&) const;
+template Option Command::add_option(const std::string&, int&, const std::string&) const;
+template Option Command::add_option(const std::string&, double&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::uint16_t&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::optional<int>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::optional<double>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::optional<std::uint64_t>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::vector<std::string>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::vector<double>&,
+                                    const std::string&) const;
+template Option Command::add_option(const std::string&, std::vector<int>&,
+                                    const std::string&) const;
+
+Option Command::add_flag(const std::string& name, bool& value, const std::string& help) const {
+  return Option(self_->add_flag(name, value, help));
+}
+
+void Command::callback(const std::function<void()>& run) const { self_->callback(run); }
+void Command::footer(const std::string& text) const { self_->footer(text); }
+void Command::require_subcommand() const { self_->require_subcommand(); }
+void Command::require_subcommand(int count) const { self_->require_subcommand(count); }
+void Command::require_subcommand(int least, int most) const {
+  self_->require_subcommand(least, most);
+}
+void Command::fallthrough() const { self_->fallthrough(); }
+
+void Command::take_all_words() const {
+  self_->set_help_flag();
+  self_->prefix_command();
+}
+
+void Command::allow_extras() const { self_->allow_extras(); }
+std::string Command::name() const { return self_->get_name(); }
+std::vector<std::string> Command::remaining() const { return self_->remaining(); }
+bool Command::is_parsed() const { return self_->parsed(); }
+bool Command::has_subcommand() const { return !self_->get_subcommands().empty(); }
+
+Program::Program(const std::string& description, const std::string& name)
+    : app_(std::make_unique<CLI::App>(description, name)) {}
+
+Program::~Program() = default;
+
+void Program::set_version(const std::string& version) {
+  app_->set_version_flag("--version", version);
+}
+
+std::optional<int> Program::parse(int argc, char** argv) {
+  refuse_empty_values(*app_);
+  try {
+    app_->parse(argc, argv);
+    return {};
+  } catch (const CLI::ParseError& error) {
+    return explain(*app_, error);
+  }
+}
+
+void refuse_option(const std::string& name, const std::string& fault) {
+  throw CLI::ValidationError(name, fault);
+}
+
+void refuse_without(const std::string& name) { throw CLI::RequiredError(name); }
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  if (!CLI::detail::lexical_cast(text, value)) return {};
+  return value;
+}
+
+}  // namespace hg::apps
