@@ -14,7 +14,7 @@ option(HG_PRECOMPILE "Compile the headers that many files include once" ON)
 add_compile_definitions(_FILE_OFFSET_BITS=64)
 # the memory is there, and tidying it up takes a fifth of the time
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  add_compile_options(--param=ggc-min-heapsize=1000000)
+  add_compile_options(--param=ggc-min-heapsize=400000)
 endif()
 
 # What makes an error in memory end the program instead of being used: stack protectors, checked
@@ -34,6 +34,19 @@ set(HG_CHECKED _GLIBCXX_ASSERTIONS)
 # What the control cycle has no use for, and its results do not depend on to the last bit: functions
 # that another library may replace, errno of the mathematical ones, and floating-point traps.
 set(fast -fno-semantic-interposition -fno-math-errno -fno-trapping-math)
+
+# Sources are compiled several together (tools/together.py says which), and each compiles alone.
+option(HG_TOGETHER "Compile several sources as one" ON)
+if(HG_TOGETHER)
+  find_program(HG_PYTHON NAMES python3 python REQUIRED)
+  set(together ${PROJECT_BINARY_DIR}/together.cmake)
+  execute_process(COMMAND ${HG_PYTHON} ${PROJECT_SOURCE_DIR}/tools/together.py ${together}
+    COMMAND_ERROR_IS_FATAL ANY)
+  include(${together})
+  # g++ 12 says these of sources that it says nothing of alone
+  add_compile_options(-Wno-subobject-linkage -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
+    -Wno-shadow -Wshadow=local)
+endif()
 
 # hg_kind(NAME [SHORT_BUILD] [FLAGS flag...] HEADERS file... LINKS library... [DEFINITIONS macro...])
 function(hg_kind name)
@@ -70,6 +83,7 @@ hg_kind(scenario_test SHORT_BUILD HEADERS ${others} ${test} ${scenario}
 function(hg_build_kind target kind)
   target_compile_options(${target} PRIVATE ${HG_KIND_${kind}_FLAGS})
   target_compile_definitions(${target} PRIVATE ${HG_KIND_${kind}_DEFINITIONS})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${HG_TOGETHER} UNITY_BUILD_MODE GROUP)
   if(NOT HG_PRECOMPILE)
     return()
   endif()
