@@ -58,7 +58,7 @@ void check_power(Loader& loader, const ethercat::Machine& machine) {
               "key 'brake_closing_s' is missing: how long brakes take to close, 0 where there are "
               "none");
   const bool has_button = std::ranges::any_of(machine.slaves, [](const ethercat::Slave& slave) {
-    return tells(slave.inputs, ethercat::Input::kEmergencyStop);
+    return has_entry(slave.inputs, ethercat::Input::kEmergencyStop);
   });
   loader.rule(has_button, "slaves",
               "no slave has the input 'emergency_stop': a machine with drives needs one");
