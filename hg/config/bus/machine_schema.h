@@ -86,7 +86,7 @@ void describe(V& v, ethercat::Slave& slave, const std::vector<std::string>& join
         describe(child, entry);
         slave.outputs.push_back(entry);
       },
-      "what this slave is told, in the order of its process data");
+      "commands to this slave, in the order of its process data");
   v.list(
       "inputs",
       [&](auto& child) {
@@ -94,7 +94,7 @@ void describe(V& v, ethercat::Slave& slave, const std::vector<std::string>& join
         describe(child, entry);
         slave.inputs.push_back(entry);
       },
-      "what it tells, likewise");
+      "its answers, likewise");
   v.rule(ethercat::bits_of(slave.outputs) % 8 == 0, "outputs", "must be whole bytes");
   v.rule(ethercat::bits_of(slave.inputs) % 8 == 0, "inputs", "must be whole bytes");
   check_drive(v, slave);
@@ -109,11 +109,11 @@ void describe_times(V& v, ethercat::Machine& machine) {
   v.number("answer_s", machine.answer_s, {.lb = 1e-5, .ub = 1.0},
            "a frame that takes longer to come back is lost; of a machine at most one period");
   v.number("brake_closing_s", machine.brake_closing_s, {.lb = 0.0, .ub = 0.2},
-           "until a brake that was told to close holds: torques stay for so long, and drives on, "
+           "from the command to close a brake until it holds: torques stay for so long, and drives on, "
            "where an output open_brakes leads the brakes; must be given for a machine with drives");
   v.flag("moves_with_frames", machine.moves_with_frames,
          "a simulated segment, which moves by one period with each frame: `run --fast` is allowed; "
-         "all its slaves have vendors 0x00ffff00 to 0x00ffffff, which nobody has");
+         "all its slaves have vendors 0x00ffff00 to 0x00ffffff, which no maker has");
 }
 
 template <class V>
