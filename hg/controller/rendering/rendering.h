@@ -139,6 +139,9 @@ class Rendering {
   void feel_surfaces(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
   void give_way(const ContactReport& contact, RenderingState& state) const noexcept;
   void solve(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
+  void fill_tasks(const LawInput& input, const VectorA& tau, const RenderingState& state) noexcept;
+  void solve_once(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
+  bool release(RenderingState& state, Budget& budget) const noexcept;
   void add_stops(ContactReport& contact) const noexcept;
   void find_kinematics(const RenderingState& state, LawResult& result) const noexcept;
 

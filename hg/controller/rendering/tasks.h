@@ -149,6 +149,9 @@ class Tasks {
 
  private:
   void add_levels(const DeviceModel& device, const TwinModel& twin);
+  void add_device_limits(const DeviceModel& device);
+  void add_twin_limits(const DeviceModel& device, const TwinModel& twin);
+  void add_gauss(const DeviceModel& device);
   void add_limit(const limits::JointLimits& limits, int variable, double margin);
   void add_rating(int limit, int variable);
   double weight_of(const LimitRow& row) const noexcept;
