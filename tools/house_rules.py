@@ -44,7 +44,8 @@ def _word_pattern():
     small = [word.replace(" ", SPACE) for word in WORDS]
     begins = "|".join(f"[{word[0]}{word[0].upper()}]{word[1:]}" for word in small)
     inside = "|".join(word[0].upper() + word[1:] for word in small)  # of isTold
-    return re.compile(rf"(?<![A-Za-z])(?:{begins})(?![a-z])|(?<=[a-z])(?:{inside})(?![a-z])")
+    # without tell() of Python's files, and nobody@ of addresses
+    return re.compile(rf"(?<![A-Za-z])(?<!\.(?=tell\(\)))(?:{begins})(?![a-z@])|(?<=[a-z])(?:{inside})(?![a-z])")
 
 
 WORD = _word_pattern()

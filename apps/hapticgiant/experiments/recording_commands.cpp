@@ -102,7 +102,7 @@ void write_recording(const std::string& file, const char* kind, const fs::path& 
   reader.write(folder, file, kind, read);
 }
 
-// Without matplotlib only run.json and signals.npy are written, and a line tells how to get
+// Without matplotlib only run.json and signals.npy are written, and a line says how to get
 // figures.
 int plot(const PlotArguments& arguments) {
   constexpr double kFigurePeriod_s = 0.01;
@@ -156,7 +156,7 @@ void add_plot_and_compare(CLI::App& app, int& exit_code) {
 
   const auto compared = std::make_shared<CompareArguments>();
   CLI::App* compare = app.add_subcommand(
-      "compare", "Tells what is different in two recordings: events, forces, limits, timing.");
+      "compare", "Shows what is different in two recordings: events, forces, limits, timing.");
   compare->footer("Example:\n  hapticgiant compare before.mcap after.mcap");
   compare->add_option("a", compared->a, "recording")->required()->check(CLI::ExistingFile);
   compare->add_option("b", compared->b, "recording")->required()->check(CLI::ExistingFile);
