@@ -23,7 +23,7 @@ INITIALISERS = re.compile(r"\)\s*(?:noexcept\s*)?:(?!:)")
 TYPESCRIPT_HEAD = re.compile(r"(\s*)(?:export |default |async |static |public |private |protected |get |set |const )*"
                              r"(?:function )?\*?(#?\w+)")
 KEYWORDS = {"if", "for", "while", "switch", "catch", "return", "decltype", "noexcept", "requires", "alignas",
-            "explicit", "describe"}
+            "explicit"}
 
 
 def _blanks(match):
@@ -117,7 +117,7 @@ def typescript_functions(text):
             continue
         first, head = open_heads.get(indent, (number, line))
         name = TYPESCRIPT_HEAD.match(head)[2] if TYPESCRIPT_HEAD.match(head) else "=>"
-        if name in KEYWORDS and "=> {" not in line:
+        if name == "describe" or name in KEYWORDS and "=> {" not in line:  # a suite is no function
             continue
         end = next((i for i, other in enumerate(lines[number:], number + 1)
                     if other.startswith(" " * indent + "}")), number)

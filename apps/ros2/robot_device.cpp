@@ -302,7 +302,8 @@ void run_robot(const RobotOptions& options, const std::atomic<bool>& stop) {
   say(fmt::format("{} at {}: {} joints, {:g} Hz, {} to {}", options.name, server.address(), n,
                   options.rate_Hz, options.has_torques ? "efforts" : "velocities",
                   node.full_name(options.commands)));
-  say("WARNING: ROS 2 has no watchdog here: when this program is killed, a controller continues with "
+  say("WARNING: ROS 2 has no watchdog here: when this program is killed, a controller continues "
+      "with "
       "its last command. Set a command time-out in the robot.");
   say(fmt::format("waiting for {}{}", node.full_name(options.states),
                   options.wrench.empty() ? "" : " and " + node.full_name(options.wrench)));

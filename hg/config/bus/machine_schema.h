@@ -108,9 +108,10 @@ void describe_times(V& v, ethercat::Machine& machine) {
       "every slave with outputs; of a machine at most 0.1 s");
   v.number("answer_s", machine.answer_s, {.lb = 1e-5, .ub = 1.0},
            "a frame that takes longer to come back is lost; of a machine at most one period");
-  v.number("brake_closing_s", machine.brake_closing_s, {.lb = 0.0, .ub = 0.2},
-           "from the command to close a brake until it holds: torques stay for so long, and drives on, "
-           "where an output open_brakes leads the brakes; must be given for a machine with drives");
+  v.number(
+      "brake_closing_s", machine.brake_closing_s, {.lb = 0.0, .ub = 0.2},
+      "from the command to close a brake until it holds: torques stay for so long, and drives on, "
+      "where an output open_brakes leads the brakes; must be given for a machine with drives");
   v.flag("moves_with_frames", machine.moves_with_frames,
          "a simulated segment, which moves by one period with each frame: `run --fast` is allowed; "
          "all its slaves have vendors 0x00ffff00 to 0x00ffffff, which no maker has");

@@ -165,8 +165,8 @@ void EthercatDevice::rest() noexcept {
   exchanged_ns_ = 0;
 }
 
-// Whether read() was not called for so long that the watchdogs of the slaves may have acted, while drives
-// were off.
+// Whether read() was not called for so long that the watchdogs of the slaves may have acted, while
+// drives were off.
 bool EthercatDevice::has_paused() const noexcept {
   const bool is_enabled = has_command_ && command_.enable;
   return !is_enabled && now_ns() - exchanged_ns_ > ns(0.5 * config_.machine.watchdog_s);

@@ -100,8 +100,8 @@ struct Machine {
   std::string name;
   double watchdog_s = 0.1;  ///< without outputs for so long a slave leaves OP
   double answer_s = 5e-4;   ///< a frame that takes longer is lost
-  /// From the command to close a brake until it holds. For so long torques stay, and drives on, where the
-  /// output open_brakes leads the brakes.
+  /// From the command to close a brake until it holds. For so long torques stay, and drives on,
+  /// where the output open_brakes leads the brakes.
   double brake_closing_s = 0.0;
   /// The slaves move a period with each frame, whenever it comes: a simulated segment.
   bool moves_with_frames = false;

@@ -168,8 +168,7 @@ TEST(SimulationFile, TheShippedForceAndTemperatureSensorsAreThoseOfTheCode) {
   EXPECT_DOUBLE_EQ(sensors.temperature.time_on, standard.temperature.time_on);
 }
 
-TEST(SimulationFile, EveryKeyOfASensorReachesItsField) {
-  const simulator::SensorsConfig sensors = load(R"(
+constexpr const char* kEverySensorKey = R"(
 sensors:
   link_encoder: {resolution_rad: 1, offset_rad: 2, error_1_rad: 3, error_2_rad: 4}
   motor_encoder: {resolution_rad: 5, offset_rad: 6, error_1_rad: 7, error_2_rad: 8}
@@ -194,8 +193,10 @@ sensors:
     filter: {average_s: 0.0062, delay_s: 0.0063}
     accelerometer: {noise_m_per_s2_per_sqrt_Hz: 64}
     gyroscope: {range_rad_per_s: 65}
-)")
-                                               .sensors;
+)";
+
+TEST(SimulationFile, EveryKeyOfASensorReachesItsField) {
+  const simulator::SensorsConfig sensors = load(kEverySensorKey).sensors;
   std::vector<double> values;
   for (const auto& encoder : {sensors.link_encoder, sensors.motor_encoder}) {
     for (double value : {encoder.resolution, encoder.offset, encoder.error_1, encoder.error_2})
