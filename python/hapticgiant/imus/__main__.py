@@ -57,7 +57,7 @@ def parser():
     from hapticgiant.command_line import Parser
 
     found = Parser(
-        prog="hapticgiant imus", description="Where inertial sensors show most of the speeds and "
+        prog="hapticgiant imus", description="Where inertial sensors observe best the speeds and "
         "accelerations of the joints of a robot (docs/start/imu_placement.md).")
     add = found.add_argument
     add("robot", metavar="URDF_OR_DEVICE", help="a URDF, or a device.yaml")
