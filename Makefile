@@ -261,6 +261,7 @@ check:
 	@git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
 	@.venv/bin/python tools/check_modules.py
 	@.venv/bin/python tools/check_citations.py
+	@.venv/bin/python tools/house_rules.py
 
 audit:
 	@.venv/bin/python tools/third_party.py --audit

@@ -10,12 +10,12 @@ template <typename Measure>
 void play(const config::Scenario& scenario, std::size_t most, const Measure& measure) {
   Player player(scenario);
   std::size_t index = 0;
-  bool goes_on = true;
-  while (goes_on && index < most) {
+  bool has_more = true;
+  while (has_more && index < most) {
     player.begin();
     measure(player, index);
     if (player.is_running()) ++index;
-    goes_on = player.end();
+    has_more = player.end();
   }
 }
 

@@ -21,20 +21,20 @@ std::span<const double> span_of(const Eigen::VectorXd& v) {
 
 GrowingProblem::GrowingProblem(int n, int levels, std::uint32_t seed)
     : random_(seed), problem_(capacity_of(n, levels)) {
-  std::uniform_real_distribution<double> inside(-1.0, 1.0), width(0.1, 1.0);
-  point_ = Eigen::VectorXd::NullaryExpr(n, [&] { return inside(random_); });
-  wish_ = Eigen::VectorXd::NullaryExpr(n, [&] { return normal(); });
+  const auto width = [this] { return random_.between(0.1, 1.0); };
+  point_ = Eigen::VectorXd::NullaryExpr(n, [&] { return random_.between(-1.0, 1.0); });
+  wish_ = Eigen::VectorXd::NullaryExpr(n, [&] { return random_.normal(); });
   for (int i = 0; i < n / 2; ++i) {
     rows_.push_back({-1, random_direction(), 0.0, 0.0});
-    rows_.push_back({2 * i, {}, width(random_), width(random_)});
-    rows_.push_back({-1, random_direction(), width(random_), width(random_)});
+    rows_.push_back({2 * i, {}, width(), width()});
+    rows_.push_back({-1, random_direction(), width(), width()});
   }
   add_rows();
   set_bounds();
 }
 
 Eigen::VectorXd GrowingProblem::random_direction() {
-  return Eigen::VectorXd::NullaryExpr(point_.size(), [&] { return normal(); }).normalized();
+  return Eigen::VectorXd::NullaryExpr(point_.size(), [&] { return random_.normal(); }).normalized();
 }
 
 // Rows are dealt out evenly, in order.
@@ -72,8 +72,8 @@ void GrowingProblem::step() {
     if (row.variable >= 0) continue;
     row.direction = (row.direction + kDrift * random_direction()).normalized();
   }
-  for (double& p : point_) p += kDrift * normal();
-  for (double& w : wish_) w += kDrift * normal();
+  for (double& p : point_) p += kDrift * random_.normal();
+  for (double& w : wish_) w += kDrift * random_.normal();
   set_bounds();
 }
 

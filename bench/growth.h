@@ -3,11 +3,11 @@
 
 #include <Eigen/Dense>
 #include <cstdint>
-#include <random>
 #include <span>
 #include <vector>
 
 #include "bench/times.h"
+#include "hg/core/random.h"
 #include "hg/hqp/problem.h"
 
 namespace hg::bench {
@@ -38,13 +38,11 @@ class GrowingProblem {
     double below, above;        ///< width of the interval on either side of the point
   };
 
-  double normal() { return normal_(random_); }
   Eigen::VectorXd random_direction();
   void add_rows();
   void set_bounds();
 
-  std::mt19937 random_;
-  std::normal_distribution<double> normal_;
+  Random32 random_;
   Eigen::VectorXd point_, wish_;
   std::vector<Row> rows_;  ///< rows by id, without the wishes
   hqp::Problem problem_;

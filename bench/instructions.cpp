@@ -51,8 +51,8 @@ std::size_t run_cycles(const std::string& name) {
       load(name, rendering::Law::kGauss, rendering::Bounds::kRecoverable);
   bench::Player player(scenario);
   std::size_t done = 0;
-  bool goes_on = true;
-  while (goes_on && done < kCount) {
+  bool has_more = true;
+  while (has_more && done < kCount) {
     player.begin();
     if (player.is_running()) {
       counted({.player = &player});
@@ -60,7 +60,7 @@ std::size_t run_cycles(const std::string& name) {
     } else {
       player.run();
     }
-    goes_on = player.end();
+    has_more = player.end();
   }
   return done;
 }

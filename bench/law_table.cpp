@@ -23,13 +23,13 @@ class Observer {
   LawRun play() {
     Player player(scenario_);
     StopWatch watch;
-    bool goes_on = true;
-    while (goes_on) {
+    bool has_more = true;
+    while (has_more) {
       player.begin();
       const Clock::time_point begin = Clock::now();
       watch.run(player);
       const double cycle_us = microseconds_since(begin);
-      goes_on = player.end();
+      has_more = player.end();
       if (detector_.observe(player.record())) ++run_.events;
       if (!player.is_running()) continue;
       run_.cycle.add(run_.cycle.count(), cycle_us);

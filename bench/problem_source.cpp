@@ -111,8 +111,8 @@ std::span<const hqp::Problem> ProblemSource::next_of_scenario() {
       {remaining_, kBlockProblems,
        std::max<std::size_t>(1, kBlockBytes / std::max<std::size_t>(1, bytes_of(problem)))});
   std::size_t count = 0;
-  bool goes_on = most > 0;
-  while (goes_on) {
+  bool is_wanted = most > 0;
+  while (is_wanted) {
     player_->begin();
     player_->run();
     if (player_->is_running()) {
@@ -125,7 +125,7 @@ std::span<const hqp::Problem> ProblemSource::next_of_scenario() {
     }
     const bool has_more = player_->end();
     if (!has_more) remaining_ = count;
-    goes_on = has_more && count < most;
+    is_wanted = has_more && count < most;
   }
   remaining_ -= count;
   return {block_.data(), count};

@@ -4,12 +4,6 @@
 # Everything but what only the program needs.
 set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning tracking safety
   controller device udp runtime config simulator analysis simulation scenario)
-# folders and headers that only their own module includes; Eigen or YAML show in them
-set(HG_PRIVATE_FOLDERS hg/hqp/solver)
-set(HG_PRIVATE_HEADERS
-  "/config/(.*schema|loader)[.]h$"
-  "/model/chain_parts[.]h$")
-
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hapticgiant)
@@ -22,15 +16,13 @@ foreach(module IN LISTS HG_PACKAGE)
       "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>;$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   install(TARGETS hg_${module} EXPORT hapticgiant COMPONENT cpp
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  get_property(folders GLOBAL PROPERTY HG_FOLDERS_${module})
-  list(REMOVE_ITEM folders ${HG_PRIVATE_FOLDERS})
-  foreach(folder IN LISTS folders)
-    file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.h)
-    foreach(pattern IN LISTS HG_PRIVATE_HEADERS)
-      list(FILTER headers EXCLUDE REGEX ${pattern})
-    endforeach()
-    install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT cpp)
-  endforeach()
+endforeach()
+
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS cmake/public_headers.txt)
+file(STRINGS cmake/public_headers.txt headers REGEX "^hg/")
+foreach(header IN LISTS headers)
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT cpp)
 endforeach()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/hapticgiant

@@ -10,15 +10,13 @@ Exits with 1 and one line per fault: file:line: what is cited, what was expected
 """
 
 import difflib
-import pathlib
 import re
-import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from tracked_files import ROOT, read_texts
+
 REFERENCES = "docs/reference/references.md"
 HANDBOOK = "docs/handbook/"
-NOT_TEXT = (".gz", ".lock", ".png", ".skip", ".svg", ".csv", ".json")
 SKIPPED = ("tests/fuzz/", "viewer/package-lock.json", "tools/check_citations.py")
 CODE = (".h", ".cpp", ".ts", ".rs", ".in")
 PAGES = {"C": "control_notes.md", "G": "geometry.md"}  # whose headings a tag cites, with its letter
@@ -35,22 +33,6 @@ SOURCE = re.compile(r"(?<![\w\])])\[(HG|[A-Z]{1,4}\d{2})\](?![\w(\[{*+?])")
 NOTES = re.compile(r"(?<!\[)\b(DESIGN|CONTROL_NOTES|HANDBOOK|GEOMETRY)\b|\[DESIGN\]")
 PAGE = re.compile(r"(?<![\w/.-])docs/[\w/-]+\.md\b")
 LINK = re.compile(r"\]\(([^()\s]+)\)")
-
-
-def read_files():
-    """Name -> text of what is tracked, new files included."""
-    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
-                            cwd=ROOT, check=True, capture_output=True).stdout.decode()
-    files = {}
-    for name in sorted(set(listed.split("\0")) - {""}):
-        path = ROOT / name
-        if name.startswith(SKIPPED) or name.endswith(NOT_TEXT) or not path.is_file():
-            continue
-        try:
-            files[name] = path.read_text()
-        except UnicodeDecodeError:
-            pass  # data
-    return files
 
 
 def headings(page):
@@ -183,7 +165,7 @@ class Checker:
 
 
 def main():
-    checker = Checker(read_files())
+    checker = Checker(read_texts(SKIPPED))
     for name in checker.files:
         checker.check_citations(name)
         if name.endswith(".md"):

@@ -1,4 +1,5 @@
-"""Runs clang-tidy with the checks of .clang-tidy on all sources but tests, and on their headers.
+"""Checks the rules of the house (house_rules.py), then runs clang-tidy with the checks of .clang-tidy
+on all sources but tests, and on their headers.
 
     lint.py BUILD [--jobs N] [FOLDER...]
 
@@ -17,6 +18,8 @@ import re
 import shlex
 import subprocess
 import sys
+
+import house_rules
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["hg", "apps", "bench", "python/src"]
@@ -105,9 +108,12 @@ def main():
     groups = sorted(grouped(sorted(sources.items())), key=lambda group: -len(group[1]))
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         findings = set().union(*pool.map(lambda group: findings_of(*group, work), groups))
+    faults, _ = house_rules.check_tree()
+    for fault in faults:
+        print(fault)
     for file, line, column, words in sorted(findings):
         print(f"{os.path.relpath(file, ROOT)}:{line}:{column}: {words}")
-    if findings:
+    if findings or faults:
         sys.exit(1)
     print(f"lint: {len(sources)} sources in {len(groups)} readings without findings")
 

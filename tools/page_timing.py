@@ -119,7 +119,7 @@ class Timing:
 
 def measure(program, counts, seconds, settle_s, visit):
     """The Timing of a run. `visit(link, count)` brings that many visitors for a phase of `seconds`, after
-    `settle_s`, and is a generator: it goes on when the phase begins, when it ends (with its length in s),
+    `settle_s`, and is a generator: it continues when the phase begins, when it ends (with its length in s),
     and then takes them away."""
     folder = pathlib.Path(tempfile.mkdtemp())
     run = subprocess.Popen([program, "run", "door", "--user", "mouse", "--no-browser", "--recordings", folder,

@@ -38,7 +38,7 @@ RATE = 1000  # Hz, of each of these machines
 SETTLED = 10  # s, after which memory must not grow
 START = 5  # s, most that a run may take to begin and to end
 CLOCKS_APART = 3e-4  # clocks of simulated slaves against ours
-LAST_WINDOW = 100  # cycles, of which a Franka has told nothing yet at the end of a motion
+LAST_WINDOW = 100  # cycles, which a Franka has not reported yet at the end of a motion
 FAREWELL = 8  # datagrams at both ends of a session that are no frames
 
 
@@ -135,7 +135,7 @@ MACHINES = {"udp": Udp, "ethercat": Ethercat, "franka": Franka}
 
 def play(program, machine, minutes, is_busy):
     """A run against this machine: exit code, what it said, summary, memory in kB by seconds since its
-    begin, what nobody has counted, and what the machine says."""
+    begin, what is not counted, and what the machine says."""
     with tempfile.TemporaryDirectory() as name, contextlib.ExitStack() as stack:
         folder = pathlib.Path(name)
         with before_other_programs():
@@ -194,7 +194,7 @@ def result_of(program, name, minutes, is_busy):
         result["wrong"].append(f"memory grew by {settled[-1] - settled[0]} kB")
     for what, count in result["uncounted"].items():
         if count > 0:
-            result["wrong"].append(f"{count} {what} that nobody counts")
+            result["wrong"].append(f"{count} {what} that are not counted")
     return result
 
 

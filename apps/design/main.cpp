@@ -78,7 +78,7 @@ ordered_json against_front(const design::DesignProblem& problem,
   return json;
 }
 
-void run(const Arguments& arguments) {
+design::DesignProblem read_problem(const Arguments& arguments) {
   design::DesignProblem problem = design::load_problem(arguments.problem);
   if (arguments.seed >= 0) problem.search.seed = arguments.seed;
   if (arguments.is_quick) {
@@ -86,16 +86,17 @@ void run(const Arguments& arguments) {
     problem.search.generations = 20;
     problem.search.poses = 150;
   }
-  const fs::path out = arguments.out;
-  std::error_code error;
-  fs::create_directories(out / "device", error);
-  if (error) throw SetupError(fmt::format("--out {}: {}", arguments.out, error.message()));
+  return problem;
+}
 
-  const design::Judge judge(problem);
-  const design::DesignScore reference = judge(problem.base.variables);
-  fmt::print("base        {}\n", text_of(reference));
-  std::fflush(stdout);
+struct Found {
+  search::Best best;                      // of the search for capability alone
+  std::vector<search::FrontPoint> front;  // of the search for capability and little burden
+  double seconds = 0.0;
+};
 
+Found find(const design::DesignProblem& problem, const design::Judge& judge,
+           const design::DesignScore& reference, unsigned workers) {
   const auto violated = [](const design::DesignScore& score) { return kPenalty * score.violation; };
   search::Problem single = {.lower = design::lower_point(problem),
                             .upper = design::upper_point(problem),
@@ -115,48 +116,49 @@ void run(const Arguments& arguments) {
   search::Options options = {.population = static_cast<unsigned>(problem.search.population),
                              .generations = static_cast<unsigned>(problem.search.generations),
                              .islands = static_cast<unsigned>(problem.search.islands),
-                             .workers = arguments.workers,
+                             .workers = workers,
                              .seed = static_cast<std::uint64_t>(problem.search.seed)};
   using search::Algorithm;
   const auto start = std::chrono::steady_clock::now();
   options.progress = [](double share) { show_progress("one objective", share); };
-  const search::Best best =
-      search::minimise(single, {Algorithm::kGenetic, Algorithm::kAntColony}, options);
+  Found found;
+  found.best = search::minimise(single, {Algorithm::kGenetic, Algorithm::kAntColony}, options);
   options.progress = [](double share) { show_progress("front", share); };
-  options.start = {best.x};  // the end of the front where only the capability counts
-  const std::vector<search::FrontPoint> found = search::front(both, options);
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  options.start = {found.best.x};  // the end of the front where only the capability counts
+  found.front = search::front(both, options);
+  found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return found;
+}
 
-  std::vector<design::DesignScore> points;
+// The best design of both searches, and the designs of the front.
+struct Choice {
+  design::DesignVariables variables;
+  std::string by;                           // algorithm
+  std::vector<design::DesignScore> points;  // of all points of the front
   ordered_json front = ordered_json::array();
-  design::DesignVariables chosen = design::to_variables(problem, best.x);
-  double value = best.value;
-  std::string by = best.algorithm;
-  for (const search::FrontPoint& it : found) {
+};
+
+Choice choose(const design::DesignProblem& problem, const design::Judge& judge,
+              const Found& found) {
+  Choice choice = {.variables = design::to_variables(problem, found.best.x),
+                   .by = found.best.algorithm};
+  double value = found.best.value;
+  for (const search::FrontPoint& it : found.front) {
     const design::DesignVariables variables = design::to_variables(problem, it.x);
-    points.push_back(judge(variables));
-    if (points.back().violation > 0.0) continue;
-    front.push_back({{"variables", search::to_json(problem, variables)},
-                     {"score", search::to_json(points.back())}});
+    choice.points.push_back(judge(variables));
+    if (choice.points.back().violation > 0.0) continue;
+    choice.front.push_back({{"variables", search::to_json(problem, variables)},
+                            {"score", search::to_json(choice.points.back())}});
     if (it.values[0] >= value) continue;
-    chosen = variables;
+    choice.variables = variables;
     value = it.values[0];
-    by = "nsga2";
+    choice.by = "nsga2";
   }
+  return choice;
+}
 
-  const design::Judge looker(problem, true);  // keeps the poses for the maps
-  const design::DesignScore score = looker(chosen);
-  fmt::print("design      {}\n", text_of(score));
-  fmt::print("found by    {} in {:.0f} s, seed {}; front of {} designs\n", by, seconds,
-             problem.search.seed, front.size());
-  if (!score.fault.empty()) throw SetupError("no candidate is a device: " + score.fault);
-  if (score.violation > 0.0) {
-    fmt::print("warning     no candidate meets all requirements: widen bounds or catalogue\n");
-  }
-  design::make_device(problem.base, problem.catalogue, chosen, problem.name, problem.prices)
-      .files.write(out / "device");
-
+ordered_json settings_json(const design::DesignProblem& problem, const Arguments& arguments,
+                           double seconds, const std::string& by) {
   ordered_json json = {
       {"kind", "design"},
       {"name", problem.name},
@@ -176,20 +178,55 @@ void run(const Arguments& arguments) {
                           {"clear_share", problem.requirements.clear_share},
                           {"clearance_m", problem.requirements.clearance},
                           {"walk_m2", problem.requirements.walk_area}};
-  json["chosen"] = {{"variables", search::to_json(problem, chosen)},
+  return json;
+}
+
+void print_design(const design::DesignProblem& problem, const design::DesignScore& score,
+                  const Choice& choice, double seconds) {
+  fmt::print("design      {}\n", text_of(score));
+  fmt::print("found by    {} in {:.0f} s, seed {}; front of {} designs\n", choice.by, seconds,
+             problem.search.seed, choice.front.size());
+  if (!score.fault.empty()) throw SetupError("no candidate is a device: " + score.fault);
+  if (score.violation > 0.0) {
+    fmt::print("warning     no candidate meets all requirements: widen bounds or catalogue\n");
+  }
+}
+
+void run(const Arguments& arguments) {
+  const design::DesignProblem problem = read_problem(arguments);
+  const fs::path out = arguments.out;
+  std::error_code error;
+  fs::create_directories(out / "device", error);
+  if (error) throw SetupError(fmt::format("--out {}: {}", arguments.out, error.message()));
+
+  const design::Judge judge(problem);
+  const design::DesignScore reference = judge(problem.base.variables);
+  fmt::print("base        {}\n", text_of(reference));
+  std::fflush(stdout);
+  const Found found = find(problem, judge, reference, arguments.workers);
+  const Choice choice = choose(problem, judge, found);
+  const design::Judge looker(problem, true);  // keeps the poses for the maps
+  const design::DesignScore score = looker(choice.variables);
+  print_design(problem, score, choice, found.seconds);
+  design::make_device(problem.base, problem.catalogue, choice.variables, problem.name,
+                      problem.prices)
+      .files.write(out / "device");
+
+  ordered_json json = settings_json(problem, arguments, found.seconds, choice.by);
+  json["chosen"] = {{"variables", search::to_json(problem, choice.variables)},
                     {"score", search::to_json(score)}};
   json["base"] = {{"name", problem.base.device.name},
                   {"variables", search::to_json(problem, problem.base.variables)},
                   {"score", search::to_json(reference)},
-                  {"against_front", against_front(problem, reference, points)}};
-  json["front"] = front;
-  for (const search::Progress& it : best.progress) {
+                  {"against_front", against_front(problem, reference, choice.points)}};
+  json["front"] = choice.front;
+  for (const search::Progress& it : found.best.progress) {
     json["convergence"].push_back({{"algorithm", it.algorithm},
                                    {"island", it.island},
                                    {"evaluations", it.evaluations},
                                    {"value", -it.best}});
   }
-  json["sensitivity"] = search::sensitivity(problem, judge, chosen);
+  json["sensitivity"] = search::sensitivity(problem, judge, choice.variables);
   json["coverage"] = {
       {"columns", {"x_m", "y_m", "z_m", "weight", "reached", "velocity", "acceleration"}},
       {"chosen", search::coverage(looker, score)},

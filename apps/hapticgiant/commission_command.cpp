@@ -30,6 +30,30 @@ void print_step(double time_s, const std::string& words) {
   print_out(fmt::format("{:8.1f} s  {}\n", time_s, words));
 }
 
+std::unique_ptr<commission::Crew> make_crew(bool is_alone, const std::atomic<bool>& interrupted) {
+  if (is_alone) return std::make_unique<commission::SimulatedCrew>(interrupted, print_step);
+  return std::make_unique<TerminalCrew>(interrupted, print_step);
+}
+
+void print_title(const std::string& device, bool is_alone) {
+  print_out(fmt::format("HapticGiant {}  first motions of {}{}\n", kVersion, device,
+                        is_alone ? ", simulated, with a simulated person" : ""));
+  if (is_alone) return;
+  print_out(
+      "keys        space bar, held: the machine may move; y, n: answers; Ctrl-C: drives off\n");
+}
+
+void print_result(const std::vector<commission::Item>& items, bool has_passed,
+                  const std::string& file) {
+  const auto count = [&](Outcome outcome) {
+    return std::ranges::count(items, outcome, &commission::Item::outcome);
+  };
+  print_out(fmt::format("\n  commission   {}: {} passed, {} failed, {} not tested\n",
+                        has_passed ? "PASSED" : "FAILED", count(Outcome::kPassed),
+                        count(Outcome::kFailed), count(Outcome::kUntested)));
+  print_out(fmt::format("  kept in      {}\n", file));
+}
+
 }  // namespace
 
 int commission(const CommissionArguments& options) {
@@ -60,19 +84,9 @@ int commission(const CommissionArguments& options) {
   const bool is_alone =
       machine.remote == nullptr ||
       (machine.is_simulated && (options.machine.is_fast || options.has_simulated_person));
-  std::unique_ptr<commission::Crew> crew;
-  if (is_alone) {
-    crew = std::make_unique<commission::SimulatedCrew>(interrupted, print_step);
-  } else {
-    crew = std::make_unique<TerminalCrew>(interrupted, print_step);
-  }
+  const std::unique_ptr<commission::Crew> crew = make_crew(is_alone, interrupted);
   const BackgroundOutput output(interrupted);
-  print_out(fmt::format("HapticGiant {}  first motions of {}{}\n", kVersion, scenario.device.name,
-                        is_alone ? ", simulated, with a simulated person" : ""));
-  if (!is_alone) {
-    print_out(
-        "keys        space bar, held: the machine may move; y, n: answers; Ctrl-C: drives off\n");
-  }
+  print_title(scenario.device.name, is_alone);
   commission::Rig rig(scenario.device, *machine.device, *crew);
   if (machine.remote != nullptr && !options.machine.is_fast) {
     runtime::become_real_time({.priority = options.machine.priority});
@@ -86,13 +100,7 @@ int commission(const CommissionArguments& options) {
 
   const bool has_passed = start_test::has_passed(items);
   keep(items);
-  const auto count = [&](Outcome outcome) {
-    return std::ranges::count(items, outcome, &commission::Item::outcome);
-  };
-  print_out(fmt::format("\n  commission   {}: {} passed, {} failed, {} not tested\n",
-                        has_passed ? "PASSED" : "FAILED", count(Outcome::kPassed),
-                        count(Outcome::kFailed), count(Outcome::kUntested)));
-  print_out(fmt::format("  kept in      {}\n", file));
+  print_result(items, has_passed, file);
   return has_passed ? 0 : 1;
 }
 
@@ -111,7 +119,7 @@ void add_commission(Command app, int& exit_code) {
   add_machine_options(command, options->machine);
   command
       .add_flag("--simulated-person", options->has_simulated_person,
-                "of a remote device that is simulated: no key is held, and nobody is asked")
+                "of a remote device that is simulated: no key is held, and no person is asked")
       .needs("--device-address");
   command.callback([options, &exit_code] { exit_code = commission(*options); });
 }

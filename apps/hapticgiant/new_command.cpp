@@ -51,7 +51,7 @@ new_files::Drives drives_named(const std::string& name) {
   return name == "ideal" ? new_files::Drives::kIdeal : new_files::Drives::kPosition;
 }
 
-// The part as asked for; the whole of a robot is taken without its gripper, which is told.
+// The part as asked for; the whole of a robot is taken without its gripper, and a note says so.
 new_files::ChainPart device_part(const NewArguments& arguments) {
   new_files::ChainPart part = arguments.part;
   if (!part.root_link.empty() || !part.tip_link.empty()) return part;
@@ -102,8 +102,8 @@ int new_twin(const NewArguments& arguments) {
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
   if (!draft.note.empty()) print_out("note        {}\n", draft.note);
-  if (!draft.trouble.empty()) {
-    print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), draft.trouble,
+  if (!draft.problem.empty()) {
+    print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), draft.problem,
                 workspace::kCuresOfWay);
   }
   const std::string file = is_own ? device.sources.front().name : "";

@@ -16,7 +16,7 @@ struct PythonCommand {
 constexpr PythonCommand kCommands[] = {
     {"sweep", "Many runs over a table of parameters, here or on a cluster (docs/start/sweep.md)."},
     {"imus",
-     "Where inertial sensors tell most about the joints of any URDF "
+     "Where inertial sensors observe best the joints of any URDF "
      "(docs/start/imu_placement.md)."},
     {"study", "User studies: plan, check, simulate, report (docs/start/user_studies.md)."}};
 

@@ -314,26 +314,8 @@ void refuse_search_words(Command design) {
                   design.remaining().front()));
 }
 
-}  // namespace
-
-void add_design(Command app) {
-  const Command command = add_offline(app, "design");
-  command.footer(
-      "`hapticgiant design FILE` searches for a device, from requirements to one that runs:\n"
-      "  hapticgiant design models/design/haptic_giant.yaml --quick --out my_giant\n"
-      "Its options: --out FOLDER, --seed N, --workers N, --quick, --no-feel.");
-  command.require_subcommand(0, 1);
-  command.allow_extras();  // of the search, which is Python's
-  command.callback([command] {
-    if (command.has_subcommand()) return;
-    if (!command.remaining().empty()) become_python_program("design", command.remaining());
-    throw SetupError(
-        "design: expected 'arm', 'measure', or the file of a design problem, such as "
-        "models/design/haptic_giant.yaml");
-  });
-  const auto arguments = std::make_shared<DesignArguments>();
-
-  const Command arm = command.add_subcommand("arm", "The arm of a person: joints, reach, poses.");
+void add_arm(Command design, const std::shared_ptr<DesignArguments>& arguments) {
+  const Command arm = design.add_subcommand("arm", "The arm of a person: joints, reach, poses.");
   add_person(arm, *arguments);
   arm.add_option("--poses", arguments->poses, "poses of the hand in the file and the picture")
       .check(whole_number(1, 1e6));
@@ -341,12 +323,14 @@ void add_design(Command app) {
   arm.add_option("--picture", arguments->picture,
                  "draw reach, speeds and ranges of the joints to this SVG file");
   arm.footer("Example:\n  hapticgiant design arm --person female,5 --picture arm.svg");
-  arm.callback([arguments, command] {
-    refuse_search_words(command);
+  arm.callback([arguments, design] {
+    refuse_search_words(design);
     run_arm(*arguments);
   });
+}
 
-  const Command measure = command.add_subcommand(
+void add_measure(Command design, const std::shared_ptr<DesignArguments>& arguments) {
+  const Command measure = design.add_subcommand(
       "measure", "How well a device serves a person's arm: coverage, force, mass, first mode.");
   measure.add_option("device", arguments->device, "device file, or the name of a shipped one")
       .required();
@@ -369,10 +353,32 @@ void add_design(Command app) {
       "Examples:\n"
       "  hapticgiant design measure haptic_giant\n"
       "  hapticgiant design measure my_device.yaml --person female,5 --json measures.json");
-  measure.callback([arguments, command] {
-    refuse_search_words(command);
+  measure.callback([arguments, design] {
+    refuse_search_words(design);
     run_measure(*arguments);
   });
+}
+
+}  // namespace
+
+void add_design(Command app) {
+  const Command command = add_offline(app, "design");
+  command.footer(
+      "`hapticgiant design FILE` searches for a device, from requirements to one that runs:\n"
+      "  hapticgiant design models/design/haptic_giant.yaml --quick --out my_giant\n"
+      "Its options: --out FOLDER, --seed N, --workers N, --quick, --no-feel.");
+  command.require_subcommand(0, 1);
+  command.allow_extras();  // of the search, which is Python's
+  command.callback([command] {
+    if (command.has_subcommand()) return;
+    if (!command.remaining().empty()) become_python_program("design", command.remaining());
+    throw SetupError(
+        "design: expected 'arm', 'measure', or the file of a design problem, such as "
+        "models/design/haptic_giant.yaml");
+  });
+  const auto arguments = std::make_shared<DesignArguments>();
+  add_arm(command, arguments);
+  add_measure(command, arguments);
 }
 
 }  // namespace hg::apps

@@ -138,7 +138,7 @@ void begin(const ExperimentArguments& arguments, const std::string& what) {
 }
 
 // Says which device is measured and where, if it is not the reference device.
-void tell_place(const config::Scenario& scenario) {
+void print_place(const config::Scenario& scenario) {
   const std::string place = experiments::to_text(experiments::place_of(scenario.device));
   if (!place.empty()) print_out(fmt::format("{}. {}\n\n", scenario.device.name, place));
 }
@@ -192,7 +192,7 @@ int experiment_free_space(const ExperimentArguments& arguments) {
                     "as in `hapticgiant haptify`\n\n",
                     config.duration_s, kSeed));
   const config::Scenario scenario = walk_scenario(arguments);
-  tell_place(scenario);
+  print_place(scenario);
   const auto runs = haptify::measure_variants(scenario, config, kSeed, progress_of("variants"));
   return report(haptify::to_json(runs), "free-space", arguments.json);
 }
@@ -208,7 +208,7 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
                       config.kick.force, 1e3 * config.kick.duration));
   }
   const config::Scenario scenario = walk_scenario(arguments);
-  if (!is_part) tell_place(scenario);
+  if (!is_part) print_place(scenario);
   std::vector<std::string> words = {"experiment", "stability-map"};
   const auto hand_on = [&](const char* option, const std::string& value) {
     if (!value.empty()) words.insert(words.end(), {option, file_or_name(value)});
@@ -233,7 +233,7 @@ int experiment_impedance(const ExperimentArguments& arguments) {
                                "`hapticgiant haptify`\n\n",
                                config.response.force));
   const config::Scenario scenario = walk_scenario(arguments);
-  tell_place(scenario);
+  print_place(scenario);
   const experiments::FreeTwin twin = experiments::free_twin_of(scenario);
   const auto runs = haptify::measure_impedance(scenario, config, kSeed, progress_of("pushes"));
   return report(haptify::to_json(runs, config, twin), "impedance", arguments.json);

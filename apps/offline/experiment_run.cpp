@@ -89,7 +89,7 @@ class FilmedDevice final : public device::Device {
   }
   const Truth* truth() const noexcept override { return device_.truth(); }
 
-  /// The doorway and the body that went through it; null if nobody did.
+  /// The doorway and the body that went through it; null: none.
   Json person() const {
     if (!walks_through_) return nullptr;
     const auto pair = [](const Eigen::Vector2d& p) { return Json{p.x(), p.y()}; };

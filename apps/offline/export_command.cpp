@@ -270,7 +270,7 @@ std::string place_of(const ExportArguments& arguments) {
   return arguments.out;
 }
 
-void tell_damage(bool is_complete, const std::vector<recording::Loss>& losses) {
+void print_damage(bool is_complete, const std::vector<recording::Loss>& losses) {
   print_out(recording::to_text(losses));
   if (is_complete) return;
   print_out("CUT OFF     the recording was not completed; all that it holds is exported\n");
@@ -285,7 +285,7 @@ int export_rosbag2(const ExportArguments& arguments) {
   if (arguments.from_s) plan.from_s = *arguments.from_s - kTick_s;
   if (arguments.to_s) plan.to_s = *arguments.to_s - kTick_s;
   const recording::Rosbag2Result result = recording::write_rosbag2(arguments.file, plan);
-  tell_damage(result.is_complete, result.losses);
+  print_damage(result.is_complete, result.losses);
   print_out("rosbag2     {}: {} messages on {} topics{}\n", plan.folder.string(), result.messages,
             result.topics, result.is_link ? ", the recording itself (hard link)" : "");
   return 0;
@@ -311,7 +311,7 @@ int export_table(const ExportArguments& arguments) {
   (void)recording::read_recording(arguments.file, writer);
   writer.finish();
   for (const std::string& file : files.keep()) print_out("written     {}\n", file);
-  tell_damage(read.is_complete, read.losses);
+  print_damage(read.is_complete, read.losses);
   print_out("table       {} rows, {:.3f} .. {:.3f} s, {} columns; {} events\n",
             facts["rows"].get<std::uint64_t>(), facts["from_s"].get<double>(),
             facts["to_s"].get<double>(), kept.size(), survey.events().size());

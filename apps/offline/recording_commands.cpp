@@ -103,7 +103,7 @@ void write_recording(const std::string& file, const char* kind, const fs::path& 
   reader.write(folder, file, kind, read);
 }
 
-// Without matplotlib only run.json and signals.npy are written, and a line tells how to get
+// Without matplotlib only run.json and signals.npy are written, and a line says how to get
 // figures.
 int plot(const PlotArguments& arguments) {
   constexpr double kFigurePeriod_s = 0.01;

@@ -86,7 +86,7 @@ class Bridge final : public LiveListener {
   void withdrawn(const LiveService& service) override;
   void received(const LiveChannel& channel, std::span<const std::byte> message) override;
   void parameters(const nlohmann::json& values, const std::string& id) override;
-  void told(const std::string& status) override;
+  void on_status(const std::string& status) override;
   void answered(std::uint32_t call, std::span<const std::byte> message) override;
   void failed(std::uint32_t call, const std::string& why) override;
   void closed(const std::string& why) override;
@@ -233,8 +233,8 @@ void Bridge::parameters(const nlohmann::json& values, const std::string& id) {
   if (parameters_) parameters_->take(values, id);
 }
 
-void Bridge::told(const std::string& status) {
-  if (parameters_) parameters_->told(status);
+void Bridge::on_status(const std::string& status) {
+  if (parameters_) parameters_->on_status(status);
   say_once("the run: " + status);
 }
 

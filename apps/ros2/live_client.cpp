@@ -206,7 +206,7 @@ void Connection::take_text(std::string_view text) {
   } else if (op == "serviceCallFailure") {
     listener_->failed(message.at("callId"), message.value("message", ""));
   } else if (op == "status") {
-    listener_->told(message.value("message", ""));
+    listener_->on_status(message.value("message", ""));
   }
 }
 

@@ -45,7 +45,7 @@ class LiveListener {
   virtual void received(const LiveChannel& channel, std::span<const std::byte> message) = 0;
   /// Values of parameters; `id` is that of the request that they answer, empty for news
   virtual void parameters(const nlohmann::json& values, const std::string& id) = 0;
-  virtual void told(const std::string& status) = 0;
+  virtual void on_status(const std::string& status) = 0;
   virtual void answered(std::uint32_t call, std::span<const std::byte> message) = 0;
   virtual void failed(std::uint32_t call, const std::string& why) = 0;
   /// The connection has ended, or was never made. The last call.

@@ -265,7 +265,7 @@ class Node::Impl {
     participant_->delete_topic(const_cast<dds::Topic*>(dynamic_cast<const dds::Topic*>(topic)));
   }
 
-  // tells ROS 2 that this end belongs to the node, or no longer does
+  // informs ROS 2 that this end belongs to the node, or no longer does
   void show(const rtps::GUID_t& guid, bool is_there, bool is_writer) {
     NodeEntitiesInfo& node = info_.node_entities_info_seq.front();
     std::vector<Gid>& gids = is_writer ? node.writer_gid_seq : node.reader_gid_seq;

@@ -199,7 +199,7 @@ void Parameters::take(const json& values, const std::string& id) {
   }
 }
 
-void Parameters::told(const std::string& status) {
+void Parameters::on_status(const std::string& status) {
   for (auto& [number, waiting] : waiting_) {
     if (!is_change(waiting.kind)) continue;
     waiting.reason += (waiting.reason.empty() ? "" : "; ") + status;

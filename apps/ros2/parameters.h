@@ -34,8 +34,8 @@ class Parameters {
   /// Passes waiting requests on by `send`; null: no run is connected, they are refused.
   void pass_on(const Send& send);
   void take(const nlohmann::json& values, const std::string& id);
-  /// The run has told a reason, which belongs to the oldest change that waits.
-  void told(const std::string& status);
+  /// A reason of the run, which belongs to the oldest change that waits.
+  void on_status(const std::string& status);
   /// Answers what waits for longer than 2 s, or all of it, with `why`.
   void give_up(const std::string& why, bool all);
   /// Sends answers for which the client was not connected yet.
@@ -49,7 +49,7 @@ class Parameters {
     Clock::time_point since;
     std::vector<std::string> names;  // asked for
     std::vector<Parameter> changes;  // of kSet
-    std::string reason;              // told by the run
+    std::string reason;              // from the run
   };
   struct Answer {
     Kind kind;

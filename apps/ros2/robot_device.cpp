@@ -302,7 +302,8 @@ void run_robot(const RobotOptions& options, const std::atomic<bool>& stop) {
   say(fmt::format("{} at {}: {} joints, {:g} Hz, {} to {}", options.name, server.address(), n,
                   options.rate_Hz, options.has_torques ? "efforts" : "velocities",
                   node.full_name(options.commands)));
-  say("WARNING: ROS 2 has no watchdog here: when this program is killed, a controller goes on with "
+  say("WARNING: ROS 2 has no watchdog here: when this program is killed, a controller continues "
+      "with "
       "its last command. Set a command time-out in the robot.");
   say(fmt::format("waiting for {}{}", node.full_name(options.states),
                   options.wrench.empty() ? "" : " and " + node.full_name(options.wrench)));
@@ -313,7 +314,7 @@ void run_robot(const RobotOptions& options, const std::atomic<bool>& stop) {
   say("the robot is there; waiting for a controller (hapticgiant run ... --device-address)");
   while (server.wait_for_client(stop)) {
     if (!robot.is_heard()) {
-      say(fmt::format("WARNING: nobody listens to {}", node.full_name(options.commands)));
+      say(fmt::format("WARNING: no controller listens to {}", node.full_name(options.commands)));
     }
     const udp::SessionReport report = server.serve(robot, stop);
     robot.come_to_rest();

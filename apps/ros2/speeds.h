@@ -20,7 +20,7 @@ class Speeds {
     const bool has_stamps = stamp_ns != 0 && stamp_ns_ != 0 && stamp_ns != stamp_ns_;
     const double since_s =
         1e-9 * static_cast<double>(has_stamps ? stamp_ns - stamp_ns_ : arrival_ns - arrival_ns_);
-    // a clock that was set back begins anew
+    // a clock that was set back begins again
     if (has_state_ && since_s >= 0.0 && since_s < least_s_) return false;
     const bool is_known = has_state_ && since_s > 0.0;
     if (is_known) speeds_ = (q - q_) / since_s;

@@ -42,7 +42,7 @@ laws = table.groupby("law")[["roughness", "hand - twin, mm"]].agg(["mean", "std"
 print(laws.round(3))
 
 # %% [markdown]
-# Seeds make runs that differ in every bit, and yet tell the same: a difference between laws counts
+# Seeds make runs that differ in every bit, and yet show the same: a difference between laws counts
 # only where it is larger than that between seeds. It is, in roughness: the paper's law lets
 # accelerations jump where limits meet; in how far hand and twin part it is not. The same seed gives the same run, to the last bit.
 

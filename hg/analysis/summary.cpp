@@ -24,6 +24,10 @@ nlohmann::ordered_json link_json(const LinkCounts& counts) {
   return json;
 }
 
+std::string line(const char* label, const std::string& value) {
+  return fmt::format("  {:<12} {}\n", label, value);
+}
+
 double per_second(std::uint64_t count, double duration_s) {
   return duration_s > 0.0 ? static_cast<double>(count) / duration_s : 0.0;
 }
@@ -154,12 +158,7 @@ nlohmann::ordered_json Summary::to_json(const RunFacts& facts,
   json["force"] = {{"mean_N", mean(sum_force_, running_cycles_)},
                    {"max_N", max_force_},
                    {"max_torque_Nm", max_torque_}};
-  json["solver"]["status"] = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < solver_status_.size(); ++i) {
-    json["solver"]["status"][std::string(to_string(static_cast<SolverStatus>(i)))] =
-        solver_status_[i];
-  }
-  json["solver"]["active_set_changes_per_second"] = per_second(active_set_changes_, duration_s_);
+  json["solver"] = solver_json();
   json["acceleration_change_per_cycle"] = analysis::to_json(acceleration_change_.distribution());
   json["acceleration_change_per_cycle"]["mean"] = mean(sum_acceleration_change_, running_cycles_);
   json["acceleration_change_per_cycle"]["unit"] = "m/s^2";
@@ -176,6 +175,16 @@ nlohmann::ordered_json Summary::to_json(const RunFacts& facts,
   json["fault"] = {{"code", static_cast<int>(fault_.code)},
                    {"what", std::string(to_string(fault_.code))},
                    {"index", fault_.index}};
+  return json;
+}
+
+nlohmann::ordered_json Summary::solver_json() const {
+  nlohmann::ordered_json json;
+  json["status"] = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < solver_status_.size(); ++i) {
+    json["status"][std::string(to_string(static_cast<SolverStatus>(i)))] = solver_status_[i];
+  }
+  json["active_set_changes_per_second"] = per_second(active_set_changes_, duration_s_);
   return json;
 }
 
@@ -222,132 +231,155 @@ nlohmann::ordered_json Summary::truth_json() const {
 // True values of the simulation, unknown to a controller.
 std::string Summary::truth_text() const {
   std::string text;
-  const auto line = [&](const char* label, const std::string& value) {
-    text += fmt::format("  {:<12} {}\n", label, value);
-  };
   const std::vector<double>& excess = truth_.worst_excess();
   const auto worst = std::ranges::max_element(excess);
   if (worst == excess.end() || *worst == 0.0) {
-    line("in truth", "all limits of the device held");
+    text += line("in truth", "all limits of the device held");
   } else {
     const LimitInfo& limit = catalogue_[worst - excess.begin()];
-    line("in truth", fmt::format("{} beyond its limit by {:.3f} {}", limit.name, 1e3 * *worst,
-                                 limit.is_angle ? "mrad" : "mm"));
+    text += line("in truth", fmt::format("{} beyond its limit by {:.3f} {}", limit.name,
+                                         1e3 * *worst, limit.is_angle ? "mrad" : "mm"));
   }
   const std::size_t joint = std::max(truth_.worst_joint(), 0);
-  line("tracking",
-       fmt::format("joints within {:.2f} mrad ({}), handle within {:.2f} mm of the twin",
-                   1e3 * truth_.max_joint_error(), catalogue_[joint].name,
-                   1e3 * truth_.max_hand_distance()));
+  text += line("tracking",
+               fmt::format("joints within {:.2f} mrad ({}), handle within {:.2f} mm of the twin",
+                           1e3 * truth_.max_joint_error(), catalogue_[joint].name,
+                           1e3 * truth_.max_hand_distance()));
   const VectorM& share = truth_.max_torque_share();
   if (share.size() > 0) {
     Eigen::Index most = 0;
     const double largest = share.maxCoeff(&most);
     Eigen::Index hottest = 0;
     const double warmth = truth_.rated_torque_share().maxCoeff(&hottest);
-    line("torque",
-         fmt::format("at most {:.0f} % of the peak ({}), rms {:.0f} % of the rated ({}){}",
-                     100.0 * largest, catalogue_[most].name, 100.0 * warmth,
-                     catalogue_[hottest].name,
-                     truth_.clamped_cycles() == 0
-                         ? std::string()
-                         : fmt::format("; held back in {} cycles", truth_.clamped_cycles())));
+    text += line("torque",
+                 fmt::format("at most {:.0f} % of the peak ({}), rms {:.0f} % of the rated ({}){}",
+                             100.0 * largest, catalogue_[most].name, 100.0 * warmth,
+                             catalogue_[hottest].name,
+                             truth_.clamped_cycles() == 0 ? std::string()
+                                                          : fmt::format("; held back in {} cycles",
+                                                                        truth_.clamped_cycles())));
   }
-  line("handle", fmt::format("mean force {:.2f} N, vibration {:.3f} m/s^2 rms above 5 Hz, {:.3f} "
-                             "above 20 Hz",
-                             truth_.mean_force(), truth_.vibration(), truth_.vibration_20()));
+  text += line("handle",
+               fmt::format("mean force {:.2f} N, vibration {:.3f} m/s^2 rms above 5 Hz, {:.3f} "
+                           "above 20 Hz",
+                           truth_.mean_force(), truth_.vibration(), truth_.vibration_20()));
   const BystanderReport& bystander = truth_.bystander();
   if (bystander.force > 0.0) {
-    line("BYSTANDER",
-         fmt::format("hit with up to {:.0f} N, {:.1f} N/cm^2, pressed in by {:.1f} mm",
-                     bystander.force, bystander.pressure, 1e3 * bystander.compression));
+    text += line("BYSTANDER",
+                 fmt::format("hit with up to {:.0f} N, {:.1f} N/cm^2, pressed in by {:.1f} mm",
+                             bystander.force, bystander.pressure, 1e3 * bystander.compression));
+  }
+  return text;
+}
+
+std::string Summary::limits_text() const {
+  std::size_t worst = 0;
+  for (std::size_t i = 1; i < catalogue_.size(); ++i) {
+    if (worst_excess_[i] > worst_excess_[worst]) worst = i;
+  }
+  if (catalogue_.empty() || worst_excess_[worst] == 0.0) {
+    return line("limits", "all held");
+  }
+  return line("limits", fmt::format("{}, worst {} by {:.3f} {}",
+                                    limits_held() ? "held within tolerance" : "EXCEEDED",
+                                    catalogue_[worst].name, 1e3 * worst_excess_[worst],
+                                    catalogue_[worst].is_angle ? "mrad" : "mm"));
+}
+
+std::string Summary::hand_text() const {
+  std::string text;
+  if (has_shaken()) {
+    text +=
+        line("SHAKING",
+             fmt::format("hand and device oscillate against each other, {:.2f} s in all, first at "
+                         "{:.3f} s: {}",
+                         static_cast<double>(shaking_cycles_) / rate_Hz_, shaking_from_s_,
+                         to_string(shaking_)));
+  }
+  if (touched_s_ > 0.0) {
+    text += line("CONTACT",
+                 fmt::format("something touched the arm, which gave way for {:.2f} s, with up "
+                             "to {:.0f} N",
+                             touched_s_, max_touch_force_));
+  } else if (feels_touch_) {
+    text += line("contact", fmt::format("nothing touched the arm, at most {:.0f} % of a threshold",
+                                        100.0 * max_touch_share_));
+  }
+  text += line("hand - twin", fmt::format("at most {:.3f} mm apart", 1e3 * max_sync_error_));
+  text += line("force", fmt::format("mean {:.1f} N, max {:.1f} N",
+                                    mean(sum_force_, running_cycles_), max_force_));
+  return text;
+}
+
+std::string Summary::solver_text() const {
+  const auto count = [&](SolverStatus status) { return solver_status_[index(status)]; };
+  const std::uint64_t spent = count(SolverStatus::kBudgetSpent);
+  return line("solver", fmt::format("{} solved, {}{} not; {:.1f} active-set changes per second",
+                                    count(SolverStatus::kSolved),
+                                    spent > 0 ? fmt::format("{} not proven, ", spent) : "",
+                                    count(SolverStatus::kFailed),
+                                    per_second(active_set_changes_, duration_s_)));
+}
+
+std::string Summary::losses_text(const RunFacts& facts) const {
+  std::string text;
+  const char* none = facts.recording_error.empty() ? "off" : "none";
+  text += line("recording", facts.recording.empty() ? none : facts.recording);
+  if (facts.dropped > 0) {
+    text += line("LOST", fmt::format("{} samples: neither analysed nor recorded", facts.dropped));
+  }
+  if (facts.unrecorded > 0 || !facts.recording_error.empty()) {
+    text += line("LOST",
+                 fmt::format("{} samples of the recording: {}", facts.unrecorded,
+                             facts.recording_error.empty() ? "the disk did not take them in time"
+                                                           : facts.recording_error));
+  }
+  if (facts.stop_timed_out)
+    text += line("STOP", "timed out: drives off while the device was moving");
+  if (fault_.code != FaultCode::kNone) {
+    text += line("FAULT",
+                 fmt::format("{} {}{}", static_cast<int>(fault_.code), to_string(fault_.code),
+                             facts.fault_figures.empty() ? "" : " (" + facts.fault_figures + ")"));
   }
   return text;
 }
 
 std::string Summary::to_text(const RunFacts& facts, const std::vector<std::string>& missing) const {
   std::string text;
-  const auto line = [&](const char* label, const std::string& value) {
-    text += fmt::format("  {:<12} {}\n", label, value);
-  };
-  std::size_t worst = 0;
-  for (std::size_t i = 1; i < catalogue_.size(); ++i) {
-    if (worst_excess_[i] > worst_excess_[worst]) worst = i;
-  }
   const Distribution time = cycle_time_us_.distribution();
   const double wall = std::max(facts.wall_time_s, 1e-9);
 
-  line("run", fmt::format("{}, {:.1f} s in {:.1f} s ({:.1f}x real time), {:.0f} Hz", facts.scenario,
-                          duration_s_, facts.wall_time_s, duration_s_ / wall, facts.rate_Hz));
-  line("law", fmt::format("{}, {} bounds{}{}", facts.law, facts.bounds,
-                          facts.gantry == "law" ? ", gantry led by the law" : "",
-                          facts.braking == "together" ? ", limits brake together" : ""));
+  text += line(
+      "run", fmt::format("{}, {:.1f} s in {:.1f} s ({:.1f}x real time), {:.0f} Hz", facts.scenario,
+                         duration_s_, facts.wall_time_s, duration_s_ / wall, facts.rate_Hz));
+  text += line("law", fmt::format("{}, {} bounds{}{}", facts.law, facts.bounds,
+                                  facts.gantry == "law" ? ", gantry led by the law" : "",
+                                  facts.braking == "together" ? ", limits brake together" : ""));
   if (!facts.plant.empty()) {
-    line("plant", facts.plant);
-    line("sensors", facts.sensors);
+    text += line("plant", facts.plant);
+    text += line("sensors", facts.sensors);
   }
-  line("events", missing.empty() ? fmt::format("{} of {} in order", events_.size(), events_.size())
-                                 : fmt::format("{} happened; missing: {}", events_.size(),
-                                               fmt::join(missing, ", ")));
-  if (catalogue_.empty() || worst_excess_[worst] == 0.0) {
-    line("limits", "all held");
-  } else {
-    line("limits",
-         fmt::format("{}, worst {} by {:.3f} {}",
-                     limits_held() ? "held within tolerance" : "EXCEEDED", catalogue_[worst].name,
-                     1e3 * worst_excess_[worst], catalogue_[worst].is_angle ? "mrad" : "mm"));
-  }
-  if (has_shaken()) {
-    line("SHAKING",
-         fmt::format("hand and device oscillate against each other, {:.2f} s in all, first at "
-                     "{:.3f} s: {}",
-                     static_cast<double>(shaking_cycles_) / rate_Hz_, shaking_from_s_,
-                     to_string(shaking_)));
-  }
-  if (touched_s_ > 0.0) {
-    line("CONTACT", fmt::format("something touched the arm, which gave way for {:.2f} s, with up "
-                                "to {:.0f} N",
-                                touched_s_, max_touch_force_));
-  } else if (feels_touch_) {
-    line("contact", fmt::format("nothing touched the arm, at most {:.0f} % of a threshold",
-                                100.0 * max_touch_share_));
-  }
-  line("hand - twin", fmt::format("at most {:.3f} mm apart", 1e3 * max_sync_error_));
-  line("force",
-       fmt::format("mean {:.1f} N, max {:.1f} N", mean(sum_force_, running_cycles_), max_force_));
+  text += line("events", missing.empty()
+                             ? fmt::format("{} of {} in order", events_.size(), events_.size())
+                             : fmt::format("{} happened; missing: {}", events_.size(),
+                                           fmt::join(missing, ", ")));
+  text += limits_text();
+  text += hand_text();
   if (truth_.is_known()) text += truth_text();
-  const auto count = [&](SolverStatus status) { return solver_status_[index(status)]; };
-  const std::uint64_t spent = count(SolverStatus::kBudgetSpent);
-  line("solver",
-       fmt::format("{} solved, {}{} not; {:.1f} active-set changes per second",
-                   count(SolverStatus::kSolved),
-                   spent > 0 ? fmt::format("{} not proven, ", spent) : "",
-                   count(SolverStatus::kFailed), per_second(active_set_changes_, duration_s_)));
-  line("smoothness", fmt::format("acceleration changes by {:.4f} m/s^2 per cycle on average",
-                                 mean(sum_acceleration_change_, running_cycles_)));
-  line("cycle time", fmt::format("median {:.1f} us, 99.9 % {:.1f} us, max {:.1f} us; {} late",
-                                 time.median, time.p99_9, time.max, facts.timing.overruns));
+  text += solver_text();
+  text +=
+      line("smoothness", fmt::format("acceleration changes by {:.4f} m/s^2 per cycle on average",
+                                     mean(sum_acceleration_change_, running_cycles_)));
+  text +=
+      line("cycle time", fmt::format("median {:.1f} us, 99.9 % {:.1f} us, max {:.1f} us; {} late",
+                                     time.median, time.p99_9, time.max, facts.timing.overruns));
   text += timing_lines(facts.timing);
-  line("priority", priority_text(facts.timing));
-  line("allocations", fmt::format("{} in the loop", facts.allocations_in_loop));
-  if (facts.link.sent > 0) line("link", link_text(facts.link));
-  line("state",
-       fmt::format("{:016x} (hash of the last cycle: the same run has the same)", last_hash_));
-  const char* none = facts.recording_error.empty() ? "off" : "none";
-  line("recording", facts.recording.empty() ? none : facts.recording);
-  if (facts.dropped > 0) {
-    line("LOST", fmt::format("{} samples: neither analysed nor recorded", facts.dropped));
-  }
-  if (facts.unrecorded > 0 || !facts.recording_error.empty()) {
-    line("LOST", fmt::format("{} samples of the recording: {}", facts.unrecorded,
-                             facts.recording_error.empty() ? "the disk did not take them in time"
-                                                           : facts.recording_error));
-  }
-  if (facts.stop_timed_out) line("STOP", "timed out: drives off while the device was moving");
-  if (fault_.code != FaultCode::kNone) {
-    line("FAULT", fmt::format("{} {}{}", static_cast<int>(fault_.code), to_string(fault_.code),
-                              facts.fault_figures.empty() ? "" : " (" + facts.fault_figures + ")"));
-  }
+  text += line("priority", priority_text(facts.timing));
+  text += line("allocations", fmt::format("{} in the loop", facts.allocations_in_loop));
+  if (facts.link.sent > 0) text += line("link", link_text(facts.link));
+  text += line("state", fmt::format("{:016x} (hash of the last cycle: the same run has the same)",
+                                    last_hash_));
+  text += losses_text(facts);
   return text;
 }
 

@@ -73,9 +73,14 @@ class Summary {
 
  private:
   nlohmann::ordered_json truth_json() const;
+  nlohmann::ordered_json solver_json() const;
   nlohmann::ordered_json shaking_json() const;
   nlohmann::ordered_json touch_json() const;
   std::string truth_text() const;
+  std::string limits_text() const;
+  std::string hand_text() const;
+  std::string solver_text() const;
+  std::string losses_text(const RunFacts& facts) const;
 
   LimitCatalogue catalogue_;
   TruthSummary truth_;

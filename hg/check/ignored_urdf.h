@@ -1,4 +1,4 @@
-/// Names what a URDF says and nobody reads.
+/// Names what a URDF says and no part reads.
 #pragma once
 
 #include <vector>

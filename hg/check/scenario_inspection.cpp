@@ -148,8 +148,8 @@ bool has_start(const config::DeviceConfig& device, const config::Twin& twin, Col
 void inspect_way(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
                  Collector& out) {
   try {
-    const std::string trouble = workspace::trouble_of(workspace::lead(device, twin));
-    if (!trouble.empty()) out.add(Severity::kWarning, "placement", trouble, workspace::kCuresOfWay);
+    const std::string problem = workspace::problem_of(workspace::lead(device, twin));
+    if (!problem.empty()) out.add(Severity::kWarning, "placement", problem, workspace::kCuresOfWay);
   } catch (const SetupError& error) {
     out.add(Severity::kFault, "placement", error.what(), "");
   }

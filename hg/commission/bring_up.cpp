@@ -79,9 +79,9 @@ class Steps {
     if (!is_failed_) {
       found_.clear();
       try {
-        const std::string trouble = test();
-        item.outcome = trouble.empty() ? Outcome::kPassed : Outcome::kFailed;
-        item.found = trouble.empty() ? found_ : trouble;
+        const std::string problem = test();
+        item.outcome = problem.empty() ? Outcome::kPassed : Outcome::kFailed;
+        item.found = problem.empty() ? found_ : problem;
       } catch (const Ended& end) {
         item.outcome = Outcome::kFailed;
         item.found = end.why;
@@ -260,10 +260,10 @@ class Steps {
           const SafetyInputs& safety = rig_.sensors().safety;
           return rig_.crew().holds_key() && safety.operator_enable && !safety.emergency_stop;
         },
-        rig_.sensors().safety.operator_enable ? "nobody held the key"
-                                              : "nobody held the enabling switch");
+        rig_.sensors().safety.operator_enable ? "the key was not held"
+                                              : "the enabling switch was not held");
     VectorPM moved;
-    if (!rig_.power_on(moved)) return trouble_of_hold(moved, model_);
+    if (!rig_.power_on(moved)) return problem_of_hold(moved, model_);
     found_ = fmt::format("on, all joints hold, moved by {:.1f} mrad or mm at most",
                          1e3 * moved.cwiseAbs().maxCoeff());
     return "";
@@ -346,7 +346,7 @@ class Steps {
     const bool sees_turn = has_imu() && !is_slide(joint);
     if (!sees_turn) ask({.words = {}, .way = p, .turn = turn});  // from here on it is looked at
     const Stroke there = rig_.lead(joint, way);
-    if (std::string trouble = trouble_of(there, model_, before); !trouble.empty()) return trouble;
+    if (std::string problem = problem_of(there, model_, before); !problem.empty()) return problem;
     if (!sees_turn) {
       ask({.words = fmt::format("did the handle {}?", seen), .way = p, .turn = turn});
       if (!wait_for_answer()) {
@@ -359,7 +359,7 @@ class Steps {
     say("-> and back; hold the key");
     const Stroke back = rig_.lead(joint, -way);
     place_chain();
-    if (std::string trouble = trouble_of(back, model_, chain_); !trouble.empty()) return trouble;
+    if (std::string problem = problem_of(back, model_, chain_); !problem.empty()) return problem;
     found_ = fmt::format("led by {:.0f} {} and back", 1e3 * way, is_slide(joint) ? "mm" : "mrad");
     if (!has_torques() || joint < model_.n_p) {
       found_ += fmt::format(", {:.0f} ms late", 1e3 * std::max(0.0, there.late));
@@ -402,7 +402,7 @@ class Steps {
 
   std::string drives_again() {
     say("-> the drives come on again; HOLD THE KEY");
-    if (std::string trouble = switch_on(); !trouble.empty()) return trouble;
+    if (std::string problem = switch_on(); !problem.empty()) return problem;
     if (!options_.falls_silent) rig_.power_off();
     return "";
   }
@@ -418,7 +418,7 @@ class Steps {
           kLongest);
     }
     if (fault == FaultCode::kDeviceSilent) {
-      return "without commands it fell silent itself: nobody knows whether its drives are off; its "
+      return "without commands it fell silent itself, and may have its drives on; its "
              "driver must say goodbye";
     }
     found_ = fmt::format("it ended the session: {}", to_string(fault));
@@ -436,7 +436,7 @@ class Steps {
   }
 
   std::string handle_at_rest() {
-    say("-> nobody touches the handle");
+    say("-> keep off the handle");
     Vector6 mean = Vector6::Zero();
     constexpr double kFor = 1.0;  // s
     rig_.rest(kFor);
@@ -452,7 +452,7 @@ class Steps {
            "force/torque sensor";
   }
 
-  // Pulls along the axes of B tell how the sensor stands in it.
+  // Pulls along the axes of B show how the sensor stands in it.
   std::string pulls() {
     found_.clear();
     std::vector<Direction> directions = at_rest_.directions;
@@ -492,7 +492,7 @@ class Steps {
           sum = pulls ? Vector3d(sum + rig_.dt() * force()) : Vector3d::Zero();
           return lasted > kPullTime;
         },
-        "nobody pulled", rig_.dt());
+        "the handle was not pulled", rig_.dt());
     rig_.crew().pull(Vector3d::Zero());
     say("-> let go");
     double quiet = 0.0;
@@ -514,7 +514,7 @@ class Steps {
       if (answer) return *answer;
       rig_.hold(kLooks);
     }
-    throw Ended{"nobody answered"};
+    throw Ended{"no answer was given"};
   }
 
   void wait_for(const std::function<bool()>& is_so, const std::string& otherwise,

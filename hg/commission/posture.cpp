@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kCounts = 3.0;        // Nm of weight from which a torque sensor can tell
+constexpr double kCounts = 3.0;        // Nm of weight from which a torque sensor shows it
 constexpr double kTorqueRatio = 0.25;  // of the weight by which it may be wrong
 constexpr double kStep = 0.01;         // rad, of the search for a joint's true position
 constexpr double kParallel = 0.17;     // rad between axes that count as parallel

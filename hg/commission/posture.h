@@ -29,7 +29,7 @@ struct AtRest {
 double misfit(const AtRest& measured, const DeviceModel& device, model::ChainData& chain);
 
 /// Joint whose torque sensor does not carry the weight of the links beyond it; -1: none, or there
-/// are no sensors. `counted`: how many joints carry enough to tell.
+/// are no sensors. `counted`: how many joints carry enough to show it.
 int wrong_torque(const AtRest& measured, const DeviceModel& device, model::ChainData& chain,
                  int& counted);
 

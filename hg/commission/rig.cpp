@@ -130,7 +130,7 @@ int Rig::astray(int joint) const {
   return -1;
 }
 
-// A period with drives on. They go off where nobody has held the key for long.
+// A period with drives on. They go off where the key has not been held for long.
 void Rig::exchange_on() {
   exchange(true);
   without_key_s_ = crew_.holds_key() ? 0.0 : without_key_s_ + dt();

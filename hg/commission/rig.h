@@ -68,12 +68,12 @@ class Rig {
   bool is_on() const { return was_on_; }
 
   /// Leads a joint by `way` (rad or m) while the drives are on and the key is held. A key that is
-  /// let go of stops the motion, which goes on with the key; after 20 s the drives go off.
+  /// let go of stops the motion, which continues with the key; after 20 s the drives go off.
   Stroke lead(int joint, double way);
 
   /// Sends nothing while the drives hold, as a controller that has died. Fault that then came from
   /// the machine; kNone: it still sent samples after `duration_s`, or a joint left its place or
-  /// somebody wanted the end before, and it got a last command.
+  /// a person wanted the end before, and it got a last command.
   FaultCode fall_silent(double duration_s);
 
   const SensorFrame& sensors() const { return sensors_; }

@@ -50,7 +50,7 @@ std::string wrong_zero(const Vector3d& axis, int joint, const std::vector<Vector
   return names;
 }
 
-std::string trouble_of_turn(const Stroke& stroke, const DeviceModel& device,
+std::string problem_of_turn(const Stroke& stroke, const DeviceModel& device,
                             const model::ChainData& chain) {
   const double moved = stroke.moved[stroke.joint];
   const std::string& name = name_of(device, stroke.joint);
@@ -111,7 +111,7 @@ std::vector<Vector3d> axes_in_sensor(const DeviceModel& device, const model::Cha
   return axes;
 }
 
-std::string trouble_of(const Stroke& stroke, const DeviceModel& device,
+std::string problem_of(const Stroke& stroke, const DeviceModel& device,
                        const model::ChainData& chain) {
   const int i = stroke.joint;
   const std::string& name = name_of(device, i);
@@ -163,7 +163,7 @@ std::string trouble_of(const Stroke& stroke, const DeviceModel& device,
     }
   }
   if (stroke.has_gyroscope && !device.chain.joints()[i].is_slide()) {
-    const std::string turn = trouble_of_turn(stroke, device, chain);
+    const std::string turn = problem_of_turn(stroke, device, chain);
     if (!turn.empty()) return turn;
   }
   if (stroke.is_cut)
@@ -171,7 +171,7 @@ std::string trouble_of(const Stroke& stroke, const DeviceModel& device,
   return "";
 }
 
-std::string trouble_of_hold(const VectorPM& moved, const DeviceModel& device) {
+std::string problem_of_hold(const VectorPM& moved, const DeviceModel& device) {
   constexpr double kAlso = 0.5;  // of the largest motion: this joint is meant, too
   const double most = moved.cwiseAbs().maxCoeff();
   std::vector<std::string> names;

@@ -30,9 +30,9 @@ struct Stroke {
 ///
 /// The gyroscope decides what encoder and command have in common: sign, order, gear ratio. It knows
 /// nothing of the joint's place, but the axis of joint i in S depends on the positions of the
-/// joints between it and S alone: an axis that does not fit, after these were led without trouble,
+/// joints between it and S alone: an axis that does not fit, after these were led as they should,
 /// says that one of them counts from another zero.
-std::string trouble_of(const Stroke& stroke, const DeviceModel& device,
+std::string problem_of(const Stroke& stroke, const DeviceModel& device,
                        const model::ChainData& chain);
 
 /// Axes of the joints in the sensor frame S, unit; zero for slides.
@@ -41,7 +41,7 @@ std::vector<Eigen::Vector3d> axes_in_sensor(const DeviceModel& device,
 
 /// What is wrong with joints that leave their places as soon as the drives hold them, by the change
 /// of each encoder.
-std::string trouble_of_hold(const VectorPM& moved, const DeviceModel& device);
+std::string problem_of_hold(const VectorPM& moved, const DeviceModel& device);
 
 /// Dry friction of a joint of the manipulator that was led there and back, Nm: what turns its sign
 /// with the motion, weight and springs do not.

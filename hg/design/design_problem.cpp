@@ -10,6 +10,7 @@
 #include "hg/controller/safety/collision/shapes.h"
 #include "hg/core/error.h"
 #include "hg/model/chain_data.h"
+#include "hg/model/chain_model.h"
 #include "hg/model/urdf.h"
 
 namespace hg::design {
@@ -87,94 +88,101 @@ double excess(double is, double most) {
   return std::isfinite(most) ? std::max(0.0, is / most - 1.0) : 0.0;
 }
 
+// A problem file; base and catalogue are paths, and the joints of the base names.
+struct ProblemDraft {
+  /// Its base comes last
+  DesignProblem problem = {
+      .base = {.device = {.model = {.chain = model::ChainModel::free_body({})}}}};
+  std::filesystem::path base, catalogue;
+  std::array<std::string, kDesignJoints> sizes;
+  std::array<double, kDesignJoints> ratios{};
+};
+
+void read_base(config::Loader& loader, ProblemDraft& draft) {
+  loader.words("name", draft.problem.name, "name of the device", Need::kRequired);
+  const std::string& name = draft.problem.name;
+  const bool is_plain = name.find_first_of("\"\\\n\r<>&") == std::string::npos &&
+                        name.find("--") == std::string::npos;
+  loader.rule(is_plain, "name", "must be one line without \" \\ < > & and --");
+  loader.path("base", draft.base, "device whose structure is kept", Need::kRequired);
+  loader.path("catalogue", draft.catalogue, "joint sizes", Need::kRequired);
+  const std::vector<std::string> joints = joint_names();
+  std::size_t count = 0;
+  loader.groups_by_name(
+      "base_joints", joints, "a joint of the arm",
+      [&](config::Loader& child, int joint) {
+        ++count;
+        const auto k = static_cast<std::size_t>(joint);
+        child.words("size", draft.sizes[k], "name in the catalogue", Need::kRequired);
+        child.number("ratio", draft.ratios[k], {.lb = 1.0, .ub = 1e4}, "transmission ratio",
+                     Need::kRequired);
+      },
+      "what the base is made of");
+  loader.rule(count == joints.size(), "base_joints", "must have m1 to m6");
+}
+
+void read_person(config::Loader& loader, DesignProblem& problem) {
+  loader.choice("sex", problem.sex, config::Choices<Sex>(kSexes), "of the person");
+  loader.number("stature_percentile", problem.stature_percentile, {.lb = 1.0, .ub = 99.0},
+                "of that population");
+}
+
+void read_bounds(config::Loader& loader, DesignProblem& problem) {
+  const std::vector<std::string> variables = names_of(kContinuous);
+  std::size_t count = 0;
+  loader.groups_by_name(
+      "variables", variables, "a variable",
+      [&](config::Loader& child, int index) {
+        ++count;
+        Interval& range = problem.bounds[static_cast<std::size_t>(index)];
+        child.number("from_m", range.lb, config::kPositive, "smallest", Need::kRequired);
+        child.number("to_m", range.ub, config::kPositive, "largest", Need::kRequired);
+        child.rule(range.lb <= range.ub, "to_m", "must not be below from_m");
+      },
+      "bounds of the continuous variables");
+  loader.rule(count == variables.size(), "variables",
+              "must have L1, L2, D3, L4, D6, gantry_x, gantry_y and mount_height");
+}
+
+void read_weights(config::Loader& loader, DesignProblem& problem) {
+  const std::vector<std::string> terms = names_of(kTerms);
+  loader.numbers_by_name(
+      "weights", terms, "a term of the capability", {.lb = 0.0, .ub = 1e6},
+      [&](int index, double weight) { problem.weights[static_cast<std::size_t>(index)] = weight; },
+      "of the terms of the capability");
+  double sum = 0.0;
+  for (double weight : problem.weights) sum += weight;
+  loader.rule(sum > 0.0, "weights", "one must be above zero");
+}
+
 }  // namespace
 
 DesignProblem load_problem(const std::filesystem::path& path) {
   config::SourceReader reader;
   config::LoaderFile file = {path, reader, config::Faults(path.generic_string())};
-  std::string name;
-  std::filesystem::path base, catalogue;
-  std::array<std::string, kDesignJoints> sizes;
-  std::array<double, kDesignJoints> ratios{};
-  std::array<Interval, kContinuous.size()> bounds;
-  std::array<double, kTerms.size()> weights;
-  weights.fill(0.0);
-  Requirements requirements;
-  Burden burden = Burden::kMovingMass;
-  SearchOptions search;
-  Sex sex = Sex::kMale;
-  double percentile = 50.0;
-  const std::vector<std::string> joints = joint_names(), variables = names_of(kContinuous),
-                                 terms = names_of(kTerms);
+  ProblemDraft draft;
+  DesignProblem& problem = draft.problem;
+  problem.weights.fill(0.0);
   load_file(file, [&](config::Loader& loader) {
-    loader.words("name", name, "name of the device", Need::kRequired);
-    const bool is_plain = name.find_first_of("\"\\\n\r<>&") == std::string::npos &&
-                          name.find("--") == std::string::npos;
-    loader.rule(is_plain, "name", "must be one line without \" \\ < > & and --");
-    loader.path("base", base, "device whose structure is kept", Need::kRequired);
-    loader.path("catalogue", catalogue, "joint sizes", Need::kRequired);
-    std::size_t count = 0;
-    loader.groups_by_name(
-        "base_joints", joints, "a joint of the arm",
-        [&](config::Loader& child, int joint) {
-          ++count;
-          child.words("size", sizes[static_cast<std::size_t>(joint)], "name in the catalogue",
-                      Need::kRequired);
-          child.number("ratio", ratios[static_cast<std::size_t>(joint)], {.lb = 1.0, .ub = 1e4},
-                       "transmission ratio", Need::kRequired);
-        },
-        "what the base is made of");
-    loader.rule(count == joints.size(), "base_joints", "must have m1 to m6");
+    read_base(loader, draft);
     loader.group(
-        "person",
-        [&](config::Loader& child) {
-          child.choice("sex", sex, config::Choices<Sex>(kSexes), "of the person");
-          child.number("stature_percentile", percentile, {.lb = 1.0, .ub = 99.0},
-                       "of that population");
-        },
+        "person", [&](config::Loader& child) { read_person(child, problem); },
         "whose arm is to be served");
-    count = 0;
-    loader.groups_by_name(
-        "variables", variables, "a variable",
-        [&](config::Loader& child, int index) {
-          ++count;
-          Interval& range = bounds[static_cast<std::size_t>(index)];
-          child.number("from_m", range.lb, config::kPositive, "smallest", Need::kRequired);
-          child.number("to_m", range.ub, config::kPositive, "largest", Need::kRequired);
-          child.rule(range.lb <= range.ub, "to_m", "must not be below from_m");
-        },
-        "bounds of the continuous variables");
-    loader.rule(count == variables.size(), "variables",
-                "must have L1, L2, D3, L4, D6, gantry_x, gantry_y and mount_height");
+    read_bounds(loader, problem);
     loader.group(
-        "requirements", [&](config::Loader& child) { read_requirements(child, requirements); },
+        "requirements",
+        [&](config::Loader& child) { read_requirements(child, problem.requirements); },
         "that a design must meet", Need::kRequired);
-    loader.numbers_by_name(
-        "weights", terms, "a term of the capability", {.lb = 0.0, .ub = 1e6},
-        [&](int index, double weight) { weights[static_cast<std::size_t>(index)] = weight; },
-        "of the terms of the capability");
-    double sum = 0.0;
-    for (double weight : weights) sum += weight;
-    loader.rule(sum > 0.0, "weights", "one must be above zero");
-    loader.choice("front_against", burden, config::Choices<Burden>(kBurdens),
+    read_weights(loader, problem);
+    loader.choice("front_against", problem.burden, config::Choices<Burden>(kBurdens),
                   "what the front sets against the capability");
     loader.group(
-        "search", [&](config::Loader& child) { read_search(child, search); },
+        "search", [&](config::Loader& child) { read_search(child, problem.search); },
         "size and seed of the search");
   });
-  Catalogue joint_sizes = load_catalogue(catalogue, reader);
-  DesignBase device = load_base(base, joint_sizes, sizes, ratios);
-  return {.name = std::move(name),
-          .catalogue = std::move(joint_sizes),
-          .bounds = bounds,
-          .requirements = requirements,
-          .weights = weights,
-          .burden = burden,
-          .search = search,
-          .sex = sex,
-          .stature_percentile = percentile,
-          .prices = {},
-          .base = std::move(device)};
+  problem.catalogue = load_catalogue(draft.catalogue, reader);
+  problem.base = load_base(draft.base, problem.catalogue, draft.sizes, draft.ratios);
+  return std::move(problem);
 }
 
 Judge::Judge(const DesignProblem& problem, bool keeps_poses)

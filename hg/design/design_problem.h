@@ -3,7 +3,7 @@
 ///
 /// Source: [HG] III-B, [HANDBOOK] 8.5. capability = weighted mean of the coverages of the person's
 /// poses, speeds and accelerations, of force and torque over what is required (at most 1), and of
-/// the walkable area over what is required (at most 1). Broken requirements are told as relative
+/// the walkable area over what is required (at most 1). Broken requirements count as relative
 /// violations, each at most 1. SI units.
 #pragma once
 

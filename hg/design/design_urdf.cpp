@@ -204,7 +204,7 @@ void change_gantry(XMLElement& robot, const UrdfChange& change) {
   }
 }
 
-// Comments of the base tell its measures.
+// Comments of the base give its measures.
 void delete_comments(tinyxml2::XMLNode& node) {
   for (tinyxml2::XMLNode* it = node.FirstChild(); it != nullptr;) {
     tinyxml2::XMLNode* next = it->NextSibling();

@@ -216,6 +216,118 @@ void set_actuator(Changes& changes, const std::string& joint, const ActuatorMode
 
 std::string joint_name(int i) { return fmt::format("m{}", i + 1); }
 
+// How the base's URDF changes. The room keeps the base's margins between the gantry's frame, the
+// hand's box and the gantry's travel.
+UrdfChange change_of(const DesignBase& base, const Catalogue& catalogue,
+                     const DesignVariables& variables, const Drives& drives,
+                     const std::string& comment) {
+  const DeviceModel& old = base.device.model;
+  const double wider_x = variables.gantry_x - base.variables.gantry_x;
+  const double wider_y = variables.gantry_y - base.variables.gantry_y;
+  UrdfChange change = {.from = base.variables.lengths,
+                       .to = variables.lengths,
+                       .links = links_of(base, catalogue, variables, drives),
+                       .wider_x = wider_x,
+                       .wider_y = wider_y,
+                       .higher = variables.mount_height - base.variables.mount_height,
+                       .gantry_end = {old.gantry_range[0].ub + 0.5 * wider_x,
+                                      old.gantry_range[1].ub + 0.5 * wider_y},
+                       .comment = comment};
+  if (change.gantry_end[0] < 0.1 || change.gantry_end[1] < 0.1) {
+    throw SetupError(
+        fmt::format("design: a gantry of {:.2f} x {:.2f} m is smaller than its margins",
+                    variables.gantry_x, variables.gantry_y));
+  }
+  return change;
+}
+
+// Old and new arm with the ratings of their joints.
+struct Arms {
+  Arms(const DeviceModel& device, const model::ChainModel& chain_model, const Drives& drives,
+       const Drives& old_drives)
+      : old(device), chain(chain_model), old_chain(device.chain) {
+    const auto can = stretched_accelerations(old, chain, drives);
+    const auto could = stretched_accelerations(old, old_chain, old_drives);
+    for (std::size_t i = 0; i < kDesignJoints; ++i) {
+      old_ddq_max[i] = old.joint_limits[i].ddq_max;
+      const double most = i < 4 ? kFasterAtMost : 1.0;  // of the wrist the base's is the handbook's
+      if (can[i] <= 0.0) {
+        throw SetupError(fmt::format("design: joint m{} cannot carry the arm", i + 1));
+      }
+      ddq_max[i] = three_digits(old_ddq_max[i] * std::min(most, can[i] / could[i]));
+    }
+  }
+
+  const DeviceModel& old;
+  model::ChainData chain, old_chain;
+  std::array<double, kDesignJoints> ddq_max, old_ddq_max;
+};
+
+void set_joints(const safety::MonitorConfig& monitor, const UrdfChange& change,
+                const Drives& drives, const Arms& arms, Changes& device) {
+  const DeviceModel& old = arms.old;
+  safety::StoppingNeed need, old_need;  // of the slowest joint
+  const auto take = [](safety::StoppingNeed& most, const safety::StoppingNeed& one) {
+    most = {std::max(most.time, one.time), std::max(most.distance, one.distance)};
+  };
+  for (int i = 0; i < kDesignJoints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    device.set("joints." + joint_name(i) + ".ddq_max_rad_per_s2", arms.ddq_max[k]);
+    set_actuator(device, joint_name(i), drives.actuators[k]);
+    take(need, safety::stopping_need(change.links[k].velocity, arms.ddq_max[k]));
+    take(old_need, safety::stopping_need(old.joint_limits[k].dq_max, arms.old_ddq_max[k]));
+  }
+  device.set("monitor.stop_distance_rad",
+             three_digits(monitor.stop_distance * need.distance / old_need.distance));
+  device.set("monitor.stop_time_s",
+             three_digits(monitor.stop_time * std::max(1.0, need.time / old_need.time)));
+  const limits::JointLimits& sum = old.virtual_joints[0].limits;
+  const double faster = (change.links[3].velocity + change.links[4].velocity) /
+                        (old.joint_limits[3].dq_max + old.joint_limits[4].dq_max);
+  device.set("virtual_joints[0].dq_max_rad_per_s", three_digits(sum.dq_max * faster));
+  device.set("virtual_joints[0].ddq_max_rad_per_s2",
+             std::min(sum.ddq_max, three_digits(arms.ddq_max[3] + arms.ddq_max[4])));
+}
+
+void set_cartesian_limits(const UrdfChange& change, Arms& arms, Changes& device) {
+  constexpr double kLowest = 0.02, kHighest = 0.01;  // m; the box ends there, as the base's
+  const DeviceModel& old = arms.old;
+  for (int k = 0; k < 2; ++k) {
+    const CartesianLimit& limit = old.cartesian_limits[static_cast<std::size_t>(k)];
+    const std::string item = fmt::format("cartesian_limits[{}].", k);
+    for (int axis = 0; axis < 2; ++axis) {
+      const double end = limit.axes[static_cast<std::size_t>(axis)].q_max +
+                         0.5 * (axis == 0 ? change.wider_x : change.wider_y);
+      device.set(item + "xy"[axis] + ".q_min_m", -end);
+      device.set(item + "xy"[axis] + ".q_max_m", end);
+    }
+    const bool is_hand = limit.frame == old.handle;
+    if (is_hand) {
+      const Interval reach = heights(old, change.to);
+      device.set(item + "z.q_min_m", std::ceil((reach.lb + kLowest) * 100.0) / 100.0);
+      device.set(item + "z.q_max_m", std::ceil((reach.ub + kHighest) * 100.0) / 100.0);
+    }
+    const int frame =
+        arms.chain.model().frame(old.chain.frame_names()[static_cast<std::size_t>(limit.frame)]);
+    const double gives =
+        cartesian_acceleration(old, arms.chain, frame, change.to, arms.ddq_max, !is_hand);
+    const double gave = cartesian_acceleration(old, arms.old_chain, limit.frame, change.from,
+                                               arms.old_ddq_max, !is_hand);
+    device.set(item + "ddq_max_m_per_s2",
+               three_digits(limit.axes[0].ddq_max * std::min(1.0, gives / gave)));
+  }
+}
+
+double price_of(const DesignVariables& variables, const Drives& drives,
+                const StructurePrices& prices) {
+  double price = 0.0;
+  for (const JointSize* size : drives.sizes) price += size->price;
+  const Lengths& lengths = variables.lengths;
+  return price +
+         (prices.fixed + prices.gantry_per_m * (variables.gantry_x + variables.gantry_y) +
+          prices.tube_per_m * (lengths.L1 + lengths.L2 + lengths.D3 + lengths.L4 + lengths.D6));
+}
+
 }  // namespace
 
 void DeviceFiles::write(const std::filesystem::path& folder) const {
@@ -274,100 +386,23 @@ DesignBase load_base(const std::filesystem::path& device, const Catalogue& catal
 DeviceDesign make_device(const DesignBase& base, const Catalogue& catalogue,
                          const DesignVariables& variables, const std::string& name,
                          const StructurePrices& prices, bool watches_collisions) {
-  const DeviceModel& old = base.device.model;
   const Drives drives = drives_of(catalogue, variables);
-  const Drives old_drives = drives_of(catalogue, base.variables);
   const std::string origin = fmt::format(
       "{}: written by `hapticgiant design` from the structure of {}", name, base.device.name);
+  const UrdfChange change = change_of(base, catalogue, variables, drives, origin);
   DeviceFiles files;
-
-  // room: the base's margins between the gantry's frame, the hand's box and the gantry's travel
-  const double wider_x = variables.gantry_x - base.variables.gantry_x;
-  const double wider_y = variables.gantry_y - base.variables.gantry_y;
-  UrdfChange change = {.from = base.variables.lengths,
-                       .to = variables.lengths,
-                       .links = links_of(base, catalogue, variables, drives),
-                       .wider_x = wider_x,
-                       .wider_y = wider_y,
-                       .higher = variables.mount_height - base.variables.mount_height,
-                       .gantry_end = {old.gantry_range[0].ub + 0.5 * wider_x,
-                                      old.gantry_range[1].ub + 0.5 * wider_y},
-                       .comment = origin};
-  if (change.gantry_end[0] < 0.1 || change.gantry_end[1] < 0.1) {
-    throw SetupError(
-        fmt::format("design: a gantry of {:.2f} x {:.2f} m is smaller than its margins",
-                    variables.gantry_x, variables.gantry_y));
-  }
   files.urdf = changed_urdf(base.texts[1].content, change);
 
-  model::ChainModel chain_model = model::ChainModel::from_urdf_text(files.urdf, "device.urdf");
-  model::ChainData chain(chain_model), old_chain(old.chain);
-  std::array<double, kDesignJoints> ddq_max, old_ddq_max;
-  const auto can = stretched_accelerations(old, chain, drives);
-  const auto could = stretched_accelerations(old, old_chain, old_drives);
-  for (std::size_t i = 0; i < kDesignJoints; ++i) {
-    old_ddq_max[i] = old.joint_limits[i].ddq_max;
-    const double most = i < 4 ? kFasterAtMost : 1.0;  // of the wrist the base's is the handbook's
-    if (can[i] <= 0.0) {
-      throw SetupError(fmt::format("design: joint m{} cannot carry the arm", i + 1));
-    }
-    ddq_max[i] = three_digits(old_ddq_max[i] * std::min(most, can[i] / could[i]));
-  }
-
+  const model::ChainModel chain = model::ChainModel::from_urdf_text(files.urdf, "device.urdf");
+  Arms arms(base.device.model, chain, drives, drives_of(catalogue, base.variables));
   Changes device;
   device.words("name", fmt::format("\"{}\"", name));
   device.words("urdf", "device.urdf");
   device.words("simulation", "simulation.yaml");
   device.set("floor_z_m", -variables.mount_height);
   if (!watches_collisions) device.words("collision.is_watched", "false");
-  safety::StoppingNeed need, old_need;  // of the slowest joint
-  const auto take = [](safety::StoppingNeed& most, const safety::StoppingNeed& one) {
-    most = {std::max(most.time, one.time), std::max(most.distance, one.distance)};
-  };
-  for (int i = 0; i < kDesignJoints; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    device.set("joints." + joint_name(i) + ".ddq_max_rad_per_s2", ddq_max[k]);
-    set_actuator(device, joint_name(i), drives.actuators[k]);
-    take(need, safety::stopping_need(change.links[k].velocity, ddq_max[k]));
-    take(old_need, safety::stopping_need(old.joint_limits[k].dq_max, old_ddq_max[k]));
-  }
-  const safety::MonitorConfig& monitor = base.device.monitor;
-  device.set("monitor.stop_distance_rad",
-             three_digits(monitor.stop_distance * need.distance / old_need.distance));
-  device.set("monitor.stop_time_s",
-             three_digits(monitor.stop_time * std::max(1.0, need.time / old_need.time)));
-  const limits::JointLimits& sum = old.virtual_joints[0].limits;
-  const double faster = (change.links[3].velocity + change.links[4].velocity) /
-                        (old.joint_limits[3].dq_max + old.joint_limits[4].dq_max);
-  device.set("virtual_joints[0].dq_max_rad_per_s", three_digits(sum.dq_max * faster));
-  device.set("virtual_joints[0].ddq_max_rad_per_s2",
-             std::min(sum.ddq_max, three_digits(ddq_max[3] + ddq_max[4])));
-
-  constexpr double kLowest = 0.02, kHighest = 0.01;  // m; the box ends there, as the base's
-  for (int k = 0; k < 2; ++k) {
-    const CartesianLimit& limit = old.cartesian_limits[static_cast<std::size_t>(k)];
-    const std::string item = fmt::format("cartesian_limits[{}].", k);
-    for (int axis = 0; axis < 2; ++axis) {
-      const double end =
-          limit.axes[static_cast<std::size_t>(axis)].q_max + 0.5 * (axis == 0 ? wider_x : wider_y);
-      device.set(item + "xy"[axis] + ".q_min_m", -end);
-      device.set(item + "xy"[axis] + ".q_max_m", end);
-    }
-    const bool is_hand = limit.frame == old.handle;
-    if (is_hand) {
-      const Interval reach = heights(old, variables.lengths);
-      device.set(item + "z.q_min_m", std::ceil((reach.lb + kLowest) * 100.0) / 100.0);
-      device.set(item + "z.q_max_m", std::ceil((reach.ub + kHighest) * 100.0) / 100.0);
-    }
-    const int frame =
-        chain_model.frame(old.chain.frame_names()[static_cast<std::size_t>(limit.frame)]);
-    const double gives =
-        cartesian_acceleration(old, chain, frame, variables.lengths, ddq_max, !is_hand);
-    const double gave = cartesian_acceleration(old, old_chain, limit.frame, base.variables.lengths,
-                                               old_ddq_max, !is_hand);
-    device.set(item + "ddq_max_m_per_s2",
-               three_digits(limit.axes[0].ddq_max * std::min(1.0, gives / gave)));
-  }
+  set_joints(base.device.monitor, change, drives, arms, device);
+  set_cartesian_limits(change, arms, device);
   files.device = "# " + origin + ".\n" + device.apply(base.texts[0].content);
 
   Changes simulation;
@@ -380,15 +415,9 @@ DeviceDesign make_device(const DesignBase& base, const Catalogue& catalogue,
                               {"device.urdf", files.urdf},
                               {"simulation.yaml", files.simulation}});
   DeviceDesign design = {.files = std::move(files),
-                         .device = config::load_device("device.yaml", texts)};
-  for (std::size_t i = 0; i < kDesignJoints; ++i) {
-    design.moving_mass += change.links[i].mass;
-    design.price += drives.sizes[i]->price;
-  }
-  const Lengths& lengths = variables.lengths;
-  design.price +=
-      prices.fixed + prices.gantry_per_m * (variables.gantry_x + variables.gantry_y) +
-      prices.tube_per_m * (lengths.L1 + lengths.L2 + lengths.D3 + lengths.L4 + lengths.D6);
+                         .device = config::load_device("device.yaml", texts),
+                         .price = price_of(variables, drives, prices)};
+  for (const DesignLink& link : change.links) design.moving_mass += link.mass;
   return design;
 }
 

@@ -248,6 +248,56 @@ double quantile(std::vector<Weighted>& sorted, double share) {
   return sorted.back().value;
 }
 
+// Sums of the measures over the poses, from which their means and quantiles come.
+struct PoseSums {
+  double all = 0.0, reached = 0.0;  // weight
+  std::vector<Weighted> force, torque, worst_mass, frequency;
+
+  void add(const PoseMetrics& pose, double weight, const MetricOptions& options,
+           DeviceMetrics& metrics) {
+    ++metrics.reached;
+    reached += weight;
+    metrics.velocity += weight * pose.velocity;
+    metrics.turn_velocity += weight * pose.turn_velocity;
+    metrics.acceleration += weight * pose.acceleration;
+    metrics.turn_acceleration += weight * pose.turn_acceleration;
+    metrics.share_force += weight * (pose.force >= options.force ? 1.0 : 0.0);
+    metrics.share_torque += weight * (pose.torque >= options.torque ? 1.0 : 0.0);
+    metrics.share_wrench += weight * (pose.holds_wrench ? 1.0 : 0.0);
+    metrics.share_regular += weight * (pose.condition <= options.condition_max ? 1.0 : 0.0);
+    metrics.mass_mean += weight * pose.mass;
+    force.push_back({pose.force, weight});
+    torque.push_back({pose.torque, weight});
+    worst_mass.push_back({pose.mass_worst, weight});
+    frequency.push_back({pose.frequency, weight});
+  }
+
+  void finish(const Facts& facts, DeviceMetrics& metrics) {
+    metrics.pose = reached / all;
+    for (double* share : {&metrics.velocity, &metrics.turn_velocity, &metrics.acceleration,
+                          &metrics.turn_acceleration}) {
+      *share /= all;
+    }
+    if (reached > 0.0) {
+      for (double* share : {&metrics.share_force, &metrics.share_torque, &metrics.share_wrench,
+                            &metrics.share_regular, &metrics.mass_mean}) {
+        *share /= reached;
+      }
+    }
+    for (std::vector<Weighted>* values : {&force, &torque, &worst_mass, &frequency}) {
+      std::ranges::sort(*values, {}, &Weighted::value);
+    }
+    metrics.force = {quantile(force, 0.0), quantile(force, kLow), quantile(force, 0.5)};
+    metrics.torque = {quantile(torque, 0.0), quantile(torque, kLow), quantile(torque, 0.5)};
+    metrics.mass_worst = quantile(worst_mass, kHigh);
+    if (facts.stiffness.size() == 0) return;
+    metrics.frequency_median = quantile(frequency, 0.5);
+    metrics.frequency_least = quantile(frequency, 0.0);
+    metrics.frequency_clamped =
+        std::sqrt(facts.stiffness.cwiseQuotient(facts.rotor).minCoeff()) / (2.0 * pi);
+  }
+};
+
 }  // namespace
 
 Eigen::Matrix3d hand_to_handle(Grip grip) noexcept {
@@ -358,61 +408,22 @@ DeviceMetrics measure(const DeviceModel& device, const HumanCapability& human,
   metrics.poses = static_cast<int>(human.poses.size());
   metrics.has_torques = facts.effort.allFinite();
   metrics.moving_mass = options.moving_mass;
-  std::vector<Weighted> force, torque, worst_mass, frequency;
-  double all = 0.0, reached = 0.0;
+  PoseSums sums;
   for (const HandPose& hand : human.poses) {
     PoseMetrics pose;
     Pose T_B_H = T_B_F * hand.T_F_hand;
     T_B_H.R = T_B_H.R * R_hand_H;
     pose.is_reached = lengths ? reach_in_closed_form(device, *lengths, box, T_B_H, pose.q)
                               : reach_numerically(device, box, T_B_H, pose.q);
-    const double weight = hand.weight;
-    all += weight;
+    sums.all += hand.weight;
     if (pose.is_reached) {
       chain.update(pose.q, at_rest);
       judge(device, facts, options, chain, hand, T_B_F.R, pose);
-      ++metrics.reached;
-      reached += weight;
-      metrics.velocity += weight * pose.velocity;
-      metrics.turn_velocity += weight * pose.turn_velocity;
-      metrics.acceleration += weight * pose.acceleration;
-      metrics.turn_acceleration += weight * pose.turn_acceleration;
-      metrics.share_force += weight * (pose.force >= options.force ? 1.0 : 0.0);
-      metrics.share_torque += weight * (pose.torque >= options.torque ? 1.0 : 0.0);
-      metrics.share_wrench += weight * (pose.holds_wrench ? 1.0 : 0.0);
-      metrics.share_regular += weight * (pose.condition <= options.condition_max ? 1.0 : 0.0);
-      metrics.mass_mean += weight * pose.mass;
-      force.push_back({pose.force, weight});
-      torque.push_back({pose.torque, weight});
-      worst_mass.push_back({pose.mass_worst, weight});
-      frequency.push_back({pose.frequency, weight});
+      sums.add(pose, hand.weight, options, metrics);
     }
     if (options.keeps_poses) metrics.each.push_back(std::move(pose));
   }
-
-  metrics.pose = reached / all;
-  for (double* share : {&metrics.velocity, &metrics.turn_velocity, &metrics.acceleration,
-                        &metrics.turn_acceleration}) {
-    *share /= all;
-  }
-  if (reached > 0.0) {
-    for (double* share : {&metrics.share_force, &metrics.share_torque, &metrics.share_wrench,
-                          &metrics.share_regular, &metrics.mass_mean}) {
-      *share /= reached;
-    }
-  }
-  for (std::vector<Weighted>* values : {&force, &torque, &worst_mass, &frequency}) {
-    std::ranges::sort(*values, {}, &Weighted::value);
-  }
-  metrics.force = {quantile(force, 0.0), quantile(force, kLow), quantile(force, 0.5)};
-  metrics.torque = {quantile(torque, 0.0), quantile(torque, kLow), quantile(torque, 0.5)};
-  metrics.mass_worst = quantile(worst_mass, kHigh);
-  if (facts.stiffness.size() > 0) {
-    metrics.frequency_median = quantile(frequency, 0.5);
-    metrics.frequency_least = quantile(frequency, 0.0);
-    metrics.frequency_clamped =
-        std::sqrt(facts.stiffness.cwiseQuotient(facts.rotor).minCoeff()) / (2.0 * pi);
-  }
+  sums.finish(facts, metrics);
   return metrics;
 }
 

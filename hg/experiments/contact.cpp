@@ -69,7 +69,7 @@ class Tracker {
 simulator::BystanderConfig in_the_way(const config::Scenario& walk, const ContactCase& what) {
   Player player(walk);
   Tracker tracker(walk, what.point.frame);
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
     tracker.look(player.truth());

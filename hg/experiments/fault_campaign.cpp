@@ -124,7 +124,7 @@ std::vector<double> clean_peaks(config::Scenario scenario) {
   scenario.faults.clear();
   Player player(scenario);
   std::vector<double> peaks;
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
     const auto slot = static_cast<std::size_t>(player.record().time_s / kSlot);
@@ -285,6 +285,76 @@ void take(const json& played, FaultCase& result) {
   result.is_complete = played["is_complete"];
 }
 
+config::Scenario with_faults(config::Scenario scenario, const FaultCase& drawn) {
+  scenario.faults = {drawn.injection};
+  if (drawn.other) scenario.faults.push_back(*drawn.other);
+  return scenario;
+}
+
+// From the first fault on, until the last one has been watched for long enough.
+Interval watched_times(const FaultCase& drawn, const CampaignConfig& config) {
+  Interval times = {drawn.injection.from_s, drawn.injection.from_s + config.watched_s};
+  if (drawn.other) {
+    times.lb = std::min(times.lb, drawn.other->from_s);
+    times.ub = std::max(times.ub, drawn.other->from_s + config.watched_s);
+  }
+  // a fault from the start on is in force when the device begins to run
+  if (drawn.phase == Phase::kStarting) times.ub += kStartingWatch;
+  return times;
+}
+
+// What a fault does to device and person, cycle by cycle from the fault on.
+class Watch {
+ public:
+  Watch(const config::Scenario& scenario, const FaultCase& drawn, double from_s)
+      : result_(drawn), from_s_(from_s), limits_(scenario), travel_(scenario) {
+    result_.stopped_s = kNever;
+  }
+
+  void add(const Truth& truth, const Sample& sample) {
+    const CycleRecord& record = sample.record;
+    result_.peak_force = std::max(result_.peak_force, truth.w_H.head<3>().norm());
+    result_.worst_excess = std::max(result_.worst_excess, limits_.excess(truth));
+    if (record.mode == Mode::kRunning || record.mode == Mode::kStopping) {
+      const double distance = (truth.T_B_H.p - record.T_B_E.p).norm();
+      result_.worst_distance = std::max(result_.worst_distance, distance);
+    }
+    has_run_ = has_run_ || record.mode == Mode::kRunning;
+    was_on_ = was_on_ || has_run_ || record.mode == Mode::kArmed;
+    if (std::isnan(noticed_at_s_) && has_reacted(record, was_on_)) {
+      noticed_at_s_ = record.time_s;
+      result_.outcome = Outcome::kNoticed;
+      result_.noticed_s = record.time_s - from_s_;
+      result_.fault = record.fault.code;
+    }
+    travel_.add(truth, sample, !std::isnan(noticed_at_s_));
+    result_.has_reported_slip =
+        result_.has_reported_slip || record.fault.code == FaultCode::kBrakesSlip;
+    result_.stop = std::max(result_.stop, record.stop);
+    if (std::isnan(noticed_at_s_) || !stands_still(truth)) {
+      result_.stopped_s = kNever;
+    } else if (std::isnan(result_.stopped_s)) {
+      result_.stopped_s = record.time_s - noticed_at_s_;
+    }
+  }
+
+  FaultCase result() const {
+    FaultCase result = result_;
+    result.travel_share = travel_.share();
+    result.energy = travel_.energy();
+    result.has_run = has_run_;
+    return result;
+  }
+
+ private:
+  FaultCase result_;
+  double from_s_;
+  TrueLimits limits_;
+  Travel travel_;
+  bool was_on_ = false, has_run_ = false;
+  double noticed_at_s_ = kNever;
+};
+
 }  // namespace
 
 std::string why_impossible(const faults::Kind& kind, const SensorFrame& sensors,
@@ -326,70 +396,30 @@ Interval fault_times(const config::Scenario& scenario) {
 
 FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
                      const CampaignConfig& config, const recording::RecordingInfo* recording) {
-  FaultCase result = drawn;
-  config::Scenario played = scenario;
-  played.faults = {result.injection};
-  double from_s = result.injection.from_s;
-  double end_s = from_s + config.watched_s;
-  if (result.other) {
-    played.faults.push_back(*result.other);
-    from_s = std::min(from_s, result.other->from_s);
-    end_s = std::max(end_s, result.other->from_s + config.watched_s);
-  }
-  // a fault from the start on is in force when the device begins to run
-  if (result.phase == Phase::kStarting) end_s += kStartingWatch;
+  const config::Scenario played = with_faults(scenario, drawn);
+  const Interval watched = watched_times(drawn, config);
   Player player(played);
-  TrueLimits limits(scenario);
-  Travel travel(scenario);
-  bool was_on = false, has_run = false;
-  double noticed_at_s = kNever;
+  Watch watch(scenario, drawn, watched.lb);
   std::uint64_t cycles = 0;
   const auto recorder =
       recording != nullptr ? std::make_unique<recording::Recorder>(*recording) : nullptr;
-  result.stopped_s = kNever;
-  for (bool goes_on = true; goes_on;) {
+  bool is_running = true;
+  while (is_running) {
     player.begin();
     player.run();
     const CycleRecord& record = player.record();
     const Truth truth = player.truth();
     if (recorder != nullptr) recorder->push_waiting(player.sample());
     player.end();
-    goes_on = record.time_s < end_s;
+    is_running = record.time_s < watched.ub;
     ++cycles;
-    if (record.time_s < from_s) continue;
-
-    result.peak_force = std::max(result.peak_force, truth.w_H.head<3>().norm());
-    result.worst_excess = std::max(result.worst_excess, limits.excess(truth));
-    if (record.mode == Mode::kRunning || record.mode == Mode::kStopping) {
-      const double distance = (truth.T_B_H.p - record.T_B_E.p).norm();
-      result.worst_distance = std::max(result.worst_distance, distance);
-    }
-    has_run = has_run || record.mode == Mode::kRunning;
-    was_on = was_on || has_run || record.mode == Mode::kArmed;
-    if (std::isnan(noticed_at_s) && has_reacted(record, was_on)) {
-      noticed_at_s = record.time_s;
-      result.outcome = Outcome::kNoticed;
-      result.noticed_s = record.time_s - from_s;
-      result.fault = record.fault.code;
-    }
-    const bool was_noticed = !std::isnan(noticed_at_s);
-    travel.add(truth, player.sample(), was_noticed);
-    result.has_reported_slip =
-        result.has_reported_slip || record.fault.code == FaultCode::kBrakesSlip;
-    result.stop = std::max(result.stop, record.stop);
-    if (std::isnan(noticed_at_s) || !stands_still(truth)) {
-      result.stopped_s = kNever;
-    } else if (std::isnan(result.stopped_s)) {
-      result.stopped_s = record.time_s - noticed_at_s;
-    }
+    if (record.time_s >= watched.lb) watch.add(truth, player.sample());
   }
+  FaultCase result = watch.result();
   if (recorder != nullptr) {
     result.is_complete = has_all_cycles(recorder->close().file, cycles);
     std::filesystem::remove_all(recording->folder);
   }
-  result.travel_share = travel.share();
-  result.energy = travel.energy();
-  result.has_run = has_run;
   return result;
 }
 

@@ -209,7 +209,7 @@ std::vector<UnitSet> unit_sets(const config::DeviceConfig& device) {
 
 void learn_mounting(config::Scenario& scenario) {
   Player player(scenario);
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
   }
@@ -227,7 +227,7 @@ InertialRun play_with_units(const config::Scenario& original, const std::string&
   learn_mounting(scenario);
   Player player(scenario);
   Judge judge(scenario.device, units);
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     const double time_s = player.sensors().time_s;
     if (units.loses_one && time_s > middle_s) {

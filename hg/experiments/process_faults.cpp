@@ -239,17 +239,17 @@ class Load {
   void begin() {
     for (unsigned i = 0; i < 4 * std::max(1U, std::thread::hardware_concurrency()); ++i) {
       threads_.emplace_back([this] {
-        while (goes_on_.load(std::memory_order_relaxed)) continue;
+        while (is_busy_.load(std::memory_order_relaxed)) continue;
       });
     }
   }
   ~Load() {
-    goes_on_ = false;
+    is_busy_ = false;
     for (std::thread& thread : threads_) thread.join();
   }
 
  private:
-  std::atomic<bool> goes_on_{true};
+  std::atomic<bool> is_busy_{true};
   std::vector<std::thread> threads_;
 };
 

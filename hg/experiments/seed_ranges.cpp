@@ -16,7 +16,7 @@ SeededRun play(const Trial& trial, std::uint64_t seed) {
   Player player(scenario);
   analysis::Summary summary = scenario::make_summary(scenario);
   analysis::EventDetector detector(scenario.events, scenario.limits);
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
     summary.add(player.sample());

@@ -71,7 +71,7 @@ KickOutcome play(const config::Scenario& kicked, const StabilityConfig& config) 
   KickOutcome outcome;
   std::vector<double> speed;
   bool was_lost = false;  // in the last window
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
     const CycleRecord& record = player.record();

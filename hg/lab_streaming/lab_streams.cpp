@@ -190,7 +190,7 @@ void LabStreams::Sender::run() {
     send_markers();
     if (!is_last) std::this_thread::sleep_for(kPoll);
   }
-  // readers fetch by themselves; nothing tells when they have
+  // readers fetch by themselves; nothing shows when they have
   if (lsl_.has_readers(numbers_) != 0 || lsl_.has_readers(texts_) != 0) {
     std::this_thread::sleep_for(kFarewell);
   }

@@ -7,7 +7,7 @@
 namespace hg::lab_streaming {
 
 /// The offset of a clock from run time. It is taken once, from the samples of the first moments,
-/// and kept; it is taken anew only when run time has stood still, by a pause, slow motion or a
+/// and kept; it is taken again only when run time has stood still, by a pause, slow motion or a
 /// computer that was too slow.
 class RunClock {
  public:
@@ -16,7 +16,7 @@ class RunClock {
   static constexpr double kShift_s = 0.1;   ///< shifts up to this are lateness of whoever looks
 
   /// Takes note of a sample seen at `clock_s`, later than it was made by an unknown delay. Returns
-  /// true when the offset has just been taken, or taken anew.
+  /// true when the offset has just been taken, or taken again.
   bool see(double time_s, double clock_s) noexcept {
     if (!(time_s >= window_begin_s_)) begin_window(time_s);
     least_s_ = std::min(least_s_, clock_s - time_s);

@@ -21,7 +21,7 @@ std::filesystem::path link_folder();
 /// File that is there while the object is.
 class LinkFile {
  public:
-  /// Writes the file. When it cannot, problem() says why, and the run goes on without.
+  /// Writes the file. When it cannot, problem() says why, and the run continues without.
   explicit LinkFile(const std::string& address,
                     const std::filesystem::path& folder = link_folder());
   ~LinkFile();

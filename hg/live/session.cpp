@@ -24,7 +24,7 @@ constexpr int kDeepest = 16;               // nested arrays and objects of a fra
 constexpr std::size_t kMostWaiting = 256;  // orders of a client without an answer
 constexpr std::size_t kMostWatched = 1000;
 constexpr std::size_t kMostPublished = 64;
-constexpr std::size_t kMostRefusals = 10;  // told for one frame
+constexpr std::size_t kMostRefusals = 10;  // reported for one frame
 constexpr std::size_t kLongestName = 200;  // bytes, of names that are repeated in answers
 constexpr std::size_t kLongestKnown = 64;  // bytes; a longer name is like none of ours
 constexpr double kFarthest = 100.0;        // m; beyond any device
@@ -364,7 +364,7 @@ void Session::end_setting(const Setting& setting, Reaction& reaction) const {
     is_refused = is_refused || std::isnan(asked);
     values.push_back(parameter_json(*parameter, std::isnan(asked) ? parameter->value : asked));
   }
-  // without an id only those who watch are told; a refused value is told in any case
+  // without an id only those who watch get it; a refused value is reported in any case
   if (setting.id || is_refused) {
     reaction.frames.push_back(parameter_frame(std::move(values), setting.id));
   }
@@ -566,8 +566,8 @@ Frame Session::status(int level, std::string_view text, std::string_view id) {
 void Session::refuse(std::string_view why, Reaction& reaction) {
   reaction.is_refused = true;
   if (++reaction.refusals > kMostRefusals + 1) return;
-  const bool is_told = reaction.refusals <= kMostRefusals;
-  reaction.frames.push_back(status(kWarning, is_told ? why : "and more that was refused"));
+  const bool is_reported = reaction.refusals <= kMostRefusals;
+  reaction.frames.push_back(status(kWarning, is_reported ? why : "and more that was refused"));
 }
 
 }  // namespace hg::live

@@ -49,7 +49,7 @@ struct Reaction {
   std::optional<HandTarget> hand;  ///< a hand target, or one that is not active: it has let go
   std::optional<Vector6> wrench;   ///< a reference wrench, resolved in B; zero: it has ended
   bool is_refused = false;         ///< something in the frame was refused
-  std::size_t refusals = 0;        ///< things that were refused; the first ten are told
+  std::size_t refusals = 0;        ///< things that were refused; the first ten are reported
 };
 
 class Session {

@@ -204,7 +204,7 @@ class Builder {
     return joint;
   }
 
-  // The bodies beside the chain that move with it, before those that the chain goes on with: the
+  // The bodies beside the chain that move with it, before those with which the chain continues: the
   // library numbers joints depth first. Keeps the links of the current body.
   void add_branches(ChainParts& chain, pinocchio::JointIndex joint) {
     const std::vector<Merged> body = merged_;

@@ -16,7 +16,7 @@ namespace hg::model {
 /// The couplings that keep a loop closed: one per joint of `follow`, with a curve.
 ///
 /// Begins where all joints are at 0, or the leader is at the end of its range that is nearest to
-/// it, and goes on from there to both ends of the range. Throws SetupError when a name is none,
+/// it, and continues from there to both ends of the range. Throws SetupError when a name is none,
 /// when the ends do not meet within 0.01 mm somewhere in the range of the leader, and near a dead
 /// centre, where a joint would have to move 50 times as fast as the leader.
 std::vector<Coupling> close_loop(const Urdf& urdf, const ClosedLoop& loop);

@@ -8,7 +8,7 @@
 namespace hg::model {
 
 /// Cubic spline through points at equal distances: continuous with slope and curvature. Where the
-/// leader turns without end, the curve goes on from turn to turn. Does not change after
+/// leader turns without end, the curve continues from turn to turn. Does not change after
 /// construction; nothing allocates or throws. SI units.
 class CouplingCurve {
  public:
@@ -24,7 +24,7 @@ class CouplingCurve {
   CouplingCurve(const Interval& range, std::vector<double> values, double first_slope,
                 double last_slope, bool is_periodic);
 
-  /// The curve where the leader is at q; beyond the range it goes on straight, or in turns.
+  /// The curve where the leader is at q; beyond the range it continues straight, or in turns.
   Point at(double q) const noexcept;
   /// Positions of the leader that the curve is given for; unbounded if it is periodic.
   Interval range() const noexcept { return is_periodic_ ? Interval{} : range_; }

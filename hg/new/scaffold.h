@@ -40,7 +40,7 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
 /// Text of a twin.yaml, and what a user should know of its trial on the device; empty: all is well.
 struct TwinDraft {
   std::string yaml;
-  std::string trouble;
+  std::string problem;
   std::string note;  ///< What differs from the mechanism of the URDF; empty: nothing
 };
 

@@ -285,17 +285,17 @@ SelfCollision fit_self_collision(const ChainPart& part, const model::ChainModel&
 
   std::size_t step = 0;
   const std::size_t steps = fit.bodies.size() * (1 + kMostPerBody);
-  const auto tell = [&] {
+  const auto report = [&] {
     if (progress) progress(std::min(++step, steps), steps);
   };
   for (Body& body : fit.bodies) {
     begin_with_one(body);
-    tell();
+    report();
   }
   fit.postures = draw_postures(fit.bodies, ranges, model);
   find_bodies_apart(fit);
   Refinement refinement(fit);
-  while (refinement.step()) tell();
+  while (refinement.step()) report();
   keep_to_the_limit(fit, refinement, model, ranges);
 
   for (const Body& body : fit.bodies) {

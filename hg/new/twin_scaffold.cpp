@@ -315,7 +315,7 @@ struct Trial {
   workspace::Way way;
   std::string refusal;  ///< why it cannot; empty: it began
 
-  std::string trouble() const { return refusal.empty() ? workspace::trouble_of(way) : refusal; }
+  std::string problem() const { return refusal.empty() ? workspace::problem_of(way) : refusal; }
 };
 
 // Leads a hand through the twin of a draft that stands beside its URDF.
@@ -344,7 +344,7 @@ bool is_better(const workspace::Way& a, const workspace::Way& b) {
 bool is_only_shaken(const Trial& trial) {
   workspace::Way calm = trial.way;
   calm.shaken_s = 0.0;
-  return trial.refusal.empty() && trial.way.shaken_s > 0.0 && workspace::trouble_of(calm).empty();
+  return trial.refusal.empty() && trial.way.shaken_s > 0.0 && workspace::problem_of(calm).empty();
 }
 
 }  // namespace
@@ -368,20 +368,20 @@ TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
     if (chosen != nullptr && !is_better(trial.way, best.way)) continue;
     chosen = &placement;
     best = trial;
-    if (best.trouble().empty()) break;
+    if (best.problem().empty()) break;
   }
   double mass_scale = 1.0;
   for (const double scale : kMassScales) {
     if (!is_only_shaken(best)) break;
     const Trial trial =
         try_out(yaml_of(d, *chosen, scale, part, beside, device), urdf, urdf_name, device);
-    if (!trial.trouble().empty()) continue;
+    if (!trial.problem().empty()) continue;
     best = trial;
     mass_scale = scale;
   }
   if (progress) progress(most, most);
   return {.yaml = yaml_of(d, *chosen, mass_scale, part, folder, device),
-          .trouble = best.trouble(),
+          .problem = best.problem(),
           .note = mass_scale == 1.0
                       ? ""
                       : fmt::format("{:g} times as heavy as in its URDF (mass_scale): lighter it "

@@ -90,7 +90,7 @@ std::string_view name_of_done(const Command& command) {
 
 struct RunPage::Order {
   CommandName name;
-  bool needs_simulation;  ///< the device has to wait, or to start anew
+  bool needs_simulation;  ///< the device has to wait, or to start again
   bool changes_run;       ///< a trial would no longer be what was planned
   /// How it is executed; nullptr = by the server, at the operator's desk
   std::string (RunPage::*obey)(const Command&, runtime::Runtime*, const Note&);
@@ -325,7 +325,7 @@ void RunPage::take(const Command& command, runtime::Runtime* runtime, const Note
   server_.answer(command, why_not);
 }
 
-// A command that is repeated many times a second is told twice a second.
+// A command that is repeated many times a second is reported twice a second.
 void RunPage::note_done(const Command& command, const Note& note) {
   constexpr std::chrono::milliseconds kPeriod(500);
   std::string text = text_of_done(command);
@@ -393,7 +393,7 @@ void RunPage::take_reference_wrench(runtime::Runtime* runtime, const Note& note)
   if (next_wrench_ && send_wrench(*runtime, *next_wrench_)) next_wrench_.reset();
 }
 
-// All components or none: a part would have a direction that nobody asked for.
+// All components or none: a part would have a direction that was not asked for.
 bool RunPage::accepts(const Vector6& w, std::uint64_t client) {
   for (int i = 0; i < 6; ++i) {
     const int number = field_of_wrench(i);

@@ -33,7 +33,7 @@ struct ShownRun {
   const config::Scenario* scenario = nullptr;
   /// Options that the scenario was loaded with
   const scenario::ScenarioOptions* options = nullptr;
-  /// Why the device neither waits nor starts anew; empty = it does, being simulated here
+  /// Why the device neither waits nor starts again; empty = it does, being simulated here
   std::string refusal;
   /// Why pages start no other run and change neither its pace nor its twin; empty = they may
   std::string fixed_by;

@@ -31,7 +31,8 @@ void check_interruption(const Rosbag2Plan& plan) {
   }
 }
 
-// Counts the messages within a part of a run, and writes them into a file of their own if told to.
+// Counts the messages within a part of a run, and writes them into a file of their own if one is
+// given.
 class Copy final : public MessageListener {
  public:
   /// `copy`: file to be written; empty = none

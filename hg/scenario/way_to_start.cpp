@@ -104,7 +104,7 @@ config::Scenario way_to_start(const config::Scenario& run, const Start& start, c
                               const VectorM& q_m) {
   config::Scenario way = run;
   way.title = run.title + ", on the way to its start";
-  way.description = "The device moves by itself to where the run begins: keep off the handle.";
+  way.description = "The device moves alone to where the run begins: keep off the handle.";
   way.duration_s = 0.0;
   way.twin = twin_of(run.device, start, stacked(q_p, q_m));
   way.person = person::PersonKind::kNone;
@@ -171,10 +171,10 @@ ModeRequest WayGuide::request() {
 
 std::string WayGuide::wanted() const {
   if (has_moved_ || (last_.mode != Mode::kArmed && last_.mode != Mode::kReady)) return {};
-  if (is_held_) return "let go of the handle: the device moves to the start by itself";
+  if (is_held_) return "let go of the handle: the device moves to the start alone";
   if (!safety_.is_field_clear) return "leave the field of the scanner";
   if (!safety_.override_key) {
-    return "turn the override key on: the device moves to the start by itself; keep clear";
+    return "turn the override key on: the device moves to the start alone; keep clear";
   }
   return {};
 }

@@ -138,7 +138,7 @@ void Simulation::look(const HandTarget& target) noexcept {
   }
 }
 
-// What the sensors are told: an arm without a force/torque sensor mistakes the user's wrench.
+// What the sensors see: an arm without a force/torque sensor mistakes the user's wrench.
 Truth Simulation::felt() const noexcept {
   Truth felt = truth_;
   const auto* plant = std::get_if<Plant>(&plant_);

@@ -84,7 +84,7 @@ class Procedure {
         lean();
         std::size_t i = 1;
         for (const Operation& operation : kOperations) test(operation, items_[i++]);
-        if (!was_stopped_ && !has_slipped_) stop_by_itself();
+        if (!was_stopped_ && !has_slipped_) remove_power();
       }
     } catch (const Ended& ended) {
       items_.push_back({.name = "end"});
@@ -352,7 +352,7 @@ class Procedure {
   }
 
   // A device without stop inputs: the program removes its power.
-  void stop_by_itself() {
+  void remove_power() {
     Item power = {.name = "power", .found = ""};
     if (arm(power)) {
       watch_brakes();

@@ -169,19 +169,32 @@ class Period {
   };
 
   VectorXd advance(const VectorXd& now, const Disturbance& disturbance) {
-    const Layout& at = layout_;
-    const int n = at.n;
     VectorXd next = now;
-    const auto part = [n](const VectorXd& x, int first) { return VectorXd(x.segment(first, n)); };
+    const Estimated estimated = estimate(now, disturbance, next);
+    const VectorXd ddq_r = move_twin(now, estimated.w, next);
+    const VectorXd tau_command = control(now, estimated, ddq_r, next);
+    move_arm(now, tau_command, disturbance, next);
+    return next;
+  }
+
+ private:
+  // what the estimation adds to the robot at rest; q and the speeds stand in its observers
+  struct Estimated {
+    VectorXd theta, tau;
+    Vector6 w;
+  };
+
+  VectorXd part(const VectorXd& x, int first) const { return x.segment(first, layout_.n); }
+
+  Estimated estimate(const VectorXd& now, const Disturbance& disturbance, VectorXd& next) const {
+    const Layout& at = layout_;
     const auto plus = [](VectorXd x, const VectorXd& more) {
       if (more.size() > 0) x += more;
       return x;
     };
-
-    // estimation
     const VectorXd theta = plus(part(now, at.theta), disturbance.theta);
     const VectorXd q = plus(part(now, at.q), disturbance.q);
-    observers_.advance(theta, q, part(now, at.ddq_last), next.segment(at.observers, 4 * n));
+    observers_.advance(theta, q, part(now, at.ddq_last), next.segment(at.observers, 4 * at.n));
     const VectorXd tau = plus(K_.cwiseProduct(part(now, at.theta) - part(now, at.q)) +
                                   D_.cwiseProduct(part(now, at.dtheta) - part(now, at.dq)),
                               disturbance.tau);
@@ -190,8 +203,12 @@ class Period {
     Vector6 w = now.segment<6>(at.wrench);
     estimation::low_pass(wrench_pole_, mean / average_, w);
     next.segment<6>(at.wrench) = w;
+    return {theta, tau, w};
+  }
 
-    // twin and reference
+  // moves the twin under the wrench; accelerations of the reference
+  VectorXd move_twin(const VectorXd& now, const Vector6& w, VectorXd& next) const {
+    const Layout& at = layout_;
     Vector6 ddE =
         w - rendering::damping_torque(dampers_.L, now.segment<6>(at.dtwin), dt_, dampers_.values);
     ddE.head<3>() /= body_.mass;
@@ -199,7 +216,15 @@ class Period {
     next.segment<6>(at.twin) += dt_ * now.segment<6>(at.dtwin) + 0.5 * dt_ * dt_ * ddE;
     next.segment<6>(at.dtwin) += dt_ * ddE;
     const VectorXd ddq_r = to_joints_ * ddE;
-    next.segment(at.ddq_last, n) = ddq_r;
+    next.segment(at.ddq_last, at.n) = ddq_r;
+    return ddq_r;
+  }
+
+  // joint torques beyond those at rest
+  VectorXd control(const VectorXd& now, const Estimated& estimated, const VectorXd& ddq_r,
+                   VectorXd& next) {
+    const Layout& at = layout_;
+    const int n = at.n;
     tracking::ControlState state = state_of(now);
     const ReferenceState here = {.q_m = q_m_ + to_joints_ * now.segment<6>(at.twin),
                                  .dq_m = to_joints_ * now.segment<6>(at.dtwin),
@@ -207,19 +232,16 @@ class Period {
     const ReferenceState there = {.q_m = q_m_ + to_joints_ * next.segment<6>(at.twin),
                                   .dq_m = to_joints_ * next.segment<6>(at.dtwin),
                                   .ddq_m = ddq_r};
-
-    // control
     RobotState robot = robot_;
-    robot.theta_m += theta;
+    robot.theta_m += estimated.theta;
     robot.dtheta_m = part(next, at.observers + n);
     robot.q_m += part(next, at.observers + 2 * n);
     robot.dq_m = part(next, at.observers + 3 * n);
-    robot.tau_m += tau;
-    robot.w_H = w;
+    robot.tau_m += estimated.tau;
+    robot.w_H = estimated.w;
     CommandFrame command;
     TrackingReport report;
     control_.step(here, there, robot, state, command, report);
-    const VectorXd tau_command = command.tau_m - at_rest_;
     if (config_.integral_rate >= kSlowestIntegral) {
       next.segment(at.integral, n) = state.integral - started_.integral;
     }
@@ -228,8 +250,14 @@ class Period {
     next.segment<6>(at.w_last) = state.w_H;
     next.segment<6>(at.dw) = state.dw_H;
     next.segment(at.stiff, n) = state.stiff - started_.stiff;
+    return command.tau_m - at_rest_;
+  }
 
-    // arm and hand under the commands that arrive during this period
+  // arm and hand under the commands that arrive during this period
+  void move_arm(const VectorXd& now, const VectorXd& tau_command, const Disturbance& disturbance,
+                VectorXd& next) const {
+    const Layout& at = layout_;
+    const int n = at.n;
     VectorXd commands((at.slots + 1) * n);
     commands << now.segment(at.commands, at.slots * n), tau_command;
     const int size = at.plant_size();
@@ -260,10 +288,8 @@ class Period {
           from < at.groups ? Vector6(now.segment<6>(at.means + 6 * from)) : means[from - at.groups];
       next.segment<6>(at.means + 6 * i) = value;
     }
-    return next;
   }
 
- private:
   // friction is removed, and presliding friction does not slip, its stiffness being the same
   static DeviceModel without_friction(DeviceModel device) {
     constexpr double kFar = 1e3;

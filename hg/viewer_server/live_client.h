@@ -87,7 +87,7 @@ class LiveClient : public std::enable_shared_from_this<LiveClient> {
   /// Passes on the answer to a command of this client.
   void answer(double id, std::string_view refusal) { answer(session_.answer(id, refusal).frames); }
 
-  void tell_changes(const std::vector<std::string>& parameters) {
+  void send_changes(const std::vector<std::string>& parameters) {
     answer(session_.changed_parameters(parameters));
   }
 

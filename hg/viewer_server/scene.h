@@ -36,7 +36,7 @@ struct SceneJoint {
 struct SceneFollower {
   std::string joint, leader;   ///< names in the URDF
   Interval range;              ///< of the leader, rad or m
-  bool is_periodic = false;    ///< the range is one turn, and goes on
+  bool is_periodic = false;    ///< the range is one turn, and repeats
   std::vector<double> values;  ///< at equal distances over the range, rad or m
 };
 

@@ -71,7 +71,7 @@ void fields(Archive& a, T& follower) {
   a("leader", follower.leader);
   a("begin", follower.range.lb, "of the range of the leader, rad or m");
   a("end", follower.range.ub, "of the range of the leader, rad or m");
-  a("is_periodic", follower.is_periodic, "the range is one turn, and goes on");
+  a("is_periodic", follower.is_periodic, "the range is one turn, and repeats");
   a("values", follower.values, "at equal distances over the range, rad or m");
 }
 

@@ -145,7 +145,7 @@ void Hub::set_parameters(const std::vector<double>& present) {
     if (std::exchange(parameter.value, present[i]) != present[i]) changed.push_back(parameter.name);
   }
   if (changed.empty()) return;
-  for (const auto& client : live_clients) client->tell_changes(changed);
+  for (const auto& client : live_clients) client->send_changes(changed);
 }
 
 void Hub::put_hand(std::uint64_t page, const HandTarget& target) {
@@ -348,7 +348,7 @@ struct ViewerServer::Impl {
           {setting.name, setting.unit, setting.value, setting.min, setting.max});
       names.push_back(setting.name);
     }
-    for (const auto& client : hub.live_clients) client->tell_changes(names);
+    for (const auto& client : hub.live_clients) client->send_changes(names);
     const std::lock_guard lock(hub.input_mutex);
     hub.hand = HandTargetBox(scene.scene.box);
   }

@@ -76,7 +76,7 @@ class ViewerServer {
   bool has_live_clients() const;
   /// Live channels that some client has subscribed to.
   live::Wanted live_wanted() const;
-  /// Sends messages to the live clients; dropped for those that are too slow, which are told.
+  /// Sends messages to the live clients; dropped for those that are too slow, which get a warning.
   void publish_live(live::Batch batch);
   /// Keeps a message that each new subscriber gets.
   void latch_live(live::Message message);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/session.h"
@@ -231,7 +232,7 @@ class Watch {
 
 }  // namespace
 
-std::string trouble_of(const Way& way) {
+std::string problem_of(const Way& way) {
   std::string text;
   const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
   if (way.share < kWholeWay) {
@@ -278,7 +279,7 @@ Way lead(const config::SimulatedDeviceConfig& device, const config::Twin& twin) 
     Watch watch(trial);
     while (session.advance()) watch.look(session.sample());
     way = watch.result(session.record());
-    if (!trouble_of(way).empty()) break;
+    if (!problem_of(way).empty()) break;
   }
   return way;
 }

@@ -39,7 +39,7 @@ inline constexpr double kExcessAllowed = 1e-3;
 bool take_script_through_ranges(config::Scenario& scenario);
 
 /// What a user should know of a trial, in one line; empty where nothing was in the way.
-std::string trouble_of(const Way& way);
+std::string problem_of(const Way& way);
 
 /// What helps.
 inline constexpr const char* kCuresOfWay =

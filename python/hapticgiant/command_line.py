@@ -1,4 +1,4 @@
-"""Command lines of the subcommands that are Python's: a word that does not exist is told with the nearest one, as
+"""Command lines of the subcommands that are Python's: a word that does not exist is reported with the nearest one, as
 `hapticgiant` does for its own.
 """
 

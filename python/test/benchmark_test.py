@@ -46,11 +46,12 @@ def answers(**values):
     return [{"frequency_Hz": f, **values} for f in (1.0, 10.0)]
 
 
-def measurements():
-    """Everything that the program plays, with the same result in all runs of a measurement."""
-    def of(settings, result, conditions):
-        return {"settings": settings, "runs": runs(result, conditions)}
+def of(settings, result, conditions):
+    return {"settings": settings, "runs": runs(result, conditions)}
 
+
+def measurements_of_motion():
+    """What the program plays up to the latency."""
     felt = answers(impedance=[4.0, 37.0], twin=[4.0, 37.0], following=[0.0, 0.9])
     forces = answers(rendered=[0.0, 1.1], ideal=[0.0, 1.0])
     views = [{"across": 0, "up": 1, "left": -1.0, "bottom": -1.0, "cell": 0.05,
@@ -88,6 +89,12 @@ def measurements():
                                   "failure": ""}, each_axis()),
         "latency": of({}, {"motion_s": 3.5e-3, "sensed_s": 3.4e-3, "failure": ""},
                       each_seed(*each_axis())),
+    }
+
+
+def measurements_of_contact():
+    """What the program plays from the Z-width on."""
+    return {
         "Z-width": of({"stiffness": [1000.0, 8000.0], "damping": [0.0, 20.0],
                        "largest_stiffness": 5e4}, {"verdict": "stable", "failure": ""},
                       [{"body": body, "is_prompt": prompt, "stiffness": k, "damping": d}
@@ -108,6 +115,11 @@ def measurements():
         "springs": of({"inertia": 2.5, "damping": 1.0, "radius": 0.75, "swings": 4}, SWING,
                       each_seed({"stiffness": 500.0, "deflection": 0.002})),
     }
+
+
+def measurements():
+    """Everything that the program plays, with the same result in all runs of a measurement."""
+    return {**measurements_of_motion(), **measurements_of_contact()}
 
 
 def results_of(measured, kind="haptify"):

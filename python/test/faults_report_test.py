@@ -75,7 +75,7 @@ class Faults(unittest.TestCase):
 
 
 class ProcessFaults(unittest.TestCase):
-    def test_what_failed_and_what_did_not_run_are_told_apart(self):
+    def test_what_failed_and_what_did_not_run_are_distinguished(self):
         killed = {"fault": "killed", "what": "kill -9", "scenario": "walk", "passed": True,
                   "has_run": True, "at_rest_after_s": 0.2, "travel_share": 0.05, "energy_J": 0.1,
                   "exit_code": -1, "periods": 5000, "recorded": 4900}

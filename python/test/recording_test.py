@@ -97,7 +97,7 @@ class Damage(unittest.TestCase):
         self.file = pathlib.Path(folder.name) / "damaged.mcap"
         self.bytes = bytearray(pathlib.Path(RECORDING).read_bytes())
 
-    def test_a_chunk_with_a_wrong_bit_is_left_out_and_told(self):
+    def test_a_chunk_with_a_wrong_bit_is_left_out_and_reported(self):
         whole = hg.read_recording(RECORDING)
         self.assertEqual(whole.losses, [])
         self.bytes[len(self.bytes) // 2] ^= 1

@@ -1,4 +1,4 @@
-"""Arms of labs with mechanisms that nobody made for them.
+"""Arms of labs with mechanisms that were not made for them.
 
 The trial does what a stranger does: `new twin` places a mechanism for an arm, and a hand that the generator does not know
 opens every joint 10 % beyond both of its ends. It must get there with all limits held, or `new twin` must have warned.

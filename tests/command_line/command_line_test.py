@@ -369,7 +369,7 @@ class BadInput(TemporaryFolder):
         self.refused("nothing.yaml", arguments=["door", "--twin", "nothing.yaml"])
         self.refused("nothing.yaml", arguments=["door", "--device", "nothing.yaml"])
         self.refused("nothing.yaml", arguments=["door", "--user", "nothing.yaml"])
-        self.refused("'none'", "Shipped are chain, door", arguments=["door", "--user", "nobody"])
+        self.refused("'none'", "Shipped are chain, door", arguments=["door", "--user", "ghost"])
         self.refused("'friction'", arguments=["door", "--user", "frictoin"])
 
     def test_names_that_are_too_long(self):

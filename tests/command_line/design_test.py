@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import typing
 import unittest
 import xml.etree.ElementTree
 
@@ -76,6 +77,48 @@ def ellipsoid(rows, most):
     return rows @ np.diag(np.square(most)) @ rows.T
 
 
+class Ratings(typing.NamedTuple):
+    """Of the joints of the manipulator."""
+
+    rotor: np.ndarray  # kg m^2
+    stiffness: np.ndarray  # Nm/rad
+    torque: np.ndarray  # Nm
+    speed: np.ndarray  # rad/s
+    effort: np.ndarray  # Nm
+
+
+def ratings():
+    device = yaml.safe_load((FOLDER / "device.yaml").read_text())
+    names = device["manipulator"]
+    sizes = [device["actuators"][name] for name in names]
+    urdf = xml.etree.ElementTree.parse(FOLDER / "haptic_giant.urdf").getroot()
+    limit = {joint.get("name"): joint.find("limit") for joint in urdf.iter("joint")}
+    return Ratings(
+        *(np.array([size[key] for size in sizes], dtype=float)
+          for key in ("rotor_inertia_kg_m2", "stiffness_Nm_per_rad", "torque_max_Nm")),
+        *(np.array([float(limit[name].get(key)) for name in names]) for key in ("velocity", "effort")))
+
+
+def measures_of(jacobians, link, gravity, drives, hand, directions, length):
+    """Measures of a posture, from Jacobians of the handle, mass matrix and gravity of the links."""
+    inverse = np.linalg.inv(link + np.diag(drives.rotor))
+    motion = [ellipsoid(rows, drives.speed) for rows in jacobians] + [
+        ellipsoid(rows @ inverse, drives.torque - gravity) for rows in jacobians]
+    measures = {name: coverage(S, H, directions) for name, S, H in zip(
+        ("velocity", "turn_velocity", "acceleration", "turn_acceleration"), motion, hand)}
+    Jt, Jr = jacobians
+    with np.errstate(divide="ignore"):  # a joint without a lever limits nothing
+        measures["force_N"] = np.min((drives.effort - gravity) / np.linalg.norm(Jt, axis=0))
+        measures["torque_Nm"] = np.min((drives.effort - gravity) / np.linalg.norm(Jr, axis=0))
+    measures["condition"] = np.linalg.cond(np.vstack([Jt / length, Jr]))
+    mobility = Jt @ inverse @ Jt.T
+    measures["reflected_mass_kg"] = 3 / np.trace(mobility)
+    measures["reflected_mass_worst_kg"] = 1 / np.linalg.eigvalsh(mobility)[0]
+    slowest = np.min(np.linalg.eigvals(np.linalg.solve(link, np.diag(drives.stiffness))).real)
+    measures["eigenfrequency_Hz"] = np.sqrt(slowest) / (2 * np.pi)
+    return measures
+
+
 class Design(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -111,15 +154,7 @@ class Design(unittest.TestCase):
             self.skipTest(str(error))
         model = mujoco.MjModel.from_xml_path(str(FOLDER / "haptic_giant.urdf"))
         data = mujoco.MjData(model)
-        device = yaml.safe_load((FOLDER / "device.yaml").read_text())
-        names = device["manipulator"]
-        sizes = [device["actuators"][name] for name in names]
-        rotor, stiffness, torque = (np.array([size[key] for size in sizes], dtype=float) for key in
-                                    ("rotor_inertia_kg_m2", "stiffness_Nm_per_rad", "torque_max_Nm"))
-        urdf = xml.etree.ElementTree.parse(FOLDER / "haptic_giant.urdf").getroot()
-        limit = {joint.get("name"): joint.find("limit") for joint in urdf.iter("joint")}
-        speed, effort = (np.array([float(limit[name].get(key)) for name in names])
-                         for key in ("velocity", "effort"))
+        drives = ratings()
         # the handle, fixed to m6 at 0.12 m
         body = model.body("m6").id
         arm, directions = self.measures["arm"], half_sphere(self.measures["directions"])
@@ -143,26 +178,11 @@ class Design(unittest.TestCase):
             for column, unit in zip(full, np.eye(model.nv)):
                 mujoco.mj_mulM(model, data, column, unit)
             link = full[2:, 2:]
-            gravity = np.abs(data.qfrc_bias[2:])
-            inverse = np.linalg.inv(link + np.diag(rotor))
-
             J_hand = jacobian(arm, np.array(pose["hand"]["q_rad"]))
             hand = [R_B_F @ ellipsoid(rows, most) @ R_B_F.T
                     for most in person for rows in (J_hand[:3], J_hand[3:])]
-            motion = [ellipsoid(rows, speed) for rows in (Jt, Jr)] + [
-                ellipsoid(rows @ inverse, torque - gravity) for rows in (Jt, Jr)]
-            expected = {name: coverage(S, H, directions) for name, S, H in zip(
-                ("velocity", "turn_velocity", "acceleration", "turn_acceleration"), motion, hand)}
-            with np.errstate(divide="ignore"):  # a joint without a lever limits nothing
-                expected["force_N"] = np.min((effort - gravity) / np.linalg.norm(Jt, axis=0))
-                expected["torque_Nm"] = np.min((effort - gravity) / np.linalg.norm(Jr, axis=0))
-            expected["condition"] = np.linalg.cond(
-                np.vstack([Jt / self.measures["length_m"], Jr]))
-            mobility = Jt @ inverse @ Jt.T
-            expected["reflected_mass_kg"] = 3 / np.trace(mobility)
-            expected["reflected_mass_worst_kg"] = 1 / np.linalg.eigvalsh(mobility)[0]
-            slowest = np.min(np.linalg.eigvals(np.linalg.solve(link, np.diag(stiffness))).real)
-            expected["eigenfrequency_Hz"] = np.sqrt(slowest) / (2 * np.pi)
+            expected = measures_of((Jt, Jr), link, np.abs(data.qfrc_bias[2:]), drives, hand, directions,
+                                   self.measures["length_m"])
             for name, value in expected.items():
                 self.assertAlmostEqual(is_[name] / value, 1.0, delta=1e-6, msg=name)
         self.assertEqual(judged, 40)

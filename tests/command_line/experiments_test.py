@@ -86,10 +86,10 @@ class Experiments(TemporaryFolder):
         page = (one / "report.html").read_text()
         self.assertEqual(page.count("<svg"), 1)
         self.assertNotRegex(page, r'(src|href)="(?![#])')  # self-contained
-        told = {entry["what"]: entry["ours_simulated"] for entry in
+        reported = {entry["what"]: entry["ours_simulated"] for entry in
                 read(one / "results.json")["statements"]}
-        self.assertRegex(told["locked"], r"^0.00 \.\. [\d.]+ s, ")
-        self.assertIn("(limit 1.75)", told["t_d: fully open"])
+        self.assertRegex(reported["locked"], r"^0.00 \.\. [\d.]+ s, ")
+        self.assertIn("(limit 1.75)", reported["t_d: fully open"])
 
         code, out, _ = run("compare", one / "recording.mcap", two / "recording.mcap")
         self.assertEqual(code, 0, out)
@@ -97,13 +97,13 @@ class Experiments(TemporaryFolder):
 
     def test_the_person_walks_through_the_door(self):
         self.assertEqual(len(self.events("door")), 8)
-        told = {entry["what"]: entry["ours_simulated"] for entry in
+        reported = {entry["what"]: entry["ours_simulated"] for entry in
                 self.results("walk_through")["statements"]}
         leaf, frame, breadth = map(float, re.match(
             r"at least ([\d.]+) / ([\d.]+) m \(half a breadth: ([\d.]+) m\)",
-            told["middle of the body to leaf / frame"]).groups())
+            reported["middle of the body to leaf / frame"]).groups())
         self.assertGreater(min(leaf, frame), breadth)
-        self.assertRegex(told["walked through"], r"ends [\d.]+ m behind it")
+        self.assertRegex(reported["walked through"], r"ends [\d.]+ m behind it")
         self.assertIn("Walking through the door: beside the paper",
                       (self.folder / "door" / "report.html").read_text())
 

@@ -71,7 +71,7 @@ class KnownFacts(unittest.TestCase):
         P = problem.covariances(tuple(range(len(links))))[-1]
         return [math.sqrt(P[m4, m4] + P[m5, m5] + 2 * sign * P[m4, m5]) for sign in (1, -1)]
 
-    def test_gyroscopes_behind_parallel_axes_do_not_tell_their_joints_apart(self):
+    def test_gyroscopes_behind_parallel_axes_do_not_distinguish_their_joints(self):
         total, difference = self.speeds(["m3", "m6"])
         self.assertLess(total, 0.02)
         self.assertGreater(difference, 1.0)
@@ -151,11 +151,11 @@ class Command(TemporaryFolder):
         picture, file = self.folder / "imus.svg", self.folder / "imus.json"
         out, _ = self.imus(MODELS / "arms/ur5e/device.yaml", "--count", 2, "--grid", 1, "--duration",
                            SHORT_S, "--picture", picture, "--json", file)
-        told = json.loads(file.read_text())
+        summary = json.loads(file.read_text())
         self.assertIn("12 candidates on 6 links", out)
         self.assertIn("<svg", picture.read_text())
-        self.assertEqual(len(told["choices"][-1]["placement"]), 2)
-        encoders, one, two = told["rms_errors"][:3]
+        self.assertEqual(len(summary["choices"][-1]["placement"]), 2)
+        encoders, one, two = summary["rms_errors"][:3]
         for before, after in ((encoders, one), (one, two)):
             self.assertLess(sum(map(math.log, after["ddq"])), sum(map(math.log, before["ddq"])) - 1)
         again, _ = self.imus(MODELS / "arms/ur5e/device.yaml", "--count", 2, "--grid", 1, "--duration",

@@ -258,7 +258,7 @@ class PageTest(TemporaryFolder):
             self.assertIn("/reference_wrench: this run is a trial", live.warning())
             self.end(process)
 
-    def test_a_trial_ends_by_itself_when_its_page_asks_for_it(self):
+    def test_a_trial_ends_when_its_page_asks_for_it(self):
         with self.trial() as (process, page):
             self.accept(page, "stop")
             process.communicate(timeout=60)  # with its page still connected

@@ -110,8 +110,8 @@ class FlightRecorder(TemporaryFolder):
             run("run", file, "--fast", "--law", "paper", "--duration", 7, "--no-viewer",
                 "--flight-recorder", "off", "--summary", summary, "--recordings",
                 self.folder / name)
-            told = json.loads(summary.read_text())
-            hashes.append(told["state_hash"])
+            shown = json.loads(summary.read_text())
+            hashes.append(shown["state_hash"])
             recording, = (f for f in (self.folder / name).glob("*.mcap") if not f.is_symlink())
             code, out, err = run("replay", recording)
             self.assertEqual((code, err), (0, ""), out)

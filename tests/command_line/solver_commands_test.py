@@ -29,6 +29,15 @@ class Bench(TemporaryFolder):
         """How many were timed: a first one has nothing to start from."""
         return int(row["problems"]) - (row["solver"] == "warm")
 
+    def check_histograms(self, solver):
+        """Histograms count every problem and cycle."""
+        counted = {}
+        for row in self.rows("solver_histogram"):
+            key = row["set"], row["solver"]
+            counted[key] = counted.get(key, 0) + int(row["count"])
+        for row in solver:
+            self.assertEqual(counted[row["set"], row["solver"]], self.solves(row), row)
+
     def test_a_quick_run_of_the_door_fills_every_table_and_figure(self):
         self.out = self.folder / "new" / "results"
         reported = self.folder / "bench.json"
@@ -65,13 +74,7 @@ class Bench(TemporaryFolder):
         if not any(row["solver"] == "cascade" for row in solver):
             self.assertIn("the paper's cascade was not built", out)
 
-        # histograms count every problem and cycle
-        counted = {}
-        for row in self.rows("solver_histogram"):
-            key = row["set"], row["solver"]
-            counted[key] = counted.get(key, 0) + int(row["count"])
-        for row in solver:
-            self.assertEqual(counted[row["set"], row["solver"]], self.solves(row), row)
+        self.check_histograms(solver)
 
         # the stages make up the cycle; they are measured in other plays, so about
         stages = {row["stage"]: row for row in self.rows("cycle")}

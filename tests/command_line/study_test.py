@@ -153,8 +153,8 @@ class Simulated(Study):
         self.assertEqual(forms, {"tlx", "sus"})
         pairs = [row for row in self.table("answers") if row["kind"] == "pair"]
         self.assertEqual(len(pairs), 15 * 2 * 2)
-        told = {row["column"] for row in self.table("data_dictionary")}
-        self.assertLessEqual(set(rows[0]), told)
+        described = {row["column"] for row in self.table("data_dictionary")}
+        self.assertLessEqual(set(rows[0]), described)
         # the command of a trial makes the same trial again
         trial = json.loads(next(self.out.glob("sub-P01/*_trial.json")).read_text())
         words = shlex.split(trial["command"])[1:]
@@ -179,7 +179,7 @@ class Simulated(Study):
             self.assertNotIn("P01,", file.read_text(), file)
         self.assertEqual(len(self.table("trials")), 4)
         self.hashes_are_right()
-        self.study("simulate", "--participants", 2)  # the code is not given to anybody else
+        self.study("simulate", "--participants", 2)  # the code is not given away
         self.assertFalse((self.out / "sub-P01").exists())
         self.assertIn("P01: 0 files deleted", self.study("forget", "P01")[0])
         self.assertIn("did you mean 'P02'", self.study("forget", "P03", code=2)[1])

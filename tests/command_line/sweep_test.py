@@ -135,7 +135,7 @@ class Sweep(TemporaryFolder):
         out, _ = self.sweep(self.study, "--again")
         self.assertNotIn("from before", out)
 
-    def test_another_program_and_another_file_are_told_apart(self):
+    def test_another_program_and_another_file_are_distinguished(self):
         self.sweep(self.study)
         header = self.out / "study.json"
         right = json.loads(header.read_text())

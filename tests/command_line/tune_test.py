@@ -63,8 +63,8 @@ class Tune(TemporaryFolder):
 
     def test_without_python_nothing_is_searched(self):
         with unittest.mock.patch.dict(os.environ, HAPTICGIANT_PYTHON="/bin/false-no-such-python"):
-            code, told, err = run("tune", "--out", self.folder / "none")
-        self.assertEqual((code, told), (2, ""))
+            code, out, err = run("tune", "--out", self.folder / "none")
+        self.assertEqual((code, out), (2, ""))
         self.assertIn("needs scipy, matplotlib and jinja2; tools/setup.sh build", err)
         self.assertFalse((self.folder / "none").exists())
 

@@ -110,7 +110,7 @@ class Page(WebSocket):
         return json.loads(self.get("/scene.json"))
 
     def hold(self, until):
-        """Tells every 30 ms that it is there, until the event is set; from another thread."""
+        """Reports every 30 ms that it is there, until the event is set; from another thread."""
         while not until.wait(0.03):
             self.sequence += 1
             self.send({"type": "hold", "sequence": self.sequence})

@@ -221,12 +221,12 @@ class Interrupted(Export):
         self.assertIn(export.returncode, (0, 2))  # 0: it was faster
         self.assertEqual(list(self.folder.glob("*.partial*")), [])
         shutil.rmtree(self.folder / "door", ignore_errors=True)
-        (self.folder / "door.partial").mkdir()  # of somebody else
+        (self.folder / "door.partial").mkdir()  # of another
         self.export(DOOR, "--format", "rosbag2", "--to", "0.1")
 
 
 class Damaged(Export):
-    def test_what_can_be_read_is_exported_and_losses_are_told(self):
+    def test_what_can_be_read_is_exported_and_losses_are_reported(self):
         bytes_ = bytearray(DOOR.read_bytes())
         bytes_[len(bytes_) // 2] ^= 0xFF
         file = self.folder / "damaged.mcap"

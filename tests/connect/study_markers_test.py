@@ -38,7 +38,7 @@ os.environ |= {"LSLAPICFG": str(FOLDER / "lsl.cfg"), "PYLSL_LIB": str(SITE / "py
 import pylsl  # noqa: E402
 from hapticgiant.study import markers, planning  # noqa: E402
 
-# name, format, channels, source: then code that sends from `outlet` once somebody listens
+# name, format, channels, source: then code that sends from `outlet` once a reader listens
 SENDER = """
 import sys, time, pylsl
 outlet = pylsl.StreamOutlet(pylsl.StreamInfo(sys.argv[1], sys.argv[5], int(sys.argv[3]), float(sys.argv[6]),
@@ -123,7 +123,7 @@ class Inlets(Test):
                                              {"name": "Levels", "is_connected": True, "count": 2}])
         wait(lambda: all(abs(each.clock_offset_s) < 1e-3 for each in found), "offsets are filled in")
         self.assertLess(max(each.offset_error_s for each in found), 0.1)
-        # the file that is read by somebody else
+        # the file that is read by others
         rows = list(csv.DictReader(markers.table(found, [(0.1, 1000.0)]).splitlines()))
         self.assertEqual([row["value"] for row in rows if row["stream"] == "Buttons"], values["Buttons"])
         for row in rows:
@@ -131,12 +131,12 @@ class Inlets(Test):
             self.assertAlmostEqual(times[0] + times[1] - 1000.0, times[2], delta=2e-6)
 
     def test_a_stream_that_never_comes_and_one_that_is_a_signal(self):
-        collected = self.collect("Nobody", "Signal")
+        collected = self.collect("Absent", "Signal")
         self.send("time.sleep(1); print('there', flush=True)", "Signal", "float32", source="signal", rate=100)
         self.send("outlet.push_sample(['x'])", "Other", source="other")
         time.sleep(2)
         self.assertEqual(collected.state(), [{"name": name, "is_connected": False, "count": 0}
-                                             for name in ("Nobody", "Signal")])
+                                             for name in ("Absent", "Signal")])
         self.assertEqual(collected.take(), [])
         begin = time.monotonic()
         collected.close()

@@ -82,7 +82,7 @@ class Segment(Program):
         super().__init__(program, SEGMENT_END, str(layout), *([plant] if plant else []))
         self.hear()
 
-    def tell(self, command):
+    def command(self, command):
         answer = self.ask(command)
         if answer != "ok":
             raise AssertionError(f"{command}: {answer}")

@@ -169,7 +169,7 @@ class Masters:
         with self.bus() as one:
             one.operate()
             for command in ("set imu.az 9.81", "set wrist.fz -12.5", "set panel.in3 1"):
-                one.segment.tell(command)
+                one.segment.command(command)
             inputs = self.expect(one, COUNTER)
             counted = number(inputs["wrist"][28:32])
             self.assertEqual(number(inputs["imu"][8:12]), 98100)
@@ -178,7 +178,7 @@ class Masters:
             _, inputs = one.cycle(panel=0xA5)
             self.assertEqual(number(inputs["wrist"][28:32]), counted + 1)
             self.assertEqual(one.segment.show()[-1]["outputs"], 0xA5)
-            one.segment.tell("trip wrist 3")
+            one.segment.command("trip wrist 3")
             for _ in range(2):
                 inputs = self.expect(one, COUNTER)
             self.assertEqual(number(inputs["wrist"][24:28]), 3)
@@ -187,24 +187,24 @@ class Masters:
     def test_faults_of_frames_are_seen(self):
         with self.bus() as one:
             one.operate()
-            one.segment.tell("lose 3")
+            one.segment.command("lose 3")
             for _ in range(3):
                 self.assertIsNone(one.cycle(patience_ms=30)[0])
             samples = number(self.expect(one, COUNTER)["wrist"][28:32])
             # a late answer is none, and is not taken for that of another cycle
-            one.segment.tell("late 1 500000")
+            one.segment.command("late 1 500000")
             self.assertIsNone(one.cycle(patience_ms=30)[0])
             self.expect(one, COUNTER)
             time.sleep(0.6)
             for k in range(2):
                 inputs = self.expect(one, COUNTER)
                 self.assertEqual(number(inputs["wrist"][28:32]), samples + 3 + k)
-            one.segment.tell("miscount axis_3 2")
+            one.segment.command("miscount axis_3 2")
             self.expect(one, COUNTER - 3)
             self.expect(one, COUNTER - 3)
             self.expect(one, COUNTER)
             # a mail whose answer is lost on its way back is asked for again, or says so
-            one.segment.tell("lose 1 any")
+            one.segment.command("lose 1 any")
             try:
                 self.assertEqual(one.read("axis_1", 0x1000), 0x00020192)
             except AssertionError as error:
@@ -215,7 +215,7 @@ class Masters:
         with self.bus() as one:
             one.operate()
             one.enable("axis_2", "axis_3")
-            one.segment.tell("fall axis_2 safeop 0x0050")
+            one.segment.command("fall axis_2 safeop 0x0050")
             inputs = self.expect(one, COUNTER - 2)  # its outputs are closed
             self.assertEqual(one.ask("states"), [OP, [SAFE_OP_ERROR, 0x0050]] + [OP] * 7)
             self.assertEqual(inputs["axis_2"][STATUS] & 0x4F, 0x08)
@@ -230,7 +230,7 @@ class Masters:
             self.expect(one, COUNTER)
             self.assertEqual(one.ask("states"), [OP] * 9)
             one.enable("axis_2")
-            one.segment.tell("fall axis_6 init 0x0001")
+            one.segment.command("fall axis_6 init 0x0001")
             self.expect(one, COUNTER - 3)
             self.assertEqual(one.ask("states")[5], [0x11, 0x0001])
 
@@ -251,10 +251,10 @@ class Masters:
     def test_an_open_cable_is_seen(self):
         with self.bus() as one:
             one.operate()
-            one.segment.tell("open axis_4")
+            one.segment.command("open axis_4")
             self.expect(one, 4 * 3)
             self.assertEqual(one.ask("states"), [OP] * 4 + [None] * 5)
-            one.segment.tell("close")
+            one.segment.command("close")
             self.expect(one, COUNTER)
             self.assertEqual(one.ask("states"), [OP] * 9)
 
@@ -262,7 +262,7 @@ class Masters:
         with self.bus() as one:
             one.operate()
             one.enable("axis_1", "axis_2")
-            one.segment.tell("trip axis_1 0x3210")
+            one.segment.command("trip axis_1 0x3210")
             for _ in range(3):
                 inputs = self.expect(one, COUNTER)
             self.assertEqual(inputs["axis_1"][STATUS] & 0x4F, 0x08)
@@ -274,7 +274,7 @@ class Masters:
             # the command to reset is its edge
             one.targets["axis_1"][CONTROL] = 0x8F
             self.expect(one, COUNTER)
-            one.segment.tell("trip axis_1 0x4310")
+            one.segment.command("trip axis_1 0x4310")
             for _ in range(4):
                 inputs = self.expect(one, COUNTER)
             self.assertEqual(inputs["axis_1"][STATUS] & 0x4F, 0x08)
@@ -414,7 +414,7 @@ class Frames(unittest.TestCase):
         self.assertEqual(self.ask_state(panel, 0x04), (0x04, 0))
         self.write(panel, 0x0120, b"\x08\0")
         for channel in ("in3", "in5", "in6"):
-            self.segment.tell(f"set panel.{channel} 1")
+            self.segment.command(f"set panel.{channel} 1")
         data, counter = self.wire.exchange(LRW, 0x10000, b"\x81\xff")
         self.assertEqual((data, counter), (b"\x81\xfd", 3))
         self.assertEqual(self.count(LRD, 0x10000, b"\0\0"), 1)
@@ -494,15 +494,15 @@ class Bus(unittest.TestCase):
     def test_scan_names_what_is_wrong(self):
         code, said = self.scan("nowhere0")
         self.assertEqual((code, said.strip()), (2, "nowhere0: No such device (os error 19)"))
-        code, said = self.scan()  # nobody there
+        code, said = self.scan()  # no slave is there
         self.assertEqual(code, 2)
         self.assertIn("master0: no slave answers: is the interface up", said)
         segment = bus.Segment(SEGMENT)
-        segment.tell("refuse axis_2 0x0016")
+        segment.command("refuse axis_2 0x0016")
         code, said = self.scan()
         self.assertEqual(code, 2)
         self.assertIn("slave 2 of 9 (0x1001) stays in INIT: AL status code 0x0016: ", said)
-        segment.tell("refuse axis_2 0")
+        segment.command("refuse axis_2 0")
         self.assertEqual(self.scan()[0], 0)
         segment.close()
 
@@ -527,7 +527,7 @@ class Bus(unittest.TestCase):
                                 "working counter 21 of 23; slave 2 (0x1001, CiA 402 drive): "
                                 "SAFE-OP + error, AL status code 0x001b"),
                                ("open wrist", "; slave 9 (0x1008, digital I/O): does not answer")):
-            segment.tell(command)
+            segment.command(command)
             expect(words)
         watch.send_signal(signal.SIGINT)
         said, _ = watch.communicate(timeout=60)

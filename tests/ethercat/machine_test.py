@@ -162,7 +162,7 @@ class Positions(unittest.TestCase):
         scale = 2 * math.pi / self.TURN
         drives = [{"name": name, "vendor": 0x00FFFF00, "product": 0x130, "revision": 1,
                    "joint": name, "mode": "csp", "synchronous": True,
-                   "settings": [  # another mapping than the drive has by itself
+                   "settings": [  # another mapping than the drive has at first
                        {"object": 0x1C12, "bits": 8, "value": 0},
                        {"object": 0x1C12, "subindex": 1, "bits": 16, "value": 0x1601},
                        {"object": 0x1C12, "bits": 8, "value": 1}],
@@ -265,7 +265,7 @@ class Faults(unittest.TestCase):
 
     def run_until(self, command, *words):
         with haptic_giant() as address, segment(plant=address) as one:
-            one.tell(f"after {FAULT_FRAME} {command}")
+            one.command(f"after {FAULT_FRAME} {command}")
             code, said, summary = over_the_bus().wait()
             self.assertEqual(code, 3, said)
             for word in words:
@@ -287,8 +287,8 @@ class Faults(unittest.TestCase):
 
     def test_two_lost_frames_do_no_harm(self):
         with haptic_giant() as address, segment(plant=address) as one:
-            one.tell("after 9600 lose 2")  # the door pops open
-            one.tell("after 12000 lose 2")  # it falls shut
+            one.command("after 9600 lose 2")  # the door pops open
+            one.command("after 12000 lose 2")  # it falls shut
             code, said, summary = over_the_bus().wait()
         self.assertEqual(code, 0, said)
         self.assertEqual(summary["missing_events"], [], said)
@@ -296,7 +296,7 @@ class Faults(unittest.TestCase):
         self.assertEqual((summary["link"]["lost"], summary["link"]["held"]), (4, 4), said)
 
     def test_silence(self):
-        """Nobody answers, but all hear that they must stop, long before their watchdogs act."""
+        """No slave answers, but all hear that they must stop, long before their watchdogs act."""
         self.run_until("lose 1000000 any", "fieldbus answers are missing",
                        "master0: no answer to 10 frames in a row")
         self.assertEqual([(slave["drive"], slave["error"]) for slave in self.states[:8]],
@@ -358,7 +358,7 @@ panel:
     def expect_recovery(self, command, fault="113 drive reports a fault"):
         with haptic_giant() as address, segment(plant=address) as one, \
                 tempfile.TemporaryDirectory() as folder:
-            one.tell(f"after {FAULT_FRAME} {command}")
+            one.command(f"after {FAULT_FRAME} {command}")
             code, said, summary = over_the_bus("--duration", "6",
                                                scenario=self.scenario(folder)).wait()
         self.assertEqual(code, 3, said)  # there was a fault

@@ -91,7 +91,7 @@ def make_simulation(options):
         """The arm of the simulator with a hand at its grip."""
 
         began = None
-        load = 0.0  # kg, of which the robot was told
+        load = 0.0  # kg, that the robot knows of
         noise = np.random.default_rng(1)
 
         def pull(self):

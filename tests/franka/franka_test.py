@@ -88,7 +88,7 @@ class Franka(unittest.TestCase):
             self.assertEqual(code, 3, said)
             self.assertIn("communication_constraints_violation", said)
             self.assertIn(summary["fault"]["code"], (120, 101, 203), said)
-            # and recovers by itself for the next run
+            # and recovers alone for the next run
             code, said, _ = run(address, 0.5)
             self.assertEqual(code, 0, said)
 

@@ -86,7 +86,7 @@ class Reference(unittest.TestCase):
         self.assertEqual(len(forms), 2)
         self.assertEqual(forms, {without_choices(command) for command in theirs.commands})
         self.assertEqual([ours.commands[-1][FINISHED], theirs.commands[-1][FINISHED]], [1, 1])
-        # the torques that libfranka was told are where ours are written
+        # the torques that libfranka was given are where ours are written
         self.assertEqual(TORQUES.unpack_from(theirs.commands[0], TORQUES_AT),
                          (0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07))
         moved = TORQUES.unpack_from(ours.commands[-1], TORQUES_AT)

@@ -55,19 +55,13 @@ def check(holds, what):
         sys.exit(what)
 
 
-def main():
+def check_pages():
     text = pathlib.Path("docs/start/packages.md").read_text()
     for example in [*EXAMPLES.glob("*.cpp"), *DRIVER.glob("*.cpp"), *DRIVER.glob("*.h")]:
         check(example.read_text() in text, f"docs/start/packages.md shows another {example.name}")
 
-    tree = pathlib.Path(sys.argv[1]).resolve()
-    eigen = sys.argv[2]
-    wheels = pathlib.Path(eigen).parents[2]
-    work = tree / "package_cpp"
-    prefix = work / "prefix"
-    shutil.rmtree(prefix, ignore_errors=True)
-    run("cmake", "--install", tree, "--prefix", prefix, "--component", "cpp")
 
+def check_libraries(prefix, tree):
     # nothing of Eigen's can be mistaken for the consumer's
     symbols = run("nm", "--demangle", prefix / "lib" / "libhg_hqp.a")
     check(not re.search(r"\bEigen::", symbols), "libhg_hqp.a shares functions of Eigen")
@@ -78,8 +72,9 @@ def main():
     for library in sorted((prefix / "lib").glob("*.a")):
         check(not malloc.search(run("nm", library)), f"{library.name} replaces malloc")
 
-    # solver and bounds: nothing but Eigen and zlib is found, and the flags are the consumer's own
-    flags = "-mavx2 -mfma" if platform.machine() in ("x86_64", "AMD64") else ""
+
+def check_solver_alone(work, prefix, eigen, flags):
+    """Solver and bounds: nothing but Eigen and zlib is found, and the flags are the consumer's own."""
     alone = work / "alone"
     found = configure(alone, f"-DCMAKE_PREFIX_PATH={prefix}", f"-DEigen3_DIR={eigen}",
                       "-DCMAKE_DISABLE_FIND_PACKAGE_pinocchio=ON", f"-DCMAKE_CXX_FLAGS={flags}")
@@ -91,17 +86,9 @@ def main():
         check(run(alone / "solve_problem") == "solved: x = (1, 2)\n", "solve_problem")
         check("rests at 1.000000 rad" in run(alone / "joint_bounds"), "joint_bounds")
 
-    # everything else, with the wheels
-    both = work / "both"
-    path = f"-DCMAKE_PREFIX_PATH={prefix};{wheels}"
-    configure(both, path)
-    run("cmake", "--build", both)
-    door = prefix / "share" / "hapticgiant" / "models" / "scenarios" / "door.yaml"
-    opened = run(both / "first_feel", door)
-    check(DOOR_OPEN.fullmatch(opened.strip()), f"first_feel: {opened}")
 
-    # a program for a real machine: nothing of the simulator, its person or its faults is in it
-    models = prefix / "share" / "hapticgiant" / "models"
+def check_own_machine(both, models):
+    """A program for a real machine: nothing of the simulator, its person or its faults is in it."""
     moved = run(both / "own_machine", models / "examples" / "arm.yaml",
                 models / "twins" / "free_space" / "twin.yaml")
     check(MOVED.fullmatch(moved.strip()), f"own_machine: {moved}")
@@ -117,7 +104,9 @@ def main():
     found += re.findall(r"\bhg::config::load_(?:simul|scen|script)[a-z_]*", symbols)
     check(not found, f"own_machine has {found[:3]}")
 
-    # the same machine behind a server of its own project, and our program as its controller
+
+def check_driver(work, path, tree, models):
+    """The same machine behind a server of its own project, and our program as its controller."""
     driver = work / "driver"
     configure(driver, path, source=DRIVER)
     run("cmake", "--build", driver)
@@ -137,7 +126,9 @@ def main():
     refused = run(driver / "my_driver", arm, "nowhere", fails=True)
     check("HOST:PORT" in refused, f"my_driver: {refused}")
 
-    # a program for a machine behind a network finds all that it links
+
+def check_remote(work, path):
+    """A program for a machine behind a network finds all that it links."""
     remote = work / "remote"
     shutil.rmtree(remote, ignore_errors=True)
     remote.mkdir()
@@ -147,6 +138,32 @@ def main():
     run("cmake", "--build", remote / "build")
     refused = run(remote / "build" / "remote", fails=True)
     check("--device-address" in refused, f"remote: {refused}")
+
+
+def main():
+    check_pages()
+    tree = pathlib.Path(sys.argv[1]).resolve()
+    eigen = sys.argv[2]
+    wheels = pathlib.Path(eigen).parents[2]
+    work = tree / "package_cpp"
+    prefix = work / "prefix"
+    shutil.rmtree(prefix, ignore_errors=True)
+    run("cmake", "--install", tree, "--prefix", prefix, "--component", "cpp")
+    check_libraries(prefix, tree)
+    flags = "-mavx2 -mfma" if platform.machine() in ("x86_64", "AMD64") else ""
+    check_solver_alone(work, prefix, eigen, flags)
+
+    # everything else, with the wheels
+    both = work / "both"
+    path = f"-DCMAKE_PREFIX_PATH={prefix};{wheels}"
+    configure(both, path)
+    run("cmake", "--build", both)
+    models = prefix / "share" / "hapticgiant" / "models"
+    opened = run(both / "first_feel", models / "scenarios" / "door.yaml")
+    check(DOOR_OPEN.fullmatch(opened.strip()), f"first_feel: {opened}")
+    check_own_machine(both, models)
+    check_driver(work, path, tree, models)
+    check_remote(work, path)
 
     # what shows Eigen's types is refused where they would have another layout
     if flags:

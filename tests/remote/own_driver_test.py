@@ -237,7 +237,7 @@ class LockStep(unittest.TestCase):
             self.assertEqual(client.sensors(60.0), sensors)  # sent again
             goodbye(client)
 
-    def test_a_second_client_is_refused_and_told_by_whom(self):
+    def test_a_second_client_is_refused_with_the_name_of_the_first(self):
         with Driver("--fast") as served, Raw(served.port) as raw:
             client = served.client("first")
             client.sensors()

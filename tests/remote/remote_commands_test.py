@@ -98,16 +98,16 @@ class Commands(unittest.TestCase):
     def test_what_a_franka_cannot_be_is_refused(self):
         late = ("--despite", "lateness")  # the computer of a test may be busy
         fci = ("fr3/open_drawer", "--device", "fr3/fci", *late, "--device-address")
-        nobody = "franka://127.0.0.1:1"
+        no_robot = "franka://127.0.0.1:1"
         for arguments, reason in (
-                (("fr3/open_drawer", *late, "--device-address", nobody), "lists no actuators"),
-                (("door", *late, "--device-address", nobody), "7 joints and no gantry"),
-                ((*fci, nobody), "127.0.0.1:1: the robot refuses the connection: activate FCI"),
+                (("fr3/open_drawer", *late, "--device-address", no_robot), "lists no actuators"),
+                (("door", *late, "--device-address", no_robot), "7 joints and no gantry"),
+                ((*fci, no_robot), "127.0.0.1:1: the robot refuses the connection: activate FCI"),
                 ((*fci, "franka://"), "expected franka://HOST or franka://HOST:PORT"),
                 ((*fci, "franka://host/speed"), "with /speeds, got 'franka://host/speed'"),
                 ((*fci, "franka://host:port"), "--device-address: expected HOST:PORT"),
-                ((*fci, nobody, "--fast"), "a Franka keeps its own time"),
-                ((*fci, nobody, "--seed", "2"), "--seed")):
+                ((*fci, no_robot, "--fast"), "a Franka keeps its own time"),
+                ((*fci, no_robot, "--seed", "2"), "--seed")):
             with self.subTest(arguments):
                 result = run(*arguments)
                 self.assertEqual(result.returncode, 2, result.stdout + result.stderr)

@@ -300,9 +300,9 @@ class Ros1Restart(unittest.TestCase):
         bridge = world.start_bridge()
         run = world.run("door", "--user", "mouse", "--duration", "1000")
         for _ in range(2):
-            told = subprocess.run(["/usr/bin/rostopic", "echo", "-n", "1", "/user_wrench"],
+            shown = subprocess.run(["/usr/bin/rostopic", "echo", "-n", "1", "/user_wrench"],
                                   capture_output=True, text=True, timeout=PATIENCE_S)
-            self.assertIn("force", told.stdout, told.stderr)
+            self.assertIn("force", shown.stdout, shown.stderr)
             stop(master)
             master = world.start_master()
             until(lambda: "new master" in world.said("bridge.log"), "it is noticed")

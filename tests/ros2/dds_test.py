@@ -85,7 +85,7 @@ class Alone(unittest.TestCase):
             self.assertEqual(done.returncode, 2, arguments)
             self.assertIn(message, done.stderr)
 
-    def test_an_answer_that_is_no_run_is_told_as_it_came(self):
+    def test_an_answer_that_is_no_run_is_shown_as_it_came(self):
         for status, message in ((b"404 Not Found", "got HTTP 404 Not Found: a page"),
                                 (b"403 Forbidden", "the token is that of another run, or wrong")):
             with socket.create_server(("127.0.0.1", 0)) as server, contextlib.ExitStack() as stack:

@@ -1,4 +1,4 @@
-"""`hapticgiant bridge ros2` against real ROS 2: rclpy of Jazzy and Kilted, which nobody here has written.
+"""`hapticgiant bridge ros2` against real ROS 2: rclpy of Jazzy and Kilted, which others have written.
 
     ros2_test.py PROGRAM [--distribution NAME] [--minutes N]
 
@@ -115,7 +115,7 @@ class Program:
 
 
 def run(folder, *arguments):
-    """A run that goes on without a terminal; its recording goes into `folder`."""
+    """A run without a terminal; its recording goes into `folder`."""
     return Program([PROGRAM, "run", "door", "--no-browser", "--flight-recorder", "off", "--recordings", folder,
                     *arguments], {**os.environ, "XDG_RUNTIME_DIR": str(folder)})
 
@@ -159,7 +159,7 @@ class Bridge:
         return self.stack.enter_context(program)
 
     def peer(self, what):
-        """A peer that is ready, and goes on until finish()."""
+        """A peer that is ready, until finish()."""
         peer = self.start(self.distribution.peer(self.domain, what, self.folder / f"end of {len(self.peers)}"))
         self.peers.append(peer)
         if what != "call":
@@ -253,10 +253,10 @@ class Bridge:
         self.assertEqual(saw["set"], [True, ""])
         self.assertAlmostEqual(saw["after"][0][1], 1.25 * saw["old"])
         self.assertFalse(saw["too_large"][0])
-        told = re.search(r"must be a number of (\S+) \.\. (\S+)", saw["too_large"][1])
-        self.assertTrue(told, saw["too_large"])
+        shown = re.search(r"must be a number of (\S+) \.\. (\S+)", saw["too_large"][1])
+        self.assertTrue(shown, saw["too_large"])
         ranges = dict(zip(saw["parameters"], saw["ranges"]))
-        self.assertEqual(ranges[saw["changed"]], [[float(told[1]), float(told[2]), 0.0]])
+        self.assertEqual(ranges[saw["changed"]], [[float(shown[1]), float(shown[2]), 0.0]])
         for name, (_, value) in zip(saw["parameters"], saw["before"]):
             ((least, most, _),) = ranges[name]
             self.assertTrue(least <= value <= most, f"{name}: {value} in {least} .. {most}")

@@ -173,7 +173,7 @@ TEST(Safety, TheSafetyControllerTakesThePowerAwayWhateverTheProgramDoes) {
 config::Scenario without_person() {
   config::Scenario s = shipped_scenario("free_space");
   s.person = person::PersonKind::kNone;
-  s.script.script.grasp_s = kInfinity;  // nor does anybody close the dead-man switch
+  s.script.script.grasp_s = kInfinity;  // nor is the dead-man switch closed
   return s;
 }
 

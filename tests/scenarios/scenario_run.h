@@ -12,6 +12,7 @@
 
 #include "hg/analysis/events.h"
 #include "hg/analysis/summary.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/allocation_counter.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/options.h"

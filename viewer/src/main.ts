@@ -273,7 +273,7 @@ function seen_target(frame: Frame): Vec3 | null {
   return frame.hand.active ? frame.hand.p_B_m : null;
 }
 
-// From where somebody who drags the handle to places on the floor sees them.
+// From where a person who drags the handle to places on the floor sees them.
 function choose_top_view(): void {
   const views = element<HTMLSelectElement>("view");
   views.value = "top";

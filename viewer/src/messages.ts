@@ -60,7 +60,7 @@ export interface SceneFollower {
   leader: string;
   begin: number; // of the range of the leader, rad or m
   end: number; // of the range of the leader, rad or m
-  is_periodic: boolean; // the range is one turn, and goes on
+  is_periodic: boolean; // the range is one turn, and repeats
   values: number[]; // at equal distances over the range, rad or m
 }
 

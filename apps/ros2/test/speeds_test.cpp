@@ -33,7 +33,7 @@ TEST(Speeds, AreRightWhereStatesArriveInBursts) {
   EXPECT_NEAR(fastest_of_bursts(false), 1.0, 1e-9);
 }
 
-TEST(Speeds, FollowArrivalWhereStampsStandStillAndBeginAnewAfterAClockWasSetBack) {
+TEST(Speeds, FollowArrivalWhereStampsStandStillAndBeginAgainAfterAClockWasSetBack) {
   Speeds speeds(kLeast_s);
   EXPECT_FALSE(speeds.see(at(0.0), 7, kPeriod_ns));
   EXPECT_TRUE(speeds.see(at(0.004), 7, 2 * kPeriod_ns));

@@ -77,7 +77,7 @@ class LiveClient::Session : public std::enable_shared_from_this<Session> {
     if (error) return end("cannot find " + link.host + ": " + error.message());
     stream().expires_after(kPatience);
     stream().async_connect(endpoints, [self = shared_from_this()](error_code error, const auto&) {
-      if (error) return self->end("nobody answers at its link: " + error.message());
+      if (error) return self->end("no run answers at its link: " + error.message());
       self->shake_hands();
     });
   }

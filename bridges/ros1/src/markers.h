@@ -22,7 +22,7 @@ class Markers {
   /// a device without joints.
   void set_device(const std::string& urdf);
 
-  /// Whether the scanner sees nobody; unknown until the first call.
+  /// Whether the field of the scanner is clear; unknown until the first call.
   void set_field_clear(bool is_clear) { is_field_clear_ = is_clear; }
 
   /// What stands still: zone, box and surfaces, in the frame `base`. The first time after

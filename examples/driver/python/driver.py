@@ -365,7 +365,7 @@ class Server:
         return READY, ()
 
     def farewell(self, client, kind, reason):
-        for _ in range(3):  # nobody acknowledges it
+        for _ in range(3):  # it is not acknowledged
             self.send(client, GOODBYE, kind, 0, reason.encode()[:63])
 
     def send_sensors(self, sensors, time_s, answered):
@@ -484,7 +484,7 @@ def read_options(arguments):
     parser.add_argument("--interface", choices=("position", "torque"), default="position",
                         help="what the drives take")
     parser.add_argument("--listen", metavar="HOST:PORT", default="127.0.0.1:4810")
-    parser.add_argument("--simulated", action="store_true", help="tell clients that no machine moves")
+    parser.add_argument("--simulated", action="store_true", help="report to clients that no machine moves")
     parser.add_argument("--fast", action="store_true", help="lock-step: not for a machine")
     parser.add_argument("--timeout-s", type=float, default=COMMAND_TIMEOUT_S,
                         help="time without a command after which the drives go off (not with --fast)")

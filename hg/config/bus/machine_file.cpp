@@ -11,7 +11,7 @@
 namespace hg::config {
 namespace {
 
-// vendors of simulated slaves, but for the last byte: nobody has these numbers
+// vendors of simulated slaves, but for the last byte: no maker has these numbers
 constexpr std::uint32_t kSimulatedVendor = 0x00FFFF00;
 constexpr std::uint32_t kVendorMask = 0xFFFFFF00;
 constexpr double kLongestWatchdog_s = 0.1;
@@ -34,7 +34,7 @@ void check_joints(Loader& loader, const ethercat::Machine& machine,
   }
 }
 
-// Nobody's machine says that it is a simulation.
+// Slaves of a maker are no simulation.
 void check_simulation(Loader& loader, const ethercat::Machine& machine) {
   for (const ethercat::Slave& slave : machine.slaves) {
     loader.rule((slave.vendor & kVendorMask) == kSimulatedVendor, "moves_with_frames",
@@ -58,7 +58,7 @@ void check_power(Loader& loader, const ethercat::Machine& machine) {
               "key 'brake_closing_s' is missing: how long brakes take to close, 0 where there are "
               "none");
   const bool has_button = std::ranges::any_of(machine.slaves, [](const ethercat::Slave& slave) {
-    return tells(slave.inputs, ethercat::Input::kEmergencyStop);
+    return has_entry(slave.inputs, ethercat::Input::kEmergencyStop);
   });
   loader.rule(has_button, "slaves",
               "no slave has the input 'emergency_stop': a machine with drives needs one");
@@ -72,27 +72,27 @@ bool is_of_frame(ethercat::Input meaning) {
 
 // An input that is given once more: by the same slave, or for the same place of the frame.
 void check_inputs_once(LoaderFile& file, const ethercat::Machine& machine) {
-  struct Told {
+  struct Given {
     ethercat::Input meaning;
     std::size_t slave;
     int line;
   };
-  std::vector<Told> told;
+  std::vector<Given> given;
   for (std::size_t i = 0; i < machine.slaves.size(); ++i) {
     for (std::size_t k = 0; k < machine.slaves[i].inputs.size(); ++k) {
       const ethercat::Input meaning = machine.slaves[i].inputs[k].meaning;
       if (meaning == ethercat::Input::kNothing) continue;
       const std::string item = fmt::format("slaves[{}].inputs[{}].is", i, k);
       const Place place = file.places.nearest(item);
-      const auto first = std::ranges::find_if(told, [&](const Told& other) {
+      const auto first = std::ranges::find_if(given, [&](const Given& other) {
         return other.meaning == meaning && (other.slave == i || is_of_frame(meaning));
       });
-      if (first == told.end()) {
-        told.push_back({meaning, i, place.line});
+      if (first == given.end()) {
+        given.push_back({meaning, i, place.line});
         continue;
       }
       file.faults.add(place, item,
-                      fmt::format("slave '{}' tells this already in line {}, only one can count",
+                      fmt::format("slave '{}' gives this already in line {}, only one can count",
                                   machine.slaves[first->slave].name, first->line));
     }
   }

@@ -7,23 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "hg/config/bus/entry_schema.h"
 #include "hg/config/schema.h"
 #include "hg/device/ethercat/machine.h"
 
 namespace hg::config {
 
-inline constexpr std::uint32_t kMostObject = 0xFFFF;
-inline constexpr std::uint32_t kMostSubindex = 0xFF;
 inline constexpr std::uint32_t kAnyNumber32 = 0xFFFFFFFF;
 
-/// Whether one of the entries has this meaning.
-template <typename Meaning>
-bool tells(const std::vector<ethercat::Entry<Meaning>>& entries, Meaning meaning) {
-  return std::ranges::any_of(
-      entries, [&](const ethercat::Entry<Meaning>& entry) { return entry.meaning == meaning; });
-}
-
-/// What a drive in this mode is told.
+/// Target that a drive in this mode gets.
 inline ethercat::Output target_of(ethercat::DriveMode mode) {
   switch (mode) {
     case ethercat::DriveMode::kCsp:
@@ -36,40 +28,6 @@ inline ethercat::Output target_of(ethercat::DriveMode mode) {
       break;
   }
   return ethercat::Output::kNothing;
-}
-
-template <class V, typename Meaning>
-void describe(V& v, ethercat::Entry<Meaning>& entry) {
-  const auto meanings = choices_of<Meaning>();
-  v.whole("object", entry.object, kMostObject, "index of the object that is mapped; 0: a gap");
-  v.whole("subindex", entry.subindex, kMostSubindex, "its subindex");
-  v.whole("bits", entry.bits, 32, "its size in the process data", Need::kRequired);
-  v.choice("is", entry.meaning, Choices<Meaning>(meanings), "what it means");
-  v.number(
-      "scale", entry.scale, {.lb = -1e3, .ub = 1e3},
-      "SI units (m, rad, Nm, N, degrees Celsius, per s, per s^2) per count, of what has a unit "
-      "required; negative: the other way round");
-  v.number("offset", entry.offset, {.lb = -1e3, .ub = 1e3}, "SI units at the number 0");
-  v.flag("inverted", entry.is_inverted, "of a switch: 0 says yes");
-  v.rule(entry.bits > 0, "bits", "must be 1 to 32");
-  v.rule(v.is_given("scale") || !ethercat::is_measure(entry.meaning), "is",
-         "needs a scale: how many SI units a count is");
-  v.rule(entry.scale != 0.0, "scale", "must not be 0");
-  v.rule(entry.object != 0 || entry.meaning == Meaning::kNothing, "is",
-         "a gap (object 0) has no meaning");
-}
-
-template <class V>
-void describe(V& v, ethercat::Setting& setting) {
-  v.whole("object", setting.object, kMostObject, "index of the object", Need::kRequired);
-  v.whole("subindex", setting.subindex, kMostSubindex, "its subindex");
-  v.whole("bits", setting.bits, 32, "its size: 8, 16 or 32", Need::kRequired);
-  v.number("value", setting.value, {.lb = -2147483648.0, .ub = 4294967295.0}, "a whole number",
-           Need::kRequired);
-  v.rule(setting.bits == 8 || setting.bits == 16 || setting.bits == 32, "bits",
-         "must be 8, 16 or 32");
-  v.rule(setting.value == static_cast<double>(static_cast<std::int64_t>(setting.value)), "value",
-         "must be a whole number");
 }
 
 template <class V>
@@ -89,16 +47,17 @@ void check_drive(V& v, const ethercat::Slave& slave) {
   using namespace ethercat;
   if (slave.mode == DriveMode::kNone) return;
   const bool sets_mode =
-      tells(slave.outputs, Output::kMode) ||
+      has_entry(slave.outputs, Output::kMode) ||
       std::ranges::any_of(slave.settings, [](const Setting& s) { return s.object == 0x6060; });
   v.rule(sets_mode, "outputs", "a drive needs an output 'mode', or a setting of object 0x6060");
-  v.rule(tells(slave.outputs, Output::kControlWord), "outputs",
+  v.rule(has_entry(slave.outputs, Output::kControlWord), "outputs",
          "a drive needs an output 'control_word'");
-  v.rule(tells(slave.outputs, target_of(slave.mode)), "outputs",
+  v.rule(has_entry(slave.outputs, target_of(slave.mode)), "outputs",
          "the target of its mode is missing: target_position for csp, target_velocity for csv, "
          "target_torque for cst");
-  v.rule(tells(slave.inputs, Input::kStatusWord), "inputs", "a drive needs an input 'status_word'");
-  v.rule(tells(slave.inputs, Input::kLinkPosition), "inputs",
+  v.rule(has_entry(slave.inputs, Input::kStatusWord), "inputs",
+         "a drive needs an input 'status_word'");
+  v.rule(has_entry(slave.inputs, Input::kLinkPosition), "inputs",
          "a drive needs an input 'link_position'");
 }
 
@@ -127,7 +86,7 @@ void describe(V& v, ethercat::Slave& slave, const std::vector<std::string>& join
         describe(child, entry);
         slave.outputs.push_back(entry);
       },
-      "what this slave is told, in the order of its process data");
+      "commands to this slave, in the order of its process data");
   v.list(
       "inputs",
       [&](auto& child) {
@@ -135,7 +94,7 @@ void describe(V& v, ethercat::Slave& slave, const std::vector<std::string>& join
         describe(child, entry);
         slave.inputs.push_back(entry);
       },
-      "what it tells, likewise");
+      "its answers, likewise");
   v.rule(ethercat::bits_of(slave.outputs) % 8 == 0, "outputs", "must be whole bytes");
   v.rule(ethercat::bits_of(slave.inputs) % 8 == 0, "inputs", "must be whole bytes");
   check_drive(v, slave);
@@ -149,12 +108,13 @@ void describe_times(V& v, ethercat::Machine& machine) {
       "every slave with outputs; of a machine at most 0.1 s");
   v.number("answer_s", machine.answer_s, {.lb = 1e-5, .ub = 1.0},
            "a frame that takes longer to come back is lost; of a machine at most one period");
-  v.number("brake_closing_s", machine.brake_closing_s, {.lb = 0.0, .ub = 0.2},
-           "until a brake that was told to close holds: torques stay for so long, and drives on, "
-           "where an output open_brakes leads the brakes; must be given for a machine with drives");
+  v.number(
+      "brake_closing_s", machine.brake_closing_s, {.lb = 0.0, .ub = 0.2},
+      "from the command to close a brake until it holds: torques stay for so long, and drives on, "
+      "where an output open_brakes leads the brakes; must be given for a machine with drives");
   v.flag("moves_with_frames", machine.moves_with_frames,
          "a simulated segment, which moves by one period with each frame: `run --fast` is allowed; "
-         "all its slaves have vendors 0x00ffff00 to 0x00ffffff, which nobody has");
+         "all its slaves have vendors 0x00ffff00 to 0x00ffffff, which no maker has");
 }
 
 template <class V>

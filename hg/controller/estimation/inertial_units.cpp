@@ -168,14 +168,19 @@ void InertialUnits::step(const InertialReadings& readings, const EncoderSample& 
       (after.measured - 2.0 * then.measured + before.measured) / (dt_ * dt_);
   const VectorPM by_reference = 0.5 * (then.ddq_expected + after.ddq_expected);
 
-  Normal normal = Normal::Zero(n_ + 6, n_ + 6);
-  normal.diagonal() = state.variance.cwiseInverse();
-  Unknowns sum = Unknowns::Zero(n_ + 6);
-  Eigen::Matrix3d turn_normal = Eigen::Matrix3d::Identity() / (kTurnRate * kTurnRate);
-  Eigen::Vector3d turn_sum = Eigen::Vector3d::Zero();
-  std::array<Rows, kMaxInertialUnits> all_rows;
-  Rests rests;  // beyond what is expected and found
-  bool has_lost_one = false;
+  Equations all = equations(readings, by_encoders, by_reference, state);
+  state.turn = (state.turn + 1) % config_.frames.size();
+  solve_for_motion(then, all, state);
+}
+
+InertialUnits::Equations InertialUnits::equations(const InertialReadings& readings,
+                                                  const VectorPM& by_encoders,
+                                                  const VectorPM& by_reference,
+                                                  InertialUnitsState& state) const noexcept {
+  Equations all = {.normal = Normal::Zero(n_ + 6, n_ + 6),
+                   .sum = Unknowns::Zero(n_ + 6),
+                   .turn_normal = Eigen::Matrix3d::Identity() / (kTurnRate * kTurnRate)};
+  all.normal.diagonal() = state.variance.cwiseInverse();
   for (std::size_t j = 0; j < config_.frames.size(); ++j) {
     const int frame = config_.frames[j];
     UnitReading reading;
@@ -186,38 +191,41 @@ void InertialUnits::step(const InertialReadings& readings, const EncoderSample& 
     const UnitCalibration& unit = state.units[j];
     const UnitReading shown = expected(unit, motion_of(frame, by_reference));
     const Eigen::Vector3d beyond = reading.a - shown.a;
-    if (!judge(j, reading, motion_of(frame, by_encoders), beyond, state)) has_lost_one = true;
+    if (!judge(j, reading, motion_of(frame, by_encoders), beyond, state)) all.has_lost_one = true;
     const double trust = state.trust[j];
     if (trust == 0.0) continue;
-    const Rows& rows = all_rows[j] = effect_on(unit, frame);
-    rests[j] = beyond;
+    const Rows& rows = all.rows[j] = effect_on(unit, frame);
+    all.rests[j] = beyond;
     const double weight = trust / state.error[j];
-    normal.noalias() += weight * rows.transpose().lazyProduct(rows);
-    sum.noalias() += weight * rows.transpose().lazyProduct(beyond);
+    all.normal.noalias() += weight * rows.transpose().lazyProduct(rows);
+    all.sum.noalias() += weight * rows.transpose().lazyProduct(beyond);
 
     const Eigen::Matrix3d of_turn =
         unit.gyroscope.topRows<3>().transpose() * chain_.pose(frame).R.transpose();
     const double turn_weight = trust / (kTurnReading * kTurnReading);
-    turn_normal.noalias() += turn_weight * of_turn.transpose() * of_turn;
-    turn_sum.noalias() += turn_weight * of_turn.transpose() *
-                          (reading.omega - shown.omega - of_turn * state.bend_rate.tail<3>());
+    all.turn_normal.noalias() += turn_weight * of_turn.transpose() * of_turn;
+    all.turn_sum.noalias() += turn_weight * of_turn.transpose() *
+                              (reading.omega - shown.omega - of_turn * state.bend_rate.tail<3>());
   }
-  state.turn = (state.turn + 1) % config_.frames.size();
+  return all;
+}
 
-  const Eigen::LLT<Normal> factor(normal);
-  const Unknowns found = factor.solve(sum);
+void InertialUnits::solve_for_motion(const EncoderSample& then, Equations& equations,
+                                     InertialUnitsState& state) const noexcept {
+  const Eigen::LLT<Normal> factor(equations.normal);
+  const Unknowns found = factor.solve(equations.sum);
   Normal inverse = Normal::Identity(n_ + 6, n_ + 6);
   factor.solveInPlace(inverse);
   state.unseen = inverse.diagonal().head(n_).cwiseQuotient(state.variance.head(n_));
   for (std::size_t j = 0; j < config_.frames.size(); ++j) {
-    if (state.trust[j] > 0.0) rests[j] -= all_rows[j] * found;
+    if (state.trust[j] > 0.0) equations.rests[j] -= equations.rows[j] * found;
   }
-  learn_deviations(found, inverse.diagonal(), rests, state);
-  if (has_lost_one) state.carried = state.found - found;
+  learn_deviations(found, inverse.diagonal(), equations.rests, state);
+  if (equations.has_lost_one) state.carried = state.found - found;
   state.carried *= 1.0 - dt_ / kFade_s;
   state.found = found + state.carried;
   observe(then, state);
-  state.bend_rate.tail<3>() += turn_normal.llt().solve(turn_sum);
+  state.bend_rate.tail<3>() += equations.turn_normal.llt().solve(equations.turn_sum);
   const bool has_trust = state.trust.maxCoeff() > 0.5;
   state.share = std::clamp(state.share + (has_trust ? dt_ : -dt_) / kTrust_s, 0.0, 1.0);
 }

@@ -108,6 +108,17 @@ class InertialUnits {
 
   using Rests = std::array<Eigen::Vector3d, kMaxInertialUnits>;
 
+  /// Normal equations of all unknowns, and of the turning that gyroscopes add.
+  struct Equations {
+    Normal normal;
+    Unknowns sum;
+    Eigen::Matrix3d turn_normal;
+    Eigen::Vector3d turn_sum = Eigen::Vector3d::Zero();
+    std::array<Rows, kMaxInertialUnits> rows;  ///< Rows of the units that take part
+    Rests rests;                               ///< Readings beyond what is expected and found
+    bool has_lost_one = false;                 ///< A unit took part and has dropped out
+  };
+
   LinkMotion motion_of(int frame, const VectorPM& ddq) const noexcept;
   Rows effect_on(const UnitCalibration& unit, int frame) const noexcept;
   void start(const EncoderSample& encoders, InertialUnitsState& state) const noexcept;
@@ -117,6 +128,10 @@ class InertialUnits {
                         InertialUnitsState& state) const noexcept;
   bool is_alive(std::size_t unit, const UnitReading& reading,
                 InertialUnitsState& state) const noexcept;
+  Equations equations(const InertialReadings& readings, const VectorPM& by_encoders,
+                      const VectorPM& by_reference, InertialUnitsState& state) const noexcept;
+  void solve_for_motion(const EncoderSample& then, Equations& equations,
+                        InertialUnitsState& state) const noexcept;
   void observe(const EncoderSample& then, InertialUnitsState& state) const noexcept;
   const EncoderSample& ago(int periods, const InertialUnitsState& state) const noexcept;
 

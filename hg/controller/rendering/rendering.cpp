@@ -382,7 +382,6 @@ bool Rendering::clamp_reference(const RobotState& robot, double largest,
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
 void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& result) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
-  const int first_twin_limit = device_.limit_count();
   solver_options_.budget = smaller_budget(static_cast<int>(options_.solver_budget),
                                           static_cast<int>(input.most_active_sets));
   result.solver_iterations = 0;
@@ -391,38 +390,10 @@ void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& r
     Budget& budget = result.budget;
     const VectorA tau =
         result.tau_a - budget.damping - budget.friction - budget.spring - budget.surface;
-    tasks_.fill(device_, twin_,
-                {.device_chain = device_now_,
-                 .twin_chain = twin_now_,
-                 .robot = input.robot,
-                 .reference = state.reference,
-                 .twin = state.twin,
-                 .inner = state.inner,
-                 .motor_torque = state.motor_torque,
-                 .gantry = input.gantry,
-                 .touched = state.touched,
-                 .L = L_,
-                 .J_H = J_H_,
-                 .J_a = J_a_,
-                 .directions = reactions_.directions(),
-                 .stops = stops_,
-                 .tau = tau,
-                 .handle_speed = input.handle_speed_max,
-                 .is_braked = input.braking_rate > 0.0});
+    fill_tasks(input, tau, state);
     ended_(Stage::kRenderingSetUp);
-    copy(state.active_set.state, tasks_.problem().rows(), guess_.state);
-    copy(state.active_set.before, tasks_.problem().rows(), guess_.before);
-    solved_cycle_ = input.cycle;
-    solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_);
-    result.solver_status = solver_status(tasks_, solver_options_, solution_);
-    result.solver_iterations += solution_.iterations;
+    solve_once(input, state, result);
     was_spent = was_spent || result.solver_status == SolverStatus::kBudgetSpent;
-    const bool has_budget = solver_options_.budget > 0;
-    if ((solution_.status != hqp::Status::kSolved && !has_budget) ||
-        result.solver_status == SolverStatus::kFailed ||
-        solution_.iterations >= options_.slow_solve) {
-      keep_problem(input.cycle);
-    }
     ended_(Stage::kSolver);
 
     const Eigen::Map<const Eigen::VectorXd> x(solution_.x.data(), n_m + n_a);
@@ -433,20 +404,7 @@ void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& r
     const VectorA tau_constraint = budget.inertia - tau;
     reactions_.split(tasks_, solution_, tau_constraint);
     ended_(Stage::kReactions);
-
-    bool released = false;
-    for (int i = 0; i < n_a; ++i) {
-      bool& sticks = state.inner.sticks[i];
-      const std::size_t limit = first_twin_limit + i;
-      const double holding = reactions_.of(first_twin_limit + i);
-      const double most = friction_of(twin_, i, state.twin.q_a, state.inner.parameters);
-      if (!sticks || std::abs(holding) <= most) continue;
-      sticks = false;
-      budget.friction[i] = -std::copysign(most, holding);
-      state.touched.lower[limit] = state.touched.upper[limit] = false;
-      released = true;
-    }
-    if (!released) break;
+    if (!release(state, budget)) break;
   }
   if (was_spent && result.solver_status == SolverStatus::kSolved) {
     result.solver_status = SolverStatus::kBudgetSpent;
@@ -460,6 +418,63 @@ void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& r
   result.ddq_a = state.twin.ddq_a;
   reactions_.report(tasks_, solution_, {.L = L_, .J_a = J_a_, .w_H = input.robot.w_H, .dt = dt_},
                     result);
+}
+
+void Rendering::fill_tasks(const LawInput& input, const VectorA& tau,
+                           const RenderingState& state) noexcept {
+  tasks_.fill(device_, twin_,
+              {.device_chain = device_now_,
+               .twin_chain = twin_now_,
+               .robot = input.robot,
+               .reference = state.reference,
+               .twin = state.twin,
+               .inner = state.inner,
+               .motor_torque = state.motor_torque,
+               .gantry = input.gantry,
+               .touched = state.touched,
+               .L = L_,
+               .J_H = J_H_,
+               .J_a = J_a_,
+               .directions = reactions_.directions(),
+               .stops = stops_,
+               .tau = tau,
+               .handle_speed = input.handle_speed_max,
+               .is_braked = input.braking_rate > 0.0});
+}
+
+// Solves the problem, and keeps it where that fails or is slow.
+void Rendering::solve_once(const LawInput& input, RenderingState& state,
+                           LawResult& result) noexcept {
+  copy(state.active_set.state, tasks_.problem().rows(), guess_.state);
+  copy(state.active_set.before, tasks_.problem().rows(), guess_.before);
+  solved_cycle_ = input.cycle;
+  solver_.solve(tasks_.problem(), solver_options_, state.active_set, solution_);
+  result.solver_status = solver_status(tasks_, solver_options_, solution_);
+  result.solver_iterations += solution_.iterations;
+  const bool has_budget = solver_options_.budget > 0;
+  if ((solution_.status != hqp::Status::kSolved && !has_budget) ||
+      result.solver_status == SolverStatus::kFailed ||
+      solution_.iterations >= options_.slow_solve) {
+    keep_problem(input.cycle);
+  }
+}
+
+// Lets joints slip whose friction cannot hold them. False: none.
+bool Rendering::release(RenderingState& state, Budget& budget) const noexcept {
+  const int first_twin_limit = device_.limit_count();
+  bool is_released = false;
+  for (int i = 0; i < twin_.chain.nv(); ++i) {
+    bool& sticks = state.inner.sticks[i];
+    const std::size_t limit = first_twin_limit + i;
+    const double holding = reactions_.of(first_twin_limit + i);
+    const double most = friction_of(twin_, i, state.twin.q_a, state.inner.parameters);
+    if (!sticks || std::abs(holding) <= most) continue;
+    sticks = false;
+    budget.friction[i] = -std::copysign(most, holding);
+    state.touched.lower[limit] = state.touched.upper[limit] = false;
+    is_released = true;
+  }
+  return is_released;
 }
 
 void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept {

@@ -27,9 +27,9 @@ Point point_on(const model::ChainData& chain, int frame, const Vector3d& p_link)
           .frame = frame};
 }
 
-// The acceleration towards the surface that a turning body has by itself counts in front of the
-// surface. Inside it fades: where the lever is short and the device holds the end effector, only
-// a faster turn could balance it, and would need more.
+// The acceleration towards the surface that a turning body has without forces counts in front of
+// the surface. Inside it fades: where the lever is short and the device holds the end effector,
+// only a faster turn could balance it, and would need more.
 double counted(double bias, double distance) noexcept {
   constexpr double kFading = 5e-3;  // m
   return bias < 0.0 ? bias * std::clamp(1.0 + distance / kFading, 0.0, 1.0) : bias;

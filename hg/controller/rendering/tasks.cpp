@@ -128,6 +128,24 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   problem_.add_level();
   coupling_row_ = problem_.rows();
   for (int i = 0; i < 6; ++i) problem_.add_row(coefficients_, {});
+  add_device_limits(device);
+  add_twin_limits(device, twin);
+  limit_row_count_ = problem_.rows() - first_limit_row();
+  if (brakes_together(device, options_)) {
+    const int limits = device.limit_count();
+    lasting_.resize(device.motors().size());
+    joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
+    approaches_.resize(limits);
+    known_.resize(limits);
+  }
+  if (paper_) {
+    paper_->add_levels(problem_);
+  } else {
+    add_gauss(device);
+  }
+}
+
+void Tasks::add_device_limits(const DeviceModel& device) {
   const double margin = has_torques_ ? kTrackingMargin : 0.0;
   problem_.add_level();
   for (int i = 0; i < n_m_; ++i) {
@@ -154,6 +172,9 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
       row.options.tau_onset = kBrakingOnset;
     }
   }
+}
+
+void Tasks::add_twin_limits(const DeviceModel& device, const TwinModel& twin) {
   problem_.add_level();
   for (int i = 0; i < n_a_; ++i) {
     add_limit(twin.dofs[i].limits, n_m_ + i, 0.0);
@@ -169,19 +190,10 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
     problem_.add_level();
     for (int i = 0; i < n_a_; ++i) add_rating(device.limit_count() + i, n_m_ + i);
   }
-  limit_row_count_ = problem_.rows() - first_limit_row();
-  if (brakes_together(device, options_)) {
-    const int limits = device.limit_count();
-    lasting_.resize(device.motors().size());
-    joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
-    approaches_.resize(limits);
-    known_.resize(limits);
-  }
+}
 
-  if (paper_) {
-    paper_->add_levels(problem_);
-    return;
-  }
+// Gauss' principle, the gantry, and what a joint to spare leaves free.
+void Tasks::add_gauss(const DeviceModel& device) {
   problem_.add_level();
   dynamics_row_ = problem_.rows();
   for (int i = 0; i < n_a_; ++i) problem_.add_row(coefficients_, {});

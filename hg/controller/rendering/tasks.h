@@ -27,62 +27,16 @@
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/paper_law.h"
 #include "hg/controller/rendering/stops.h"
-#include "hg/controller/rendering/twin_forces.h"
+#include "hg/controller/rendering/task_input.h"
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/hqp/problem.h"
 #include "hg/hqp/solution.h"
 #include "hg/limits/acceleration_bounds.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
-#include "hg/signals/gantry_task.h"
 #include "hg/signals/state.h"
 
 namespace hg::rendering {
-
-/// One limit, in catalogue order: limit i is row first_limit_row() + i. With bounds paper a joint
-/// has a second row, for its acceleration rating.
-struct LimitRow {
-  Interval range;              ///< Configured positions; of the twin as changed, this cycle
-  limits::JointLimits limits;  ///< Limits as rendered: with margins, and this cycle's locks
-  limits::RecoverableOptions options;
-  double rating = 1.0;  ///< Largest acceleration; 1 = none
-  int rating_row = -1;  ///< Row of bounds B; -1 = none
-  /// Row of a motor torque, as an acceleration of its joint; `q` is then the motor's torque.
-  bool is_motor = false;
-  double inertia = 0.0;  ///< Inertia that this motor moves, kg m^2 or kg
-  Interval torque;       ///< Torques of this motor that the law has in this cycle, Nm or N
-  /// Bounds R are used in this cycle. With bounds paper only for a twin joint that may be beyond
-  /// limits which were not there before: from outside, bounds A let it coast away.
-  bool is_recoverable = true;
-  Holds held_by;             ///< Locks, latches and friction, this cycle
-  double q = 0.0, dq = 0.0;  ///< Position and speed in this cycle
-  double known = 0.0;        ///< Acceleration without the unknowns, this cycle
-  Interval ddq;              ///< Bounds of the first row in this cycle, without known accelerations
-};
-
-/// Inputs of one cycle.
-struct TaskInput {
-  /// Device in this cycle, after update(); without motors in the law update_kinematics()
-  /// is enough.
-  const model::ChainData& device_chain;
-  const model::ChainData& twin_chain;  ///< Twin in this cycle, after update()
-  const RobotState& robot;
-  const ReferenceState& reference;
-  const TwinState& twin;
-  const TwinInnerState& inner;
-  const VectorM& motor_torque;       ///< Motor torques of the last cycle, Nm or N; empty: none
-  const GantryTask& gantry;          ///< Task of the gantry; empty: it moves as measured
-  const TouchedEnds& touched;        ///< Limit ends touched by the last result; law paper only
-  const MatrixA& L;                  ///< Cholesky factor of M_a = L L^T
-  const model::Jacobian& J_H;        ///< Jacobian of the handle, gantry first
-  const model::Jacobian& J_a;        ///< Jacobian of the twin's end effector
-  ConstraintDirections& directions;  ///< Directions for J_H and J_a; found by law paper
-  const Stops& stops;                ///< Virtual surfaces in front of the twin
-  VectorA tau;  ///< Sum of all torques on the twin that are not constraints, without c_a
-  /// Largest speed of H along each axis of B, where the device limits H, m/s.
-  double handle_speed = kInfinity;
-  bool is_braked = false;  ///< The twin is brought to rest, and so is a joint to spare
-};
 
 /// Acceleration with which the handle brakes before a virtual surface that is a stop: the least of
 /// its ratings, m/s^2.
@@ -149,6 +103,9 @@ class Tasks {
 
  private:
   void add_levels(const DeviceModel& device, const TwinModel& twin);
+  void add_device_limits(const DeviceModel& device);
+  void add_twin_limits(const DeviceModel& device, const TwinModel& twin);
+  void add_gauss(const DeviceModel& device);
   void add_limit(const limits::JointLimits& limits, int variable, double margin);
   void add_rating(int limit, int variable);
   double weight_of(const LimitRow& row) const noexcept;

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "hg/controller/tracking/control_config.h"
+#include "hg/controller/tracking/control_state.h"
 #include "hg/controller/tracking/modes.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
@@ -22,73 +24,6 @@ namespace hg::tracking {
 inline constexpr int kAnswersNeeded = 100;  ///< samples until the latency counts as known
 /// Largest factor on the friction of the configuration; more would be another fault.
 inline constexpr double kMostFriction = 2.0;
-
-enum class Method {
-  kDrives,   ///< the drives follow the reference on their own
-  kModal,    ///< full-state feedback in the modes of the arm
-  kMotorPd,  ///< stiffness and damping on the motor side of each joint alone
-};
-
-/// Set-up data.
-struct ControlConfig {
-  Method method = Method::kDrives;
-  TorqueLoop loop;  ///< Torque loop with the expected latency; the true latency is measured
-  /// Largest measured latency with which the loop is known to be stable, s.
-  double latency_max = kInfinity;
-  double integral_rate = 2.0;    ///< kModal: decay rate of the link error, 1/s
-  double integral_max = 3.5e-4;  ///< Largest integral of the link error, rad s: no wind-up beyond
-  Poles poles;                   ///< kModal: poles without latency
-  /// Low-pass of derivatives of feedforward torques; see check_control_config()
-  double flatness_Hz = 40.0;
-  double wrench_lead = 0.0;        ///< kModal: lead of the user's wrench in the feedforward, s
-  double lead_low_pass_Hz = 65.0;  ///< Low-pass of the wrench's rate of change for that lead
-  double stiff_low_pass_Hz = 0.0;  ///< kModal: low-pass of the feedforward to stiff modes; 0 = none
-  double error_max = kInfinity;    ///< Largest lead of the reference over the joint, rad or m
-  double friction_share = 0.8;     ///< Share of the Coulomb friction that is fed forward, 0..1
-  /// Speed over which the fed-forward friction changes its sign, without presliding, rad/s.
-  double friction_speed = 0.01;
-  double friction_learning = 1.0;  ///< kModal: rate at which the true friction is learnt, 1/s
-};
-
-/// Largest flatness_Hz of a loop with `rate_Hz`; beyond it the feedforward filter is unstable.
-double largest_flatness_Hz(double rate_Hz) noexcept;
-
-/// Largest expected latency; stability with more is not checked.
-inline constexpr int kMostLatency = 64;  // periods
-
-/// Throws SetupError where the period of `rate_Hz` is too long for flatness_Hz or too short for the
-/// latency.
-void check_control_config(const ControlConfig& config, double rate_Hz);
-
-/// Part of the copyable state of a cycle.
-struct ControlState {
-  bool is_started = false;
-  double latency = 0.0;  ///< Mean latency measured while the drives were off, periods
-  int answers = 0;       ///< Samples in that mean, counted up to kAnswersNeeded
-  int late = 0;          ///< Samples with old commands minus those without, drives on; >= 0
-  Poles poles;           ///< Poles that the latency allows; chosen at the start
-  Modes modes;
-  VectorM integral;  ///< Integral of q_r - q, rad s
-  VectorM friction;  ///< Fed-forward friction over the Coulomb friction of the configuration
-  VectorM tau_r, dtau_r, ddtau_r;  ///< Feedforward torque of the links and its derivatives
-  Vector6 w_H = Vector6::Zero();   ///< User's wrench in the last sample
-  Vector6 dw_H = Vector6::Zero();  ///< Rate of change of the user's wrench, low-passed
-  VectorM stiff;                   ///< Torques of stiff modes, low-passed, Nm
-  BristleFeet feet;  ///< Bristle feet of the friction fed forward; empty: no joint has presliding
-  /// Joint torques that reference and user's wrench do not explain, a moving mean, Nm.
-  VectorM unexplained;
-  bool is_saturated = false;
-};
-
-/// Words of the state hash, in its order.
-void hashed(auto& hash, const ControlState& state) {
-  const auto& [is_started, latency, answers, late, poles, modes, integral, friction, tau_r, dtau_r,
-               ddtau_r, w_H, dw_H, stiff, feet, unexplained, is_saturated] = state;
-  hash.mix(std::uint64_t{is_started} | std::uint64_t{is_saturated} << 1U, latency,
-           static_cast<std::uint64_t>(answers) | static_cast<std::uint64_t>(late) << 32U, poles.w0,
-           modes.Q(), integral, friction, tau_r, dtau_r, ddtau_r, unexplained, stiff, w_H, dw_H);
-  if (feet.size() > 0) hash.mix(feet);
-}
 
 class JointControl {
  public:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace hg {
 namespace {
@@ -37,6 +38,32 @@ TEST(Random, BetweenStaysInItsRange) {
     ASSERT_LT(number, 5.0);
   }
 }
+
+TEST(Random32, ShareIsTheNumberOfTheEngineInItsRange) {
+  EXPECT_EQ(Random32(5489).share(), 3499211612.0 / 4294967295.0);
+}
+
+TEST(Random32, FirstNumbersOfASeedAreFixed) {
+  EXPECT_EQ(Random32(5489).next(), (3499211612.0 + 0x1p32 * 581869302.0) * 0x1p-64);
+  Random32 random(1);
+  EXPECT_DOUBLE_EQ(random.normal(), -0.5497461789554496);  // by the same method in Python
+  EXPECT_DOUBLE_EQ(random.normal(), -1.402872709127921);
+}
+
+#ifdef __GLIBCXX__
+TEST(Random32, NumbersAreThoseOfTheDistributionsOfGcc) {
+  Random32 random(3);
+  std::mt19937 engine(3);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-1.5, 4.0);
+  for (int i = 0; i < 10'000; ++i) {
+    ASSERT_EQ(random.normal(), normal(engine)) << i;
+    if (i % 3 == 0) {
+      ASSERT_EQ(random.between(-1.5, 4.0), uniform(engine)) << i;
+    }
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace hg

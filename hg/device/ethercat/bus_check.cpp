@@ -17,7 +17,7 @@ constexpr std::uint16_t kInputAssignment = 0x1C13;
 constexpr std::uint16_t kSupportedModes = 0x6502;
 constexpr std::uint8_t kMostEntries = 64;  // of a list of the slave, which may be wrong
 
-// What a drive does when it is told to stop, or has to (CiA 402, and CiA 301 for a lost
+// What a drive does when it is commanded to stop, or has to (CiA 402, and CiA 301 for a lost
 // connection).
 struct StopOption {
   std::uint16_t object;
@@ -184,7 +184,7 @@ class SlaveCheck {
     }
   }
 
-  // False: the slave does not tell.
+  // False: the slave does not answer.
   bool read_entries(std::string_view what, std::uint16_t assignment,
                     std::vector<MappedEntry>& entries) {
     const ObjectResult pdos = bus_.read(position_, {assignment, 0}, 1);

@@ -165,8 +165,8 @@ void EthercatDevice::rest() noexcept {
   exchanged_ns_ = 0;
 }
 
-// Whether nobody has read for so long that the watchdogs of the slaves may have acted, while drives
-// were off.
+// Whether read() was not called for so long that the watchdogs of the slaves may have acted, while
+// drives were off.
 bool EthercatDevice::has_paused() const noexcept {
   const bool is_enabled = has_command_ && command_.enable;
   return !is_enabled && now_ns() - exchanged_ns_ > ns(0.5 * config_.machine.watchdog_s);
@@ -256,7 +256,7 @@ void EthercatDevice::take_lost() noexcept {
   if (is_silent()) fall_silent();
 }
 
-// Nobody answers, but slaves may hear.
+// No answer comes, but slaves may hear.
 void EthercatDevice::keep_stopping() noexcept {
   ++counts_.sent;
   if (exchange() < 0) {
@@ -447,7 +447,7 @@ bool EthercatDevice::may_move() const noexcept {
 }
 
 // After commands with drives on, the last targets are held until the brakes have closed, where
-// drives hear them at all. A drive that leads its own brake is told at once.
+// drives hear them at all. A drive that leads its own brake is commanded at once.
 void EthercatDevice::put_out() noexcept {
   const bool enables = may_move();
   const bool is_stopping = is_stopping_ || fault_ == FaultCode::kDeviceSilent;
@@ -549,7 +549,7 @@ std::string EthercatDevice::farewell() const {
     case Cause::kDrive:
       return named("the drive has failed: " + drive_words());
     case Cause::kDisabled:
-      return named("the drive has stopped by itself: " + drive_words());
+      return named("the drive has stopped without a command: " + drive_words());
     case Cause::kNotEnabled:
       return named(
           fmt::format("the drive does not follow after {:g} s: {}", kEnabling, drive_words()));

@@ -7,8 +7,8 @@
 /// it takes them to OP and may take some seconds. Drives are switched on, with closed brakes, from
 /// the first read() on, and enabled while commands have drives on. When they are switched off,
 /// torques stay until the brakes are closed. What the machine stops itself for becomes a fault,
-/// with the slave that it comes from in farewell(). Without answers frames go on, and tell all
-/// drives to stop.
+/// with the slave that it comes from in farewell(). Without answers frames continue, and
+/// command all drives to stop.
 #pragma once
 
 #include <cstdint>
@@ -145,7 +145,7 @@ class EthercatDevice final : public device::ConnectedDevice {
   std::int64_t late_ns_ = 0;       ///< of this computer in that exchange
   bool was_reset_ = false;         ///< reset button in the last command
   int recovery_ = 0;               ///< exchanges that are left to recover; 0: does not recover
-  bool is_stopping_ = false;       ///< drives are told to stop, whatever they do
+  bool is_stopping_ = false;       ///< drives are commanded to stop, whatever they do
   bool is_closed_ = false;
   // why the bus has errors in this sample
   Cause suspect_ = Cause::kNone;

@@ -8,7 +8,7 @@
 
 namespace hg::ethercat {
 
-/// What a slave is told by an entry of its process data.
+/// What an entry of its process data commands a slave.
 enum class Output : std::uint8_t {
   kNothing,  ///< always 0
   kControlWord,
@@ -17,10 +17,10 @@ enum class Output : std::uint8_t {
   kTargetVelocity,
   kTargetTorque,
   kReset,       ///< reset button of the safety controller
-  kOpenBrakes,  ///< while all drives follow; for brakes that no drive opens by itself
+  kOpenBrakes,  ///< while all drives follow; for brakes that no drive opens
 };
 
-/// What an entry of its process data tells.
+/// What an entry of its process data reports.
 enum class Input : std::uint8_t {
   kNothing,  ///< is not looked at
   kStatusWord,
@@ -100,8 +100,8 @@ struct Machine {
   std::string name;
   double watchdog_s = 0.1;  ///< without outputs for so long a slave leaves OP
   double answer_s = 5e-4;   ///< a frame that takes longer is lost
-  /// Until a brake that was told to close holds. For so long torques stay, and drives on, where the
-  /// output open_brakes leads the brakes.
+  /// From the command to close a brake until it holds. For so long torques stay, and drives on,
+  /// where the output open_brakes leads the brakes.
   double brake_closing_s = 0.0;
   /// The slaves move a period with each frame, whenever it comes: a simulated segment.
   bool moves_with_frames = false;

@@ -35,7 +35,7 @@ class Pace {
     settled_ = std::abs(error_ns_) < period_ns_ / kClose ? settled_ + 1 : 0;
   }
 
-  /// The next frames have to come into step anew.
+  /// The next frames have to come into step again.
   void restart() noexcept { settled_ = 0; }
   /// Whether the last frames have passed near the middle between two pulses.
   bool is_settled() const noexcept { return settled_ >= kSettled; }

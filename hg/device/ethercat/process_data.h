@@ -14,17 +14,17 @@ struct Station {
   std::vector<std::uint8_t> outputs, inputs;
   std::uint16_t status = 0;     ///< status word of a drive
   std::uint16_t error = 0;      ///< error code of a drive, fault of a sensor
-  std::uint8_t mode_now = 0;    ///< mode of a drive; 0: not told
+  std::uint8_t mode_now = 0;    ///< mode of a drive; 0: not reported
   std::uint32_t samples = 0;    ///< counter of a sensor
   bool has_new_samples = true;  ///< it has counted on, or does not count
 };
 
-/// Takes what a slave tells into its station and into a frame with `n_p` gantry axes and `n_m`
+/// Takes what a slave reports into its station and into a frame with `n_p` gantry axes and `n_m`
 /// joints.
 void take_inputs(const Slave& slave, int n_p, int n_m, Station& station,
                  SensorFrame& frame) noexcept;
 
-/// What all slaves are told.
+/// Commands to all slaves.
 struct Orders {
   const CommandFrame* command = nullptr;  ///< null: none has come yet
   bool enables = false;                   ///< its targets are those of the drives
@@ -32,8 +32,8 @@ struct Orders {
   std::uint16_t control_word = 0;  ///< of this drive
 };
 
-/// Puts what a slave is told into its station. `last` is the last frame: a drive that is not
-/// enabled is told to stay.
+/// Puts commands to a slave into its station. `last` is the last frame: a drive that is not
+/// enabled is commanded to stay.
 void put_outputs(const Slave& slave, int n_p, const Orders& orders, const SensorFrame& last,
                  Station& station) noexcept;
 

@@ -158,7 +158,7 @@ void FrankaDevice::move_to(const VectorM& goal) {
   await_end_of_motion();
   set_collision(config_.collision);
   check_at_rest();
-  // a run begins anew
+  // a new run begins
   queue_ = {};
   is_started_ = false;
   first_id_ = 0;
@@ -312,7 +312,7 @@ void FrankaDevice::follow(const RobotState& state) noexcept {
   }
 }
 
-// The robot tells the share of the last 100 cycles that were answered in time.
+// The robot reports the share of the last 100 cycles that were answered in time.
 void FrankaDevice::count_unanswered(const RobotState& state) noexcept {
   const float answered = state.control_command_success_rate;
   if (state.message_id - counted_to_ < kCyclesOfRate) return;

@@ -86,7 +86,7 @@ struct ConnectRequest {
 };
 
 /// The robot decides whether the client's version is good enough; where it is not, its own version
-/// tells why. libfranka does not look at the version of a robot that accepts, either.
+/// says why. libfranka does not look at the version of a robot that accepts, either.
 struct ConnectAnswer {
   std::uint8_t status = 0;    ///< 0: connected
   std::uint16_t version = 0;  ///< version of the robot

@@ -80,7 +80,7 @@ Played play(const config::Scenario& scenario, const Disturbance& disturbance) {
   const double grasp_s = scenario.script.script.grasp_s;
   EndOfRange end(scenario);
   Played played;
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
     if (disturbance && player.is_running()) {

@@ -104,7 +104,7 @@ TEST(CollisionRun, FastRandomMotionsStopBeforeAnObstacle) {
     Player player(tried);
     double smallest = kInfinity;
     bool begins_free = true;
-    for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    for (bool has_more = true; has_more; has_more = player.end()) {
       player.begin();
       player.run();
       const double now = distance.at(player.truth());
@@ -130,7 +130,7 @@ TEST(CollisionRun, NoScenarioIsStoppedWithoutNeed) {
     scenario.duration_s = 20.0;
     Player player(scenario);
     double nearest = kInfinity;
-    for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    for (bool has_more = true; has_more; has_more = player.end()) {
       player.begin();
       player.run();
       nearest = std::min(nearest, player.record().collision.distance);

@@ -17,7 +17,7 @@ TEST(Contact, NothingIsFeltInFreeMotion) {
     free.device.compliance.is_on = true;
     Player player(free);
     double largest = 0.0;
-    for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    for (bool has_more = true; has_more; has_more = player.end()) {
       player.begin();
       player.run();
       largest = std::max(largest, player.record().touch.share);
@@ -27,7 +27,7 @@ TEST(Contact, NothingIsFeltInFreeMotion) {
   }
 }
 
-TEST(Contact, IsToldInMilliseconds) {
+TEST(Contact, IsReportedInMilliseconds) {
   const config::Scenario walk = shipped_scenario("walk");
   const ContactConfig config;
   for (const HittingPoint& point : config.points) {

@@ -23,7 +23,7 @@ std::vector<double> ringing(double first, double share, double seconds = 4.0) {
   return speed;
 }
 
-TEST(JudgeDecay, TellsTheFourEndsOfAKickApart) {
+TEST(JudgeDecay, DistinguishesTheFourEndsOfAKick) {
   EXPECT_EQ(judge_decay(ringing(0.05, 0.01), {}, kRate), DecayClass::kStable);
   EXPECT_EQ(judge_decay(ringing(0.05, 0.6), {}, kRate), DecayClass::kSlow);
   EXPECT_EQ(judge_decay(ringing(0.05, 1.0), {}, kRate), DecayClass::kSustained);

@@ -75,7 +75,7 @@ TEST(Player, PlaysTheSameToTheEndEveryTime) {
   std::uint64_t hash = 0;
   for (int play = 0; play < 2; ++play) {
     Player player(scenario);
-    for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    for (bool has_more = true; has_more; has_more = player.end()) {
       player.begin();
       player.run();
     }

@@ -138,7 +138,7 @@ TEST(PlayFault, WhatBecomesWorseWithoutAReactionIsUnnoticed) {
             Outcome::kUnnoticed);
 }
 
-TEST(Campaign, IsTheSameForTheSameSeedAndTellsEveryCase) {
+TEST(Campaign, IsTheSameForTheSameSeedAndReportsEveryCase) {
   config::Scenario scenario = walk_scenario();
   scenario.duration_s = 3.0;
   const auto cases_of = [&](std::uint64_t seed) {

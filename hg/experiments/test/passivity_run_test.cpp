@@ -27,7 +27,7 @@ Shaking play(const config::Scenario& scenario) {
   Shaking shaking;
   Player player(scenario);
   const double end_s = scenario.script.script.grasp_s + scenario.script.script.duration_s;
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
     const CycleRecord& record = player.record();
@@ -64,7 +64,7 @@ TEST(PassivityRun, CatchesStiffHandsOnLightTwins) {
     const Shaking alone = play(kicked(tried, config, hand, mass, 4.0));
     config.reaction = passivity::Reaction::kAct;
     const Shaking calmed = play(kicked(tried, config, hand, mass, 4.0));
-    EXPECT_GT(alone.last_speed, 0.02) << "run " << run << ": stable by itself";
+    EXPECT_GT(alone.last_speed, 0.02) << "run " << run << ": stable on its own";
     EXPECT_LT(calmed.detected_s - calmed.onset_s, 0.4) << "run " << run;
     EXPECT_LT(calmed.calmed_speed, 0.015) << "run " << run;
     EXPECT_EQ(calmed.fault, FaultCode::kNone) << "run " << run;
@@ -97,7 +97,7 @@ TEST(PassivityRun, LeavesTheScenariosAlone) {
     double index = 0.0;
     double at_s = 0.0;
     double tank = kInfinity;
-    for (bool goes_on = true; goes_on; goes_on = player.end()) {
+    for (bool has_more = true; has_more; has_more = player.end()) {
       player.begin();
       player.run();
       const CycleRecord& record = player.record();

@@ -43,7 +43,7 @@ Pressed press(double stiffness, double damping, person::HandPreset preset, doubl
   Pressed pressed;
   double sum_fd = 0.0, sum_dd = 0.0, square = 0.0;
   int late = 0;
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
     const CycleRecord& record = player.record();

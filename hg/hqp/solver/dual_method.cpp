@@ -183,7 +183,50 @@ int DualMethod::collect_objective(GaussElimination& direct, bool is_regular) noe
   return rows;
 }
 
-// Triangular factor of the objective, and the candidates in its metric. False: not finite.
+// Makes the objective's columns a triangle by reflections; smallest and largest length on its
+// diagonal, and no further than a column of length 0.
+Interval DualMethod::triangularise(int rows, bool is_regular) noexcept {
+  Interval lengths = {kInfinity, 0.0};
+  for (int j = 0; j < freedom_; ++j) {
+    // below these rows, only later columns have numbers
+    const int size = is_regular ? rows - freedom_ + 1 : rows - j;
+    double* h = objective_.data() + j * rows + j;
+    const double length = std::sqrt(dot(size, h, h));
+    lengths.lb = std::min(lengths.lb, length);
+    lengths.ub = std::max(lengths.ub, length);
+    if (length == 0.0) break;
+    const double diagonal = h[0] > 0.0 ? -length : length;
+    h[0] -= diagonal;
+    const double factor = 1.0 / (diagonal * h[0]);
+    for (int k = j + 1; k <= freedom_; ++k) {
+      double* c = k < freedom_ ? objective_.data() + k * rows + j : objective_rhs_.data() + j;
+      const double product = dot(size, h, c);
+      if (product != 0.0) add(size, factor * product, h, c);
+    }
+    h[0] = diagonal;
+  }
+  return lengths;
+}
+
+// Triangular factor of the objective, regularised where it is singular. False: not finite.
+bool DualMethod::factorise(GaussElimination& direct, bool is_regular) noexcept {
+  int rows = 0;
+  for (;; is_regular = true) {
+    rows = collect_objective(direct, is_regular);
+    const Interval lengths = triangularise(rows, is_regular);
+    if (lengths.lb > kSingular * lengths.ub) break;
+    if (!is_regular) continue;
+    if (!(lengths.lb > 0.0)) return false;
+    break;
+  }
+  // the triangle, its columns stride_ apart
+  for (int j = 0; j < freedom_; ++j) {
+    std::copy_n(objective_.data() + j * rows, j + 1, objective_.data() + j * freedom_);
+  }
+  return true;
+}
+
+// Factor of the objective, and the candidates in its metric. False: not finite.
 bool DualMethod::set_up_metric(GaussElimination& direct) noexcept {
   const int n = problem_->variables();
   free_.clear();
@@ -200,38 +243,7 @@ bool DualMethod::set_up_metric(GaussElimination& direct) noexcept {
     collect_targets();
     is_regular = static_cast<int>(targets_.size()) < freedom_;
   }
-  int rows = 0;
-  for (;; is_regular = true) {
-    rows = collect_objective(direct, is_regular);
-    double smallest = kInfinity;
-    double largest = 0.0;
-    for (int j = 0; j < freedom_; ++j) {
-      // below these rows, only later columns have numbers
-      const int size = is_regular ? rows - freedom_ + 1 : rows - j;
-      double* h = objective_.data() + j * rows + j;
-      const double length = std::sqrt(dot(size, h, h));
-      smallest = std::min(smallest, length);
-      largest = std::max(largest, length);
-      if (length == 0.0) break;
-      const double diagonal = h[0] > 0.0 ? -length : length;
-      h[0] -= diagonal;
-      const double factor = 1.0 / (diagonal * h[0]);
-      for (int k = j + 1; k <= freedom_; ++k) {
-        double* c = k < freedom_ ? objective_.data() + k * rows + j : objective_rhs_.data() + j;
-        const double product = dot(size, h, c);
-        if (product != 0.0) add(size, factor * product, h, c);
-      }
-      h[0] = diagonal;
-    }
-    if (smallest > kSingular * largest) break;
-    if (!is_regular) continue;
-    if (!(smallest > 0.0)) return false;
-    break;
-  }
-  // the triangle, its columns stride_ apart
-  for (int j = 0; j < freedom_; ++j) {
-    std::copy_n(objective_.data() + j * rows, j + 1, objective_.data() + j * freedom_);
-  }
+  if (!factorise(direct, is_regular)) return false;
 
   u_.head(stride_).setZero();
   find_point(direct);

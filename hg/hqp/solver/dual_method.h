@@ -70,6 +70,8 @@ class DualMethod {
   void collect_candidates() noexcept;
   void reduce(int candidate, GaussElimination& direct) noexcept;
   bool set_up_metric(GaussElimination& direct) noexcept;
+  bool factorise(GaussElimination& direct, bool is_regular) noexcept;
+  Interval triangularise(int rows, bool is_regular) noexcept;
   void collect_targets() noexcept;
   int collect_objective(GaussElimination& direct, bool is_regular) noexcept;
   int most_violated() const noexcept;

@@ -41,7 +41,7 @@ TEST(DriveDelay, FindsADelayThatIsNoMultipleOfThePeriod) {
   EXPECT_FALSE(found.lag.is_found);
 }
 
-TEST(DriveDelay, TellsTheLagInIt) {
+TEST(DriveDelay, FindsTheLagInIt) {
   const DriveDelay found = identify_delay({motion(40e-3, 25e-3, 1.0, 20.0)}, 0, kPeriod);
   ASSERT_TRUE(found.delay.is_found);
   EXPECT_NEAR(found.delay.value, 40e-3, 1e-3);

@@ -35,7 +35,7 @@ TEST(RunClock, IsNotMisledByAnObserverThatIsLate) {
   EXPECT_NEAR(clock.offset_s(), 10.0, 1e-9);
 }
 
-TEST(RunClock, IsTakenAnewAfterRunTimeHasStoodStill) {
+TEST(RunClock, IsTakenAgainAfterRunTimeHasStoodStill) {
   RunClock clock;
   see(clock, 0, 2000, 10.0);
   EXPECT_EQ(see(clock, 2000, 6000, 12.5), 1);

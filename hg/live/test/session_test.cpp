@@ -182,7 +182,7 @@ TEST_F(SessionTest, RefusesValuesOutOfRangeWithTheRange) {
   EXPECT_NE(status.find("'hinge.damping'"), std::string::npos) << status;
 }
 
-TEST_F(SessionTest, TellsThoseWhoWatchAParameter) {
+TEST_F(SessionTest, SendsAParameterToThoseWhoWatchIt) {
   EXPECT_TRUE(session_.changed_parameters({"hinge.damping"}).empty());
   const Json names = {"hinge.damping"};
   take({{"op", "subscribeParameterUpdates"}, {"parameterNames", names}});
@@ -231,7 +231,7 @@ TEST_F(SessionTest, TakesAStopHoweverManyRequestsWait) {
   EXPECT_EQ(stop.orders.front().name, "stop");
 }
 
-TEST_F(SessionTest, TellsTheFirstRefusalsOfAFrameOnly) {
+TEST_F(SessionTest, ReportsTheFirstRefusalsOfAFrameOnly) {
   Json parameters = Json::array();
   for (int i = 0; i < 1000; ++i) {
     parameters.push_back({{"name", "unknown" + std::to_string(i)}, {"value", 1.0}});

@@ -144,7 +144,7 @@ TEST(Scaffold, AMechanismThatShakesIsMadeHeavier) {
       <origin xyz="0 0 0.35" rpy="1.5708 0 1.5708"/></joint></robot>)");
   const auto device = config::load_simulated_device("models/arms/fr3/device.yaml");
   const TwinDraft draft = draft_twin({urdf, "", ""}, folder.path(), device);
-  EXPECT_EQ(draft.trouble, "");
+  EXPECT_EQ(draft.problem, "");
   EXPECT_NE(draft.note.find("times as heavy as in its URDF"), std::string::npos) << draft.note;
   const config::Twin twin = config::load_twin(folder.write("lever.yaml", draft.yaml));
   EXPECT_GT(twin.model.mass_scale, 1.0);
@@ -170,7 +170,7 @@ TEST(Scaffold, AUrdfBehindASymbolicLinkIsFound) {
   fs::create_symlink("v2/gate_v2.urdf", folder.path() / "gate.urdf");
   const auto device = config::load_simulated_device("models/haptic_giant/device.yaml");
   const TwinDraft draft = draft_twin({folder.path() / "gate.urdf", "", ""}, folder.path(), device);
-  EXPECT_EQ(draft.trouble, "");
+  EXPECT_EQ(draft.problem, "");
   EXPECT_NO_THROW(config::load_twin(folder.write("gate.yaml", draft.yaml)));
 }
 
@@ -179,7 +179,7 @@ TEST(Scaffold, ADraftThatCannotBeTriedIsWrittenWithTheReason) {
   auto device = config::load_simulated_device("models/haptic_giant/device.yaml");
   device.control.loop.latency = 0.5;  // no stable torque loop
   const TwinDraft draft = draft_twin(kGate, folder.path(), device);
-  EXPECT_NE(draft.trouble.find("latency"), std::string::npos) << draft.trouble;
+  EXPECT_NE(draft.problem.find("latency"), std::string::npos) << draft.problem;
   EXPECT_NO_THROW(config::load_twin(folder.write("gate.yaml", draft.yaml)));
 }
 

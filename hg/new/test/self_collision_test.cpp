@@ -225,11 +225,11 @@ TEST_F(MeshArm, IsProvenNotToTouchOnlyWhereItDoesNot) {
 TEST_F(MeshArm, LeavesSingleCapsulesOutThatAreAlwaysNear) {
   part_ = arm(0.18, 0.04);
   const DeviceFiles files = draft();
-  const auto told = std::ranges::count_if(files.news, [](const std::string& line) {
+  const auto reported = std::ranges::count_if(files.news, [](const std::string& line) {
     return line.find("link4_") != std::string::npos && line.find("link6_") != std::string::npos &&
            line.find("are not watched, the arm could hardly move: ") != std::string::npos;
   });
-  EXPECT_GT(told, 0) << files.device;
+  EXPECT_GT(reported, 0) << files.device;
   const config::DeviceConfig device = config::load_device(folder_.write("bars.yaml", files.device));
   const std::vector<std::string> watched = collision::pair_names(device.collision);
   const auto between = std::ranges::count_if(watched, [](const std::string& pair) {
@@ -238,7 +238,7 @@ TEST_F(MeshArm, LeavesSingleCapsulesOutThatAreAlwaysNear) {
   EXPECT_GT(between, 0) << files.device;
 }
 
-TEST_F(MeshArm, WithoutItsMeshesIsToldSo) {
+TEST_F(MeshArm, WithoutItsMeshesIsReported) {
   std::filesystem::remove(folder_.path() / "bar.stl");
   const DeviceFiles files = draft();
   ASSERT_EQ(files.news.size(), 1u) << files.device;

@@ -46,20 +46,8 @@ inline RecordingInfo example_info(const std::filesystem::path& folder) {
   return info;
 }
 
-/// Inputs are scrambled bits, so that a single wrong one is seen; the rest moves and is noisy like
-/// a real run, so that the size of the file is realistic.
-inline Sample example_sample(std::uint64_t cycle, double rate_Hz) {
-  const double t = static_cast<double>(cycle) / rate_Hz;
-  std::uint64_t key = 100 * cycle;
-  const auto noise = [&key] { return scrambled(key++); };
-  const auto moving = [&](auto& vector, int size, double scale) {
-    vector.resize(size);
-    for (int i = 0; i < size; ++i) {
-      vector[i] = scale * (std::sin(t + i) + 1e-5 * noise());
-    }
-  };
-
-  Sample sample;
+/// Inputs of a cycle: scrambled bits, so that a single wrong one is seen.
+void fill_inputs(std::uint64_t cycle, auto noise, Sample& sample) {
   SensorFrame& sensors = sample.sensors;
   sensors.sequence = cycle;
   sensors.time_s = noise();
@@ -74,7 +62,23 @@ inline Sample example_sample(std::uint64_t cycle, double rate_Hz) {
   target.active = true;
   target.p_B = Eigen::Vector3d::NullaryExpr(noise);
   target.press = noise();
+}
 
+/// A sample whose outputs move and are noisy like those of a real run, so that the size of the file
+/// is realistic.
+inline Sample example_sample(std::uint64_t cycle, double rate_Hz) {
+  const double t = static_cast<double>(cycle) / rate_Hz;
+  std::uint64_t key = 100 * cycle;
+  const auto noise = [&key] { return scrambled(key++); };
+  const auto moving = [&](auto& vector, int size, double scale) {
+    vector.resize(size);
+    for (int i = 0; i < size; ++i) {
+      vector[i] = scale * (std::sin(t + i) + 1e-5 * noise());
+    }
+  };
+
+  Sample sample;
+  fill_inputs(cycle, noise, sample);
   CommandFrame& command = sample.command;
   command.sequence = cycle;
   command.enable = true;

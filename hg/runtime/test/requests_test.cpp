@@ -58,7 +58,7 @@ TEST(NextRequest, TaresFirstWhereTheDeviceNeedsIt) {
   EXPECT_EQ(next_request(ready(TareStatus::kRefusedMoving), false, false), ModeRequest::kTare);
 }
 
-TEST(NextRequest, ArmsAfterATareThatSomebodyElseHasBegun) {
+TEST(NextRequest, ArmsAfterATareThatAnotherHasBegun) {
   CycleRecord record = ready(TareStatus::kUnderWay);
   record.is_tared = record.is_latency_known = true;
   EXPECT_EQ(next_request(record, false, false), ModeRequest::kNone);

@@ -522,8 +522,8 @@ TEST(Runtime, CountsCyclesThatWereMissedBeforeReadReturned) {
   EXPECT_EQ(report.wake_up_us.count() - report.wake_up_us.below(20e3), 1u);
   auto sample = std::make_unique<Sample>();
   for (std::uint64_t i = 0; i <= WokenLate::kSample + 1; ++i) ASSERT_TRUE(runtime.pop(*sample));
-  const std::uint32_t told = sample->operator_input.late_cycles;
-  EXPECT_EQ(told >= 4, report.thread.priority > 0) << told;
+  const std::uint32_t reported = sample->operator_input.late_cycles;
+  EXPECT_EQ(reported >= 4, report.thread.priority > 0) << reported;
 }
 
 TEST(Runtime, DoesNotReportLateCyclesOfADeviceThatWaits) {

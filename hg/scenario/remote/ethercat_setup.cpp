@@ -52,7 +52,7 @@ void check_modes(const std::filesystem::path& file, const ethercat::Machine& mac
 }
 
 template <ethercat::Input kInput>
-bool tells(const ethercat::Slave& slave) {
+bool has_input(const ethercat::Slave& slave) {
   return std::ranges::any_of(
       slave.inputs, [](const ethercat::Entry<ethercat::Input>& e) { return e.meaning == kInput; });
 }
@@ -69,7 +69,7 @@ void require_of_joints(const std::filesystem::path& file, const ethercat::Machin
   };
   for (const ethercat::Slave& slave : machine.slaves) {
     if (slave.joint < device.model.n_p) continue;
-    (require(slave, tells<kInputs>(slave), key_name<kInputs>()), ...);
+    (require(slave, has_input<kInputs>(slave), key_name<kInputs>()), ...);
   }
 }
 
@@ -82,7 +82,7 @@ void require_once(const std::filesystem::path& file, const ethercat::Machine& ma
     throw SetupError(fmt::format("{}: no slave has the input '{}', which {} needs",
                                  file.generic_string(), name, device.name));
   };
-  (require(std::ranges::any_of(machine.slaves, &tells<kInputs>), key_name<kInputs>()), ...);
+  (require(std::ranges::any_of(machine.slaves, &has_input<kInputs>), key_name<kInputs>()), ...);
 }
 
 void check_inputs(const std::filesystem::path& file, const ethercat::Machine& machine,

@@ -37,7 +37,7 @@ TEST(OperatorDesk, LeavesAScriptAloneUntilAPageTakesAnInput) {
   EXPECT_FALSE(panel.operator_enable) << "the script lets go, too";
 }
 
-TEST(OperatorDesk, AStopStaysUntilEverybodyWhoPressedItHasTakenItBack) {
+TEST(OperatorDesk, AStopStaysUntilAllWhoPressedItHaveTakenItBack) {
   OperatorDesk desk;
   desk.open();
   desk.press_stop(1);

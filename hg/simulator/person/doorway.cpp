@@ -51,7 +51,7 @@ double leaf_distance(const Doorway& doorway, double angle, const Vector2d& p) no
 }
 
 double frame_distance(const Doorway& doorway, const Vector2d& p) noexcept {
-  // the frame goes on to either side of the opening
+  // the frame continues to either side of the opening
   const double inside = std::min(p.x(), doorway.clear_width - p.x());
   return std::hypot(std::max(inside, 0.0), p.y());
 }

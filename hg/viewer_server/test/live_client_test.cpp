@@ -197,7 +197,7 @@ TEST_F(LiveClientTest, TheUrdfIsAnAsset) {
   EXPECT_NE(asset.find("<robot"), std::string::npos);
 }
 
-TEST_F(LiveClientTest, ASlowClientLosesMessagesAndIsTold) {
+TEST_F(LiveClientTest, ASlowClientLosesMessagesAndIsWarned) {
   const auto slow = open(4096);
   const auto quick = open();
   subscribe(*slow, kWrench);
@@ -245,7 +245,7 @@ TEST_F(LiveClientTest, ThereIsALimitOfClients) {
   EXPECT_TRUE(answer(path_, kSdk).starts_with("HTTP/1.1 101"));
 }
 
-TEST_F(LiveClientTest, RandomFramesHarmNobody) {
+TEST_F(LiveClientTest, RandomFramesDoNoHarm) {
   std::mt19937 random(2);
   const auto other = open();
   for (int client = 0; client < 5; ++client) {

@@ -36,7 +36,7 @@ config::Twin gate(double y, const std::string& keys = "") {
 TEST(Way, ATwinWithinReachIsLedThroughAllOfIt) {
   const Way way = lead(arm(), gate(kNear));
   EXPECT_GE(way.share, kWholeWay);
-  EXPECT_EQ(trouble_of(way), "");
+  EXPECT_EQ(problem_of(way), "");
 }
 
 TEST(Way, WhatIsInTheWayIsNamed) {
@@ -44,7 +44,7 @@ TEST(Way, WhatIsInTheWayIsNamed) {
   const Way way = lead(arm(), gate(kFar));
   EXPECT_LT(way.share, kWholeWay);
   EXPECT_EQ(way.twin_joint, "hinge");
-  EXPECT_NE(trouble_of(way), "");
+  EXPECT_NE(problem_of(way), "");
 }
 
 TEST(Way, IsTheSameInEveryTrial) {
@@ -57,18 +57,18 @@ TEST(Way, ForcesOfTheTwinAreNoMatterOfTheDevice) {
   const std::string heavy =
       ", stiffness_Nm_per_rad: 200, friction_Nm: 300, preload_Nm: 100, "
       "quadratic_damping_Nms2_per_rad2: 50";
-  EXPECT_EQ(trouble_of(lead(arm(), gate(kNear, heavy))), "");
+  EXPECT_EQ(problem_of(lead(arm(), gate(kNear, heavy))), "");
 }
 
 TEST(Way, LocksAreOpen) {
   // the door is locked until its lever is down
-  EXPECT_EQ(trouble_of(lead(giant(), config::load_twin("models/twins/door/twin.yaml"))), "");
+  EXPECT_EQ(problem_of(lead(giant(), config::load_twin("models/twins/door/twin.yaml"))), "");
 }
 
 TEST(Way, ATwinThatFloatsOrHasMoreJointsThanAScriptMovesIsNotLed) {
   for (const char* name : {"free_space", "chain_20"}) {
     const config::Twin twin = config::load_twin(std::string("models/twins/") + name + "/twin.yaml");
-    EXPECT_EQ(trouble_of(lead(giant(), twin)), "") << name;
+    EXPECT_EQ(problem_of(lead(giant(), twin)), "") << name;
   }
 }
 
@@ -78,10 +78,10 @@ TEST(Way, AJointWithoutLimitsHasNoRangeToBeLedThrough) {
   EXPECT_EQ(lead(arm(), twin).share, 1.0);
 }
 
-TEST(Way, TroubleSaysHowFarAndWhatIsInTheWay) {
-  EXPECT_EQ(trouble_of({}), "");
+TEST(Way, ProblemSaysHowFarAndWhatIsInTheWay) {
+  EXPECT_EQ(problem_of({}), "");
   EXPECT_EQ(
-      trouble_of({.share = 0.62,
+      problem_of({.share = 0.62,
                   .twin_joint = "hinge",
                   .at_limit_s = 3.21,
                   .limit = "m4",
@@ -90,12 +90,12 @@ TEST(Way, TroubleSaysHowFarAndWhatIsInTheWay) {
       "led through its whole range by a hand: hinge comes through 62 % of its range; m4 of the "
       "device stands at its limit for 3.2 s; m5 of the device leaves its limit by 3.1 mm or "
       "mrad");
-  EXPECT_EQ(trouble_of({.fault = "tracking lost"}),
+  EXPECT_EQ(problem_of({.fault = "tracking lost"}),
             "led through its whole range by a hand: the trial ends in a fault, tracking lost");
-  EXPECT_EQ(trouble_of({.rushed_s = 0.31, .rushed = "m3"}),
+  EXPECT_EQ(problem_of({.rushed_s = 0.31, .rushed = "m3"}),
             "led through its whole range by a hand: m3 of the device moves at its largest speed "
             "for 0.3 s");
-  EXPECT_EQ(trouble_of({.shaken_s = 0.44}),
+  EXPECT_EQ(problem_of({.shaken_s = 0.44}),
             "led through its whole range by a hand: hand and device oscillate against each other "
             "for 0.4 s");
 }

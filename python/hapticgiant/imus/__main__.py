@@ -57,7 +57,7 @@ def parser():
     from hapticgiant.command_line import Parser
 
     found = Parser(
-        prog="hapticgiant imus", description="Where inertial sensors tell most about the speeds and "
+        prog="hapticgiant imus", description="Where inertial sensors observe best the speeds and "
         "accelerations of the joints of a robot (docs/start/imu_placement.md).")
     add = found.add_argument
     add("robot", metavar="URDF_OR_DEVICE", help="a URDF, or a device.yaml")
@@ -236,7 +236,7 @@ def report(chain, problem, choices, options):
     table(chain, errors, [*labels, "median", "worst"])
     print("\nmedian, worst: of the random placements of as many sensors. Sensors without bias and with "
           "known mounting.")
-    told = {
+    summary = {
         "robot": chain.name, "joints": [joint.name for joint in chain.moving],
         "units": [joint.unit for joint in chain.moving], "options": vars(options),
         "candidates": [{"link": place.link, "r_m": place.r} for place in problem.places],
@@ -248,7 +248,7 @@ def report(chain, problem, choices, options):
                         "ddq": row[2 * n:].tolist()}
                        for placement, row in zip([*compared, typical, worst], errors, strict=True)]}
     if options.json:
-        pathlib.Path(options.json).write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+        pathlib.Path(options.json).write_text(json.dumps(summary, indent=1) + "\n", encoding="utf-8")
     if options.picture:
         from hapticgiant.imus import picture
         first = errors[:len(compared)]

@@ -1,4 +1,4 @@
-"""Where inertial sensors tell most about the speeds and accelerations of the joints.
+"""Where inertial sensors observe best the speeds and accelerations of the joints.
 
 After Fennel et al., Observability-based placement of inertial sensors on robotic manipulators for
 kinematic state estimation, IFAC-PapersOnLine 56(2), 2023. Two measures:

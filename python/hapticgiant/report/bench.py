@@ -288,7 +288,7 @@ def violation(worst):
 def law_table(rows, results):
     table = [["scenario", "law", "bounds", "events", "changes/s", "cycles changed", "mean m/s^2",
               "max m/s^2", "worst violation", "solver us", "cycle us"]]
-    troubles = []
+    problems = []
     for row, run in zip(rows, results["laws"]):
         change = row["acceleration_change_per_cycle"]
         table.append([
@@ -301,9 +301,9 @@ def law_table(rows, results):
         found = ["missing: " + ", ".join(run["missing_events"])] if run["missing_events"] else []
         found += [f"fault: {run['fault']}"] if run["fault"] != "no fault" else []
         found += [f"{run['unsolved']} cycles not solved"] if run["unsolved"] else []
-        troubles += [f"\n**{row['scenario']}, {row['law']}, {row['bounds']}: {it}**\n"
+        problems += [f"\n**{row['scenario']}, {row['law']}, {row['bounds']}: {it}**\n"
                      for it in found]
-    return tables.aligned_markdown(table, left=(0, 1, 2, 8)) + "".join(troubles)
+    return tables.aligned_markdown(table, left=(0, 1, 2, 8)) + "".join(problems)
 
 
 def only_first(most, what):

@@ -45,7 +45,7 @@ class Run:
 
     def person(self):
         """A person who walks through a doorway: columns by name, in the frame of the doorway (x along
-        the shut leaf, y the way it opens); None if nobody does."""
+        the shut leaf, y the way it opens); None: no person does."""
         person = self.facts.get("person")
         if not person or not person["film"]:
             return None

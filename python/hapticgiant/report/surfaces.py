@@ -135,7 +135,7 @@ def add_impacts(it):
         "A hand that aims behind an upright wall runs into it with a body; the wall says no "
         "damping. Speed just before it; deepest point of the handle in the first contact; a, with "
         "which the motors can brake it there against the mean force of the hand, and v^2 / (2 a); "
-        "what the 20 ms of their torques cost, v 10 ms; what the wall gives by itself, the "
+        "what the 20 ms of their torques cost, v 10 ms; what the wall alone gives, the "
         "person's largest force over K and v sqrt(m / K) / e; depth over v^2 / (2 a), and over "
         f"what it may be, {settings['deepest']:g} v^2 / (2 a) and these two. Largest speed away "
         f"from the wall over that of the impact, at most {rebound:g}; when it is slower than "

@@ -3,7 +3,7 @@
 import { MathUtils, type PerspectiveCamera, Sphere, Vector3 } from "three";
 
 import type { Frame, Scene } from "../messages";
-import { STAND_BACK, STAND_LEFT } from "./person";
+import { STAND_BACK, STAND_LEFT } from "./stance";
 
 const HEAD = 1.8; // m above the floor
 const LOOKING_DOWN = 0.3; // slope

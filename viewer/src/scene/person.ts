@@ -14,14 +14,13 @@ import {
 import type { Theme } from "../theme";
 import type { Eyes } from "./cameras";
 import { elbow_between } from "./reach";
+import { STAND_BACK, STAND_LEFT } from "./stance";
 
 const UP = new Vector3(0, 1, 0); // axis of three's capsules
 const SHOULDER = 1.42; // m, heights above the floor
 const HIP = 0.92;
 const EYES = 1.66;
 const SHOULDER_OUT = 0.2; // m, from the middle
-export const STAND_BACK = 0.52; // m, from the handle
-export const STAND_LEFT = 0.3; // m: the right hand holds
 const UPPER_ARM = 0.31; // m
 const FOREARM = 0.29; // m
 const OPACITY = 0.62; // the device behind stays visible

@@ -18,7 +18,7 @@ interface Described {
 const ACTIONS: Described[] = [
   { action: "start", text: "Start", key: "S", title: "Starts the trial" },
   { action: "end", text: "End", key: "E", title: "The trial is over, and counts" },
-  { action: "go_on", text: "Go on", key: "G", title: "Goes on for the participant" },
+  { action: "go_on", text: "Go on", key: "G", title: "Continues for the participant" },
   {
     action: "abort",
     text: "Throw away\u2026",

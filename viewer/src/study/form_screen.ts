@@ -65,7 +65,7 @@ function items_part(desk: FormDesk, form: Form, store: DraftStore, turn: Turn): 
     const missing = missing_items(form, store.draft.answers);
     for (const [name, view] of views) view.mark_missing(missing.some((item) => item.name === name));
     if (missing.length > 0) {
-      sender.tell(words.missing(missing.length));
+      sender.show_problem(words.missing(missing.length));
       views.get(missing[0]!.name)!.focus();
     } else if (has_pairs) turn(0);
     else void sender.send(go);
@@ -107,7 +107,7 @@ function pair_part({ words, ...desk }: FormDesk, form: Form, store: DraftStore, 
     button.setAttribute("aria-keyshortcuts", String(i + 1));
     button.setAttribute("aria-pressed", String(winners[key] === name));
     button.addEventListener("click", (event) => {
-      if (event.detail < 2) choose(name); // the second click of a double one is for nobody
+      if (event.detail < 2) choose(name); // the second click of a double one does nothing
     });
     return button;
   });
@@ -155,7 +155,7 @@ class Sender {
     this.problem.setAttribute("role", "alert");
   }
 
-  tell(text: string): void {
+  show_problem(text: string): void {
     write(this.problem, text);
   }
 
@@ -166,13 +166,13 @@ class Sender {
     this.is_sending = true;
     write(button, words.sending);
     button.setAttribute("aria-disabled", "true");
-    this.tell("");
+    this.show_problem("");
     const answers = all_answers(form, store.draft.answers);
     const outcome = await desk.submit({ answers, pairs: store.draft.winners });
     this.is_sending = false;
     if (outcome.kind === "done") return store.forget(); // the next screen comes
     write(button, words.send);
     button.removeAttribute("aria-disabled");
-    this.tell(outcome.kind === "lost" ? words.not_sent : words.refused(outcome.problem));
+    this.show_problem(outcome.kind === "lost" ? words.not_sent : words.refused(outcome.problem));
   }
 }

@@ -57,10 +57,13 @@ function ends_line({ ends }: Item): HTMLElement {
   return line;
 }
 
-function scale({ item, form, words, answer, on_answer }: Asked): ItemView {
-  const label = make("p", "label", ...question_text(form, item));
-  label.id = `label-${++count}`;
-  const problem = problem_line(words);
+interface Slider {
+  slider: HTMLElement;
+  rail: HTMLElement;
+  thumb: HTMLElement;
+}
+
+function slider_of(item: Item, label: HTMLElement): Slider {
   const rail = make("div", "rail");
   for (const share of marks_of(item)) {
     const mark = make("i");
@@ -75,6 +78,14 @@ function scale({ item, form, words, answer, on_answer }: Asked): ItemView {
   slider.setAttribute("aria-labelledby", label.id);
   slider.setAttribute("aria-valuemin", String(item.low));
   slider.setAttribute("aria-valuemax", String(item.high));
+  return { slider, rail, thumb };
+}
+
+function scale({ item, form, words, answer, on_answer }: Asked): ItemView {
+  const label = make("p", "label", ...question_text(form, item));
+  label.id = `label-${++count}`;
+  const problem = problem_line(words);
+  const { slider, rail, thumb } = slider_of(item, label);
   const shown = make("output", "value");
   shown.hidden = form.kind === "nasa_tlx"; // as on paper
   const [low = "", high = ""] = item.ends;

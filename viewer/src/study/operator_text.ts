@@ -40,7 +40,7 @@ export function present_step({ steps, position }: OperatorState): Step | null {
 export function phase_text(state: OperatorState): string {
   const { phase, participant } = state;
   const step = present_step(state);
-  if (phase === "closed") return state.next ? `Next: ${state.next}` : "Nobody is left";
+  if (phase === "closed") return state.next ? `Next: ${state.next}` : "No participant is left";
   if (phase === "complete") return `${participant ?? "The session"} is complete`;
   if (phase === "participant") return `${participant} ${(step && DOES[step.kind]) ?? "is at the page"}`;
   if (state.run?.fault) return `Stopped: ${state.run.fault}`;
@@ -54,10 +54,10 @@ export function hint_text(state: OperatorState): string {
     : "";
   const about: Partial<Record<Phase, string>> = {
     closed: state.next ? "No session is open." : "All sessions of the plan are done.",
-    moving: "Keep clear: it moves by itself.",
+    moving: "Keep clear: the device moves.",
     failed: "Start plays it again.",
     running: state.run?.fault
-      ? "Throw it away and play it again; or release, Reset, Arm and Run in the tab Safety below: then it goes on, with exit code 3"
+      ? "Throw it away and play it again; or release, Reset, Arm and Run in the tab Safety below: then it continues, with exit code 3"
       : "",
     complete: "Close the session to go on with the next participant.",
   };

@@ -30,7 +30,7 @@ const PLANNED: ParticipantState = {
   screen: "waiting",
 };
 
-// What makes it another screen, to be built anew.
+// What makes it another screen, to be built again.
 function identity(state: ParticipantState): string {
   const { code, position, screen, language, form, markdown, task, is_practice } = state;
   const languages = screen === "waiting" ? state.languages : [];
@@ -128,7 +128,7 @@ class ParticipantPage {
   private language_buttons(place: string): HTMLElement[] {
     return this.state.languages.map((language) => {
       const button = make_button(language_name(language), "", () => {
-        void this.tell_problem(this.link.send("language", { language }));
+        void this.show_problem(this.link.send("language", { language }));
       });
       button.removeAttribute("title");
       button.id = `language-${language}-${place}`;
@@ -139,10 +139,10 @@ class ParticipantPage {
   }
 
   private go_on(): Promise<void> {
-    return this.tell_problem(this.link.send("go_on", { position: this.state.position }));
+    return this.show_problem(this.link.send("go_on", { position: this.state.position }));
   }
 
-  private async tell_problem(sent: ReturnType<StudyLink["send"]>): Promise<void> {
+  private async show_problem(sent: ReturnType<StudyLink["send"]>): Promise<void> {
     const outcome = await sent;
     if (outcome.kind === "done") return write(this.problem, "");
     write(this.problem, outcome.kind === "lost" ? this.words.not_done : outcome.problem);

@@ -107,7 +107,7 @@ export function break_screen({ words, go_on, say }: Desk, first: ParticipantStat
   const text = make("p", "lead");
   const go = main_button(words.continue, () => void go_on());
   let end_ms = 0;
-  let said = Infinity; // minutes that were told last
+  let said = Infinity; // minutes that were said last
   const show = (): void => {
     const left_s = (end_ms - performance.now()) / 1000;
     const is_over = left_s <= 0;

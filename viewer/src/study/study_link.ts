@@ -1,5 +1,5 @@
-// The WebSocket to the server of a study: states come, commands go and are answered. Reconnects by
-// itself.
+// The WebSocket to the server of a study: states come, commands go and are answered. Reconnects
+// alone.
 
 import { protocols } from "../data/token";
 import type { Answer, Json } from "./messages";
@@ -18,7 +18,7 @@ export interface Receiver {
 }
 
 interface Waiting {
-  tell(outcome: Outcome): void;
+  resolve(outcome: Outcome): void;
   timer: number;
 }
 
@@ -43,9 +43,9 @@ export class StudyLink {
     const { socket } = this;
     if (!socket || !this.is_connected) return Promise.resolve({ kind: "lost" });
     const id = this.next_id++;
-    return new Promise((tell) => {
+    return new Promise((resolve) => {
       const timer = window.setTimeout(() => this.drop(), PATIENCE_MS);
-      this.waiting.set(id, { tell, timer });
+      this.waiting.set(id, { resolve, timer });
       socket.send(JSON.stringify({ ...content, id, command }));
     });
   }
@@ -70,9 +70,9 @@ export class StudyLink {
 
   private lose(): void {
     this.socket = null;
-    for (const { tell, timer } of this.waiting.values()) {
+    for (const { resolve, timer } of this.waiting.values()) {
       clearTimeout(timer);
-      tell({ kind: "lost" });
+      resolve({ kind: "lost" });
     }
     this.waiting.clear();
     this.receiver.on_connection(false);
@@ -87,6 +87,6 @@ export class StudyLink {
     if (!waiting) return;
     this.waiting.delete(id);
     clearTimeout(waiting.timer);
-    waiting.tell(problem === null ? { kind: "done" } : { kind: "refused", problem });
+    waiting.resolve(problem === null ? { kind: "done" } : { kind: "refused", problem });
   }
 }

@@ -52,7 +52,7 @@ export class Headset {
     this.controllers = [0, 1].map((index) => xr.getController(index));
     for (const controller of this.controllers) this.connect(controller);
     xr.addEventListener("sessionend", () => this.exit());
-    setInterval(() => this.tell_where(), RESEND_MS);
+    setInterval(() => this.send_where(), RESEND_MS);
     void this.offer();
   }
 
@@ -129,7 +129,7 @@ export class Headset {
       handle: new Vector3(...frame.p_B_H_m),
       handle_attitude: new Quaternion(...frame.quaternion_B_H),
     };
-    this.tell_where();
+    this.send_where();
   }
 
   release(): void {
@@ -139,7 +139,7 @@ export class Headset {
     this.send_hand(false);
   }
 
-  private tell_where(): void {
+  private send_where(): void {
     if (!this.grip) return;
     const { controller } = this.grip;
     const now = controller.getWorldPosition(new Vector3());

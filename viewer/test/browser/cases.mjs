@@ -77,8 +77,8 @@ export async function hand_alone({ browser, program, expect }) {
   expect(seen.join(" ") === "emergency-stop hand view", `only the stop, the hand and the camera: ${seen.join(" ")}`);
   await page.keyboard.press("p");
   const { time_s } = await frame_of(page);
-  const goes_on = await comes_true(page, (f) => f.time_s > time_s + 0.5 && !f.run_state.is_paused);
-  expect(goes_on, "no key pauses it");
+  const still_runs = await comes_true(page, (f) => f.time_s > time_s + 0.5 && !f.run_state.is_paused);
+  expect(still_runs, "no key pauses it");
   await page.keyboard.press("Escape");
   expect(await comes_true(page, (f) => f.safety.emergency_stop), "but Esc stops it");
   expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
@@ -157,7 +157,7 @@ export async function connection_comes_back({ browser, program, expect }) {
       cut = () => Promise.all([socket.close(), server.close()]);
     });
   });
-  // it may be back before anybody looks
+  // it may be back before it is looked at
   await page.evaluate(() => {
     window.was_lost = false;
     new MutationObserver(() => {

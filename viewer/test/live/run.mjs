@@ -60,7 +60,7 @@ async function topics_and_time(tool) {
   const { sec, nsec, nanosec } = joints.header.stamp;
   expect(Math.abs(sec - Date.now() / 1000) < 3600 && (nsec ?? nanosec) >= 0, "stamps are the time of the run");
   const before = tool.time;
-  await eventually(() => tool.time > before, "the time goes on");
+  await eventually(() => tool.time > before, "the time advances");
 }
 
 async function services(tool) {
@@ -89,8 +89,8 @@ async function parameters(tool, other) {
   tool.client.setParameters([{ name: damping.name, value: damping.value + 1 }], "set");
   const answer = await eventually(() => tool.values.find(({ id }) => id === "set"), "the answer of set");
   expect(answer.parameters[0].value === damping.value + 1, "the new value is answered");
-  const told = await eventually(() => other.values[0], "a subscriber is told");
-  expect(told.parameters[0].value === damping.value + 1, "with the new value");
+  const got = await eventually(() => other.values[0], "a subscriber gets it");
+  expect(got.parameters[0].value === damping.value + 1, "with the new value");
   const [now] = await tool.parameters([damping.name], "again");
   expect(now.value === damping.value + 1, "and it is in force");
 
@@ -99,7 +99,7 @@ async function parameters(tool, other) {
   const refused = await eventually(() => tool.values.find(({ id }) => id === "bad"), "the answer of bad");
   expect(refused.parameters[0].value === damping.value + 1, "out of range: the present value is answered");
   const status = await eventually(() => tool.statuses[known], "a status");
-  expect(status.includes(damping.name) && status.includes("-5"), `and told: ${status}`);
+  expect(status.includes(damping.name) && status.includes("-5"), `and reported: ${status}`);
   tool.client.setParameters([{ name: "hinge.dampng_Nms_per_rad", value: 1 }], "typo");
   const typo = await eventually(() => tool.statuses[known + 1], "a status");
   expect(typo.includes("'hinge.damping_Nms_per_rad'"), `an unknown name: ${typo}`);
@@ -197,7 +197,7 @@ async function replay({ file, samples }) {
   const next = await eventually(() => {
     const newest = tool.newest.get("/hapticgiant/sample");
     return newest.record.time_s > first.record.time_s && newest;
-  }, "the replay goes on");
+  }, "the replay continues");
   for (const sample of [first, next]) {
     const { time_s } = sample.record;
     expect(samples.get(time_s) === facts(sample), `at ${time_s} s as recorded: ${facts(sample)}`);

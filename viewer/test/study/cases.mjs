@@ -59,11 +59,11 @@ export async function nothing_is_answered_beforehand({ browser, mock, links, exp
   await page.keyboard.press("ArrowRight");
   await press(page, ".main");
   const alert = await page.textContent("[role=alert].problem.alert");
-  expect(/5 answers are missing/.test(alert), `what is missing is told: ${alert}`);
+  expect(/5 answers are missing/.test(alert), `what is missing is said: ${alert}`);
   const at = await page.evaluate(() => [...document.querySelectorAll("[role=slider]")].indexOf(document.activeElement));
   expect(at === 1, `the focus goes to the first that is missing: ${at}`);
-  const told = await page.locator(".item .problem:visible").count();
-  expect(told === 5, `each of them says so: ${told}`);
+  const shown = await page.locator(".item .problem:visible").count();
+  expect(shown === 5, `each of them says so: ${shown}`);
   expect_none(expect, await violations(page));
   expect(mock.saved.length === 0, "nothing is sent");
 }
@@ -104,7 +104,7 @@ export async function draft_survives({ browser, mock, links, expect }) {
   mock.cut();
   await until(page, () => document.body.dataset.connected === "false");
   const line = await page.textContent("#connection");
-  expect(/connection is lost/.test(line), `a lost connection is told: ${line}`);
+  expect(/connection is lost/.test(line), `a lost connection is shown: ${line}`);
   expect_none(expect, await violations(page));
   await press(page, ".main");
   const lost = await page.textContent(".problem.alert:not(:empty)");
@@ -114,7 +114,7 @@ export async function draft_survives({ browser, mock, links, expect }) {
   mock.refuse_next = "disk full";
   await press(page, ".main");
   await until(page, () => /disk full/.test(document.querySelector(".problem.alert").textContent));
-  expect(true, "a refusal is told");
+  expect(true, "a refusal is shown");
   await press(page, ".main");
   await until(page, () => document.body.dataset.screen === "break");
   expect(mock.saved.length === 1 && mock.saved[0].answers.real === 3, "and the answers can be sent again");
@@ -129,7 +129,7 @@ export async function escape_stops({ browser, mock, links, expect }) {
   await page.keyboard.press("s");
   await until(page, () => document.body.dataset.phase === "running" && document.querySelector("iframe"));
   const frame = page.frames().find((each) => each.url().includes("show=trial"));
-  await frame.waitForFunction(() => /token=ab&show=trial/.test(document.getElementById("told")?.textContent));
+  await frame.waitForFunction(() => /token=ab&show=trial/.test(document.getElementById("received")?.textContent));
   await press(page, "#do-abort");
   expect(await matches(page, "#why-text"), "who throws a trial away is asked why");
   await page.keyboard.press("Enter");
@@ -139,7 +139,7 @@ export async function escape_stops({ browser, mock, links, expect }) {
   await page.keyboard.press("Escape");
   await until(page, () => document.body.dataset.phase === "failed");
   expect(mock.stops === 1, "Esc stops by the study server, also while one types");
-  expect(mock.told.includes("emergency stop"), `and by the run's page: ${mock.told.join()}`);
+  expect(mock.received.includes("emergency stop"), `and by the run's page: ${mock.received.join()}`);
   const problem = await page.textContent("#problem");
   expect(/stopped by the operator/.test(problem), `the problem is an alert: ${problem}`);
   expect_none(expect, await violations(page));
@@ -176,5 +176,5 @@ export async function operator_sees_loss({ browser, mock, links, expect }) {
   expect(/cannot be reached/.test(answer), `a stop that goes nowhere says so: ${answer}`);
   mock.deaf = false;
   await until(page, () => document.body.dataset.connected === "true");
-  expect((await page.textContent("#connection")) === "", "it connects again by itself");
+  expect((await page.textContent("#connection")) === "", "it connects again");
 }

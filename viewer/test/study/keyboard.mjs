@@ -79,7 +79,7 @@ export async function fill_items(page) {
   }
 }
 
-// One step of the participant's screen; `look` is told each new one.
+// One step of the participant's screen; `look` gets each new one.
 async function participant_acts(page, { screen, part }) {
   if (screen === "instruction") return press(page, ".main");
   if (screen === "break") {

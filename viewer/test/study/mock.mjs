@@ -14,14 +14,14 @@ const POLICY =
   "default-src 'self'; frame-src http://127.0.0.1:*; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 const TOKENS = { operator: "0a1b", participant: "2c3d" };
 
-// The page of a run: says what it is told.
+// The page of a run: shows what it receives.
 const RUN_PAGE = `<!doctype html><html lang="en"><meta charset="utf-8"><title>Run</title>
-<link rel="stylesheet" href="run.css"><main><h1>The run</h1><p id="told"></p><button>STOP</button></main><script src="run.js"></script></html>`;
+<link rel="stylesheet" href="run.css"><main><h1>The run</h1><p id="received"></p><button>STOP</button></main><script src="run.js"></script></html>`;
 const RUN_SCRIPT = `addEventListener("message", ({ data }) => {
-  document.getElementById("told").textContent = data;
-  fetch("/told?" + encodeURIComponent(data));
+  document.getElementById("received").textContent = data;
+  fetch("/received?" + encodeURIComponent(data));
 });
-document.getElementById("told").textContent = location.hash;`;
+document.getElementById("received").textContent = location.hash;`;
 const RUN_STYLE = `body { font-family: sans-serif; background: #dfe7f0; color: #1c2630; display: grid; place-items: center; min-height: 90vh; }`;
 
 const texts = (en, de) => ({ en, de });
@@ -79,7 +79,7 @@ const INSTRUCTIONS = {
     "Sie bewegen den Griff eines großen Roboters.\n\n- Sie können ihn jederzeit loslassen.\n- Die Leitung kann ihn sofort anhalten.",
   ),
   door: DOOR,
-  end: texts("Thank you. Please tell the operator **how it was**.", "Vielen Dank. Bitte sagen Sie der Leitung, **wie es war**."),
+  end: texts("Thank you. Please say to the operator **how it was**.", "Vielen Dank. Bitte sagen Sie der Leitung, **wie es war**."),
 };
 
 function steps() {
@@ -106,7 +106,7 @@ export class Mock {
   refuse_next = null; // problem of the next answers
   deaf = false; // takes no connection
   saved = []; // answers that were accepted
-  told = []; // by pages, to the run's page
+  received = []; // by pages, to the run's page
   stops = 0;
   whys = [];
 
@@ -183,8 +183,8 @@ export class Mock {
 
   serve_run(request, response) {
     const url = new URL(request.url, "http://here");
-    if (url.pathname === "/told") {
-      this.told.push(decodeURIComponent(url.search.slice(1)));
+    if (url.pathname === "/received") {
+      this.received.push(decodeURIComponent(url.search.slice(1)));
       return response.writeHead(204).end();
     }
     const found = { "/run.js": [RUN_SCRIPT, "text/javascript"], "/run.css": [RUN_STYLE, "text/css"] }[url.pathname] ?? [RUN_PAGE, "text/html"];
@@ -195,18 +195,18 @@ export class Mock {
     this.sockets[page].add(socket);
     socket.on("close", () => {
       this.sockets[page].delete(socket);
-      this.tell();
+      this.send_state();
     });
     socket.on("message", (data) => {
       const { id, command, ...content } = JSON.parse(String(data));
       const problem = this.obey(page, command, content) ?? null;
       socket.send(JSON.stringify({ kind: "answer", id, problem }));
-      this.tell();
+      this.send_state();
     });
-    this.tell();
+    this.send_state();
   }
 
-  tell() {
+  send_state() {
     for (const [page, set] of Object.entries(this.sockets)) {
       const text = JSON.stringify(page === "operator" ? this.operator_state() : this.participant_state());
       for (const socket of set) socket.send(text);
@@ -358,7 +358,7 @@ export class Mock {
       this.phase = "running";
       run.mode = "running";
       run.is_held = true;
-      this.tell();
+      this.send_state();
     }
     const due = Math.min(run.expected_events.length - 1, Math.floor(run.time_s / 0.6));
     if (due > run.events.length) run.events.push({ time_s: run.time_s, name: run.expected_events[run.events.length] });
@@ -410,7 +410,7 @@ export function lead_to(mock, kind, form = null) {
     step.is_done = true;
   }
   mock.arrive();
-  mock.tell();
+  mock.send_state();
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {

@@ -74,7 +74,7 @@ for (const [name, options] of [
   await operator.page.keyboard.press("Enter");
   await picture(operator.page, "why");
   mock.do_stop();
-  mock.tell();
+  mock.send_state();
   await until(operator.page, () => document.body.dataset.phase === "failed");
   await press(operator.page, "#note");
   await operator.page.keyboard.type("The phone rang.");

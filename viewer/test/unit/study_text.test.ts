@@ -38,7 +38,7 @@ describe("texts of the operator's page", () => {
 
   it("say who is next, and what the participant does", () => {
     expect(phase_text(STATE)).toBe("Next: P02");
-    expect(phase_text({ ...STATE, next: null })).toBe("Nobody is left");
+    expect(phase_text({ ...STATE, next: null })).toBe("No participant is left");
     const steps = [step("form", { form: "tlx" }), step("trial", { condition: "door", repetition: 1 })];
     const open = { ...STATE, participant: "P02", steps };
     expect(phase_text({ ...open, position: 0, phase: "participant" })).toBe("P02 answers");

@@ -157,7 +157,7 @@ TEST(MachineFile, TwoSlavesCannotBeTheSameButton) {
   other.replace(other.find("panel"), 5, "other");
   const std::string fault = fault_of(kAxis + drive("one", "m1", "cst") + kPanel + other);
   for (const char* const words :
-       {"slaves[3].inputs[0].is: slave 'panel' tells this already in line 20, only one can count",
+       {"slaves[3].inputs[0].is: slave 'panel' gives this already in line 20, only one can count",
         "machine.yaml:21:", "slaves[3].inputs[1].is: slave 'panel'"}) {
     EXPECT_NE(fault.find(words), std::string::npos) << fault;
   }
@@ -173,7 +173,7 @@ TEST(MachineFile, TwoSlavesCannotBeTheSameButton) {
   const std::string counter = "{object: 0x6020, bits: 32, is: sample_counter}";
   EXPECT_EQ(counters(counter, counter), "no error");
   EXPECT_NE(counters(counter + ", " + counter, counter)
-                .find("slaves[3].inputs[1].is: slave 'force' tells this already in line 21"),
+                .find("slaves[3].inputs[1].is: slave 'force' gives this already in line 21"),
             std::string::npos);
 }
 

@@ -324,8 +324,8 @@ TEST(BadScenario, EventsNeedNameSentenceAndConditions) {
 
 TEST(BadScenario, FaultsOfItsFilesAreReportedTogether) {
   EXPECT_EQ(scenario_message("title: a\ndescription: b\ndevice: bad_device.yaml\n"
-                             "twin: bad_twin.yaml\nperson: nobody.yaml\nduration_s: 0\n"),
-            "run.yaml:5:9: person: no such file, got 'nobody.yaml'\n"
+                             "twin: bad_twin.yaml\nperson: missing.yaml\nduration_s: 0\n"),
+            "run.yaml:5:9: person: no such file, got 'missing.yaml'\n"
             "run.yaml:6:13: duration_s: must be 1e-06 .. 1e+05, got 0\n"
             "bad_device.yaml:5:9: handle: must be a link of the URDF, got 'handel', did you mean "
             "'handle'?\n"

@@ -91,14 +91,17 @@ TEST(SimulationFile, AnotherUrdfThanThatOfItsBaseHasItsOwnJoints) {
   EXPECT_EQ(simulation.flexible[0].stiffness, 10.0);
 }
 
-TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
+SimulationConfig shipped_simulation() {
   SourceReader disk;
-  const SimulationConfig shipped =
-      load_simulation("models/haptic_giant/simulation.yaml", disk,
-                      {.gantry = {"ppu1", "ppu2"},
-                       .manipulator = {"m1", "m2", "m3", "m4", "m5", "m6"},
-                       .handle = "handle",
-                       .chain = {}});
+  return load_simulation("models/haptic_giant/simulation.yaml", disk,
+                         {.gantry = {"ppu1", "ppu2"},
+                          .manipulator = {"m1", "m2", "m3", "m4", "m5", "m6"},
+                          .handle = "handle",
+                          .chain = {}});
+}
+
+TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
+  const SimulationConfig shipped = shipped_simulation();
   EXPECT_EQ(shipped.step_s, 0.25e-3);
   EXPECT_NEAR(1.0 / shipped.factors.stiffness, 1.1, 1e-3);  // [C] 0: the controller's model
   EXPECT_NEAR(1.0 / shipped.factors.friction, 0.75, 1e-3);
@@ -106,9 +109,11 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
   EXPECT_EQ(shipped.gear_ratio[0], 121.0);
   EXPECT_EQ(shipped.gear_ratio[5], 101.0);
   EXPECT_FALSE(shipped.chain);
+}
 
-  // those of the code, from which tests and other devices start
-  const simulator::SensorsConfig& sensors = shipped.sensors;
+// tests and other devices start from the sensors of the code
+TEST(SimulationFile, TheShippedEncodersAndInertialSensorsAreThoseOfTheCode) {
+  const simulator::SensorsConfig sensors = shipped_simulation().sensors;
   const simulator::SensorsConfig standard;
   for (auto encoder :
        {&simulator::SensorsConfig::link_encoder, &simulator::SensorsConfig::motor_encoder,
@@ -131,6 +136,11 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
     EXPECT_DOUBLE_EQ((sensors.*part).range, (standard.*part).range);
     EXPECT_DOUBLE_EQ((sensors.*part).resolution, (standard.*part).resolution);
   }
+}
+
+TEST(SimulationFile, TheShippedForceAndTemperatureSensorsAreThoseOfTheCode) {
+  const simulator::SensorsConfig sensors = shipped_simulation().sensors;
+  const simulator::SensorsConfig standard;
   EXPECT_DOUBLE_EQ(sensors.torque.noise, standard.torque.noise);
   EXPECT_DOUBLE_EQ(sensors.torque.gain_error, standard.torque.gain_error);
   EXPECT_DOUBLE_EQ(sensors.torque.offset, standard.torque.offset);
@@ -158,8 +168,7 @@ TEST(SimulationFile, TheShippedOneHasTheNumbersOfTheHandbook) {
   EXPECT_DOUBLE_EQ(sensors.temperature.time_on, standard.temperature.time_on);
 }
 
-TEST(SimulationFile, EveryKeyOfASensorReachesItsField) {
-  const simulator::SensorsConfig sensors = load(R"(
+constexpr const char* kEverySensorKey = R"(
 sensors:
   link_encoder: {resolution_rad: 1, offset_rad: 2, error_1_rad: 3, error_2_rad: 4}
   motor_encoder: {resolution_rad: 5, offset_rad: 6, error_1_rad: 7, error_2_rad: 8}
@@ -184,8 +193,10 @@ sensors:
     filter: {average_s: 0.0062, delay_s: 0.0063}
     accelerometer: {noise_m_per_s2_per_sqrt_Hz: 64}
     gyroscope: {range_rad_per_s: 65}
-)")
-                                               .sensors;
+)";
+
+TEST(SimulationFile, EveryKeyOfASensorReachesItsField) {
+  const simulator::SensorsConfig sensors = load(kEverySensorKey).sensors;
   std::vector<double> values;
   for (const auto& encoder : {sensors.link_encoder, sensors.motor_encoder}) {
     for (double value : {encoder.resolution, encoder.offset, encoder.error_1, encoder.error_2})

@@ -234,7 +234,7 @@ TEST(Estimation, TaresOnlyAtRest) {
   const SensorFrame sensors = sensors_at(home());
   for (int k = 0; k < 499; ++k) {
     estimation.step(sensors, VectorP::Zero(2), VectorM::Zero(6), state);
-    estimation.tare(k == 200, true, state);  // the one under way goes on
+    estimation.tare(k == 200, true, state);  // the one under way continues
   }
   EXPECT_EQ(state.wrench.tare.status, TareStatus::kUnderWay);
   EXPECT_FALSE(estimation.is_tared(state));

@@ -179,7 +179,7 @@ TEST(Modes, FromTheIdentityTheyConvergeToAnySymmetricMatrix) {
   }
 }
 
-TEST(Modes, EqualEigenvaluesAndDiagonalMatricesAreNoTrouble) {
+TEST(Modes, EqualEigenvaluesAndDiagonalMatricesAreDecomposed) {
   Modes modes(3);
   modes.follow(2.0 * MatrixM::Identity(3, 3));
   EXPECT_EQ(modes.mu(), VectorM::Constant(3, 2.0));

@@ -108,7 +108,7 @@ TEST(EthercatDevice, AFrameThatDoesNotComeInTimeIsNotLateHere) {
 
 // ---- silence ----
 
-TEST(EthercatDevice, WithoutAnswersGoesOnTellingDrivesToStop) {
+TEST(EthercatDevice, WithoutAnswersKeepsCommandingDrivesToStop) {
   Bench bench;
   bench.connect_and_enable();
   bench.segment.answers = false;
@@ -346,7 +346,7 @@ TEST(EthercatDevice, HoldsTorquesAfterAFaultOfAnotherDrive) {
   EXPECT_EQ(bench.segment.drives[1].control, kSwitchOn);
 }
 
-TEST(EthercatDevice, DrivesWithBrakesOfTheirOwnAreToldAtOnce) {
+TEST(EthercatDevice, DrivesWithBrakesOfTheirOwnAreCommandedAtOnce) {
   Bench bench;
   bench.segment.machine.brake_closing_s = 0.005;
   bench.segment.machine.slaves[kPanel].outputs[0].meaning = Output::kNothing;

@@ -114,7 +114,7 @@ std::int32_t target(const Slave& slave, bool enables) {
   return signed_of(read_bits(station.outputs, 16, 16), 16);
 }
 
-TEST(ProcessData, TellsADriveItsTargetOrToStay) {
+TEST(ProcessData, GivesADriveItsTargetOrItsPlace) {
   // number = (value - 1) / -0.5
   EXPECT_EQ(target(second_joint(DriveMode::kCst, Output::kTargetTorque), true), -12);
   EXPECT_EQ(target(second_joint(DriveMode::kCst, Output::kTargetTorque), false), 2);

@@ -32,7 +32,7 @@ TEST(UserWrench, IsMovedAndTurnedToTheSensor) {
   EXPECT_LT((user_wrench(state, {.p = {0, 0, 0.1}}) - expected).norm(), 1e-6);
 }
 
-TEST(CheckWeight, TellsSignAndFrame) {
+TEST(CheckWeight, FindsSignAndFrame) {
   const Eigen::Vector3d weight(0, 0, 3.4);
   EXPECT_EQ(check_weight(weight, weight), SignCheck::kRight);
   EXPECT_EQ(check_weight({0.5, -0.5, 3.0}, weight), SignCheck::kRight);

@@ -1,4 +1,4 @@
-/// A robot for tests of its client, over 127.0.0.1: it stands still and answers what it is told to.
+/// A robot for tests of its client, over 127.0.0.1: it stands still and gives prepared answers.
 #pragma once
 
 #include <arpa/inet.h>
@@ -37,8 +37,8 @@ struct Behaviour {
   std::array<float, kJoints> tau_ext{};
   std::array<float, 6> K_F_ext = {0.25F, 0, 0, 0, 0, 0};
   float m_ee = 0.0F;
-  float success_rate = 1.0F;  ///< that it tells while it moves
-  /// Weight of a tool that it holds with z of its flange down, N per kg that it was not told of
+  float success_rate = 1.0F;  ///< that it reports while it moves
+  /// Weight of a tool that it holds with z of its flange down, N per kg that it does not know of
   float weight_per_kg = 9.81F;
   float tool_kg = 0.35F;
 };

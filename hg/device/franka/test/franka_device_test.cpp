@@ -274,10 +274,10 @@ TEST(FrankaDevice, ARecoveryThatFailsIsNamed) {
   ASSERT_TRUE(bench.cycle_until([&] { return bench.has(FaultCode::kDriveFault); }));
   bench.command.enable = false;
   bench.command.panel.reset = true;
-  const auto is_told = [&] {
+  const auto is_reported = [&] {
     return bench.device->farewell().find("recovery must be done by hand") != std::string::npos;
   };
-  EXPECT_TRUE(bench.cycle_until(is_told));
+  EXPECT_TRUE(bench.cycle_until(is_reported));
   EXPECT_TRUE(bench.has(FaultCode::kDriveFault));
 }
 

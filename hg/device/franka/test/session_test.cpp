@@ -71,7 +71,7 @@ TEST(Session, NamesARobotWithoutStates) {
   expect_says(refusal(robot.address(), timeouts), "no state has come by UDP");
 }
 
-TEST(Session, ASecondClientIsTold) {
+TEST(Session, ASecondClientIsRefused) {
   const FakeRobot robot;
   const Session first(robot.address(), kLong);
   expect_says(refusal(robot.address(), kShort), "does another program control the robot?");

@@ -10,7 +10,7 @@ namespace {
 const VectorM kPosture{{0, 0.028, 0, -2.091, 0, 2.119, 0}};
 const VectorM kRest = VectorM::Zero(kJoints);
 
-// A robot that integrates what it is told, and the largest values on its way.
+// A robot that integrates its commands, and the largest values on its way.
 struct Way {
   VectorM q = kPosture, speed = kRest, acceleration = kRest;
   double most_acceleration = 0.0, most_jerk = 0.0;

@@ -235,7 +235,7 @@ TEST(Connection, AnotherDeviceRateOrTimeIsRefusedByItsName) {
             std::string::npos);
 }
 
-TEST(Connection, AServerThatWelcomesEverybodyIsCheckedAllTheSame) {
+TEST(Connection, AServerThatWelcomesAllIsCheckedAllTheSame) {
   Script server;
   Description other = description(true);
   other.rate_Hz = 1000.0;

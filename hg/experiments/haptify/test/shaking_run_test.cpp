@@ -22,7 +22,7 @@ struct Report {
 Report watched(const config::Scenario& scenario) {
   Report report;
   experiments::Player player(scenario);
-  for (bool goes_on = true; goes_on; goes_on = player.end()) {
+  for (bool has_more = true; has_more; has_more = player.end()) {
     player.begin();
     player.run();
     const CycleRecord& record = player.record();
@@ -72,7 +72,7 @@ config::Scenario wall(double stiffness, double run_up, double inside) {
   return scenario;
 }
 
-TEST(ShakingRun, OfALightRotationIsToldAndStopped) {
+TEST(ShakingRun, OfALightRotationIsReportedAndStopped) {
   EXPECT_EQ(watched(light_rotation(0.08)).what, Shaking::kNone);
   config::Scenario light = light_rotation(0.001);
   const Report report = watched(light);

@@ -260,7 +260,7 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
                 let pairs: Vec<u8> = texts.flat_map(|text| [text.as_bytes(), b"\0"].concat()).collect();
                 (self.take)(Item::Metadata { name: &metadata.name, pairs: &pairs });
             }
-            Record::MessageIndex(index) => self.tell_lost(&index),
+            Record::MessageIndex(index) => self.report_lost(&index),
             Record::DataEnd(_) | Record::Footer(_) => self.has_ended = true,
             _ => {}
         }
@@ -295,7 +295,7 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
     }
 
     /// Messages of a chunk that could not be read.
-    fn tell_lost(&mut self, index: &MessageIndex) {
+    fn report_lost(&mut self, index: &MessageIndex) {
         let is_known = self.unindexed.remove(&index.channel_id) == Some(index.records.len());
         let topic = self.topics.get(&index.channel_id);
         if let (false, true, Some(topic)) = (is_known, self.may_lack_chunk, topic) {
@@ -305,7 +305,7 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
         }
     }
 
-    fn tell_damage(&mut self, opcode: u8, body: &[u8], at: u64, end: u64) -> io::Result<()> {
+    fn report_damage(&mut self, opcode: u8, body: &[u8], at: u64, end: u64) -> io::Result<()> {
         let part = match (opcode, attachment_name(body)) {
             _ if self.has_ended => format!("index at byte {at}"),
             (op::MESSAGE_INDEX | op::DATA_END, _) => format!("index at byte {at}"),
@@ -370,7 +370,7 @@ pub fn read(path: &Path, take: impl FnMut(Item)) -> Result<(), Failure> {
         if !(records.size > begin && records.is_chain(begin, CHAIN)?) {
             return Err(McapError::BadMagic.into());
         }
-        reader.tell_damage(0, &[], 0, begin)?;
+        reader.report_damage(0, &[], 0, begin)?;
         at = begin;
     }
     loop {
@@ -380,7 +380,7 @@ pub fn read(path: &Path, take: impl FnMut(Item)) -> Result<(), Failure> {
             }
             let next = records.find(at + 1)?;
             if next.is_some() || !records.is_cut_off(at)? {
-                reader.tell_damage(0, &[], at, next.unwrap_or(records.size))?;
+                reader.report_damage(0, &[], at, next.unwrap_or(records.size))?;
             }
             let Some(next) = next else { break };
             at = next;
@@ -406,7 +406,7 @@ pub fn read(path: &Path, take: impl FnMut(Item)) -> Result<(), Failure> {
             at = end;
             continue;
         }
-        reader.tell_damage(opcode, body, at, next.unwrap_or(records.size))?;
+        reader.report_damage(opcode, body, at, next.unwrap_or(records.size))?;
         let Some(next) = next else { break };
         at = next;
     }

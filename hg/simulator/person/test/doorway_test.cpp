@@ -45,7 +45,7 @@ TEST(Doorway, IsFoundFromTheTwin) {
     EXPECT_LT((doorway.away - Vector2d(-std::sin(yaw), std::cos(yaw))).norm(), 1e-5);
     EXPECT_NEAR(doorway.handle_radius, 0.75, 1e-5);
     EXPECT_NEAR(doorway.handle_offset, 0.06, 1e-5);
-    // the angle of the leaf is told by the place of the handle
+    // the angle of the leaf follows from the place of the handle
     model::ChainData open(twin);
     open.update_poses(Eigen::VectorXd::Constant(1, 0.9));
     EXPECT_NEAR(leaf_angle(doorway, open.pose(twin.frame("handle")).p), 0.9, 1e-5);

@@ -367,7 +367,7 @@ impl Device for Drive {
         self.supervise(is_open, period);
         self.publish(is_open);
     }
-    // nobody commands it any more
+    // it is not commanded any more
     fn stop(&mut self) {
         if self.state.has_torque() {
             self.objects.set(ERROR_CODE, 0, i64::from(COMMUNICATION_FAULT));

@@ -462,7 +462,7 @@ impl Esc {
                 continue;
             }
             if !manager.is_enabled {
-                // an area that the slave itself has closed; one that nobody configured is plain RAM
+                // an area that the slave itself has closed; one that was not configured is plain RAM
                 if self.u8(SYNC_MANAGERS + i as u16 * SYNC_MANAGER_BYTES + 6) & 1 != 0 {
                     return false;
                 }

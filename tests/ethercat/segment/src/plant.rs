@@ -86,7 +86,7 @@ impl Plant {
         let mut plant =
             Plant { socket, description: [0; DESCRIPTION_BYTES], nonce: 0, session: None };
         plant.begin().map_err(|error| format!("{address}: {error}"))?;
-        plant.tell(line);
+        plant.report(line);
         plant.end();
         Ok(plant)
     }
@@ -106,11 +106,11 @@ impl Plant {
         let is_enabled = drives().all(|drive| drive.is_following);
         let command = self.command(&demands, is_enabled);
         self.ask(COMMAND, &command, SENSORS)?;
-        self.tell(line);
+        self.report(line);
         Ok(())
     }
 
-    fn tell(&self, line: &mut Line) {
+    fn report(&self, line: &mut Line) {
         let Some(session) = &self.session else { return };
         let Some(sensed) = &session.sensed else { return };
         for slave in &mut line.slaves {

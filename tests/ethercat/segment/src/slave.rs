@@ -119,7 +119,7 @@ impl Slave {
         }
     }
 
-    /// Looks at what happens by itself.
+    /// Looks at what happens without a command.
     pub fn watch(&mut self, now_ns: u64) {
         if self.state() == OP && self.esc.has_watchdog_expired(now_ns) {
             self.fall(SAFE_OP, code::WATCHDOG);
@@ -194,7 +194,7 @@ impl Slave {
         self.enter(self.state(), status_code);
     }
 
-    /// Leaves OP by itself. Its outputs are closed then, so that masters see it in the working counter.
+    /// Leaves OP without a command. Its outputs are closed then, so that masters see it in the working counter.
     pub fn fall(&mut self, state: u8, status_code: u16) {
         self.op_asked_ns = None;
         self.enter(state, status_code);

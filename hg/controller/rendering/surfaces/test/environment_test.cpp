@@ -94,7 +94,7 @@ TEST(Damping, OfASurfaceWithoutAValueCatchesEveryBody) {
   }
 }
 
-// Nobody sees whether a body of 6 kg was set up as that or has become three times as heavy.
+// It cannot be seen whether a body of 6 kg was set up as that or has become three times as heavy.
 TEST(Damping, OfASurfaceWithoutAValueFollowsTheMassOfTheBody) {
   const Surface floor = {.name = "floor", .shape = Plane{}, .stiffness = 2e4};
   const Environment set_up({floor}, kDt, {6.0, 6.0}), grown({floor}, kDt, {2.0, 2.0});

@@ -132,7 +132,7 @@ impl Bus {
     }
 
     fn scan(&mut self) -> Result<Vec<bus_slave>, String> {
-        self.expect_someone()?;
+        self.expect_slaves()?;
         let device = self.device;
         let init = device.init_single_group::<MOST_SLAVES, MOST_BYTES>(now_ns);
         let group = match self.pump.run(init, PATIENCE) {
@@ -332,7 +332,7 @@ impl Bus {
         Some(response.working_counter)
     }
 
-    fn expect_someone(&mut self) -> Result<(), String> {
+    fn expect_slaves(&mut self) -> Result<(), String> {
         let ask = Command::brd(0x0000).ignore_wkc().receive::<u8>(self.device);
         match self.pump.run(ask, PATIENCE) {
             Some(Ok(_)) => Ok(()),

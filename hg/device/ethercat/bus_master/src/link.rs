@@ -47,7 +47,7 @@ impl Link {
     /// The next frame that came in; None: there is none at the moment.
     pub fn receive(&mut self) -> Result<Option<&mut [u8]>> {
         loop {
-            // SAFETY: buffer and address are as large as the call is told
+            // SAFETY: buffer and address are as large as the call is given
             let (length, direction) = unsafe {
                 let mut from: libc::sockaddr_ll = zeroed();
                 let mut size = size_of::<libc::sockaddr_ll>() as u32;
@@ -75,7 +75,7 @@ impl Link {
     }
 
     pub fn send(&self, frame: &[u8]) -> Result<()> {
-        // SAFETY: the frame is as long as the call is told
+        // SAFETY: the frame is as long as the call is given
         let sent = unsafe { libc::send(self.descriptor(), frame.as_ptr().cast(), frame.len(), 0) };
         if sent < 0 {
             Err(Error::last_os_error())

@@ -91,7 +91,7 @@ impl Pump {
 
     fn receive(&mut self) {
         while let Ok(Some(frame)) = self.link.receive() {
-            // a frame that comes when nobody waits for it any more is an error that ends nothing
+            // a frame that is no longer waited for is an error that ends nothing
             let _ = self.rx.receive_frame(frame);
         }
     }
