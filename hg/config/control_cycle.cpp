@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <utility>
 
 #include "hg/core/error.h"
+#include "hg/core/random.h"
 
 namespace hg::config {
 namespace {
@@ -41,7 +41,7 @@ tracking::ControlConfig checked_control(const DeviceConfig& device) {
 
 std::vector<Eigen::VectorXd> random_postures(const DeviceModel& device, int count,
                                              std::uint32_t seed) {
-  std::mt19937 random(seed);
+  Random32 random(seed);
   std::vector<Eigen::VectorXd> postures;
   for (int k = 0; k < kMostDraws; ++k) {
     Eigen::VectorXd q = Eigen::VectorXd::Zero(device.n_p + device.n_m);
@@ -49,8 +49,7 @@ std::vector<Eigen::VectorXd> random_postures(const DeviceModel& device, int coun
       const limits::JointLimits& joint = device.joint_limits[i];
       const double lo = std::max(joint.q_min, -std::numbers::pi);
       const double hi = std::min(joint.q_max, std::numbers::pi);
-      const double share = static_cast<double>(random()) / static_cast<double>(random.max());
-      q[device.n_p + i] = lo + (hi - lo) * share;
+      q[device.n_p + i] = lo + (hi - lo) * random.next();
     }
     const auto is_within = [&](const VirtualJoint& joint) {
       const double sum = joint.weights.dot(q.tail(device.n_m));

@@ -7,10 +7,10 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <random>
 
 #include "hg/core/cross.h"
 #include "hg/core/error.h"
+#include "hg/core/random.h"
 #include "hg/signals/payload.h"
 
 namespace hg::identify {
@@ -159,10 +159,10 @@ namespace {
 // Regressors of random motions, one below the other.
 MatrixXd random_regressors(InertiaModel& model, Eigen::Index nv, int joints) {
   constexpr int kMoments = 60;
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> number(-1.5, 1.5);
+  Random random(1);
   const auto draw = [&] {
-    return VectorXd(VectorXd::NullaryExpr(nv, [&](Eigen::Index) { return number(random); }));
+    return VectorXd(
+        VectorXd::NullaryExpr(nv, [&](Eigen::Index) { return random.between(-1.5, 1.5); }));
   };
   MatrixXd stacked(kMoments * joints, model.nominal().size());
   for (int k = 0; k < kMoments; ++k) {

@@ -6,6 +6,7 @@
 
 #include "hg/core/interval.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/core/random.h"
 
 namespace hg::tune {
 
@@ -28,8 +29,7 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
       std::min(1.0 - c_1, 2.0 * (mu - 2.0 + 1.0 / mu) / ((n + 2.0) * (n + 2.0) + mu));
   const double expected = std::sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
 
-  std::mt19937 random(config.seed);
-  std::normal_distribution<double> normal;
+  Random random(config.seed);
   Eigen::VectorXd mean = start, best = start;
   Eigen::VectorXd path_sigma = Eigen::VectorXd::Zero(start.size()), path_c = path_sigma;
   Eigen::MatrixXd C = Eigen::MatrixXd::Identity(start.size(), start.size());
@@ -40,7 +40,7 @@ Eigen::VectorXd minimise(const Costs& costs, const Eigen::VectorXd& start,
     std::vector<Eigen::VectorXd> steps, children;
     for (int k = 0; k < config.children; ++k) {
       Eigen::VectorXd z(start.size());
-      for (double& value : z) value = normal(random);
+      for (double& value : z) value = random.normal();
       steps.push_back(eigen.vectors * scale.cwiseProduct(z));
       children.push_back(mean + sigma * steps.back());
     }

@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
-#include <random>
 #include <vector>
 
 namespace hg::tune {

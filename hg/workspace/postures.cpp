@@ -34,11 +34,9 @@ PostureSampler::PostureSampler(std::vector<Interval> ranges, std::uint32_t seed)
     : ranges_(std::move(ranges)), random_(seed) {}
 
 Eigen::VectorXd PostureSampler::draw() {
-  constexpr double kLargest = 4294967295.0;  // of a mt19937; its output is the same everywhere
   Eigen::VectorXd q(static_cast<Eigen::Index>(ranges_.size()));
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
-    const double share = static_cast<double>(random_()) / kLargest;
-    q[i] = std::lerp(ranges_[i].lb, ranges_[i].ub, share);
+    q[i] = std::lerp(ranges_[i].lb, ranges_[i].ub, random_.next());
   }
   return q;
 }

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <random>
 #include <vector>
 
 #include "hg/core/interval.h"
+#include "hg/core/random.h"
 #include "hg/model/chain_data.h"
 
 namespace hg::workspace {
@@ -20,7 +20,7 @@ class PostureSampler {
 
  private:
   std::vector<Interval> ranges_;
-  std::mt19937 random_;
+  Random32 random_;
 };
 
 /// Position ranges of the chain's joints, one per joint; floating joints are not supported.

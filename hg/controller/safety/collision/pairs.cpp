@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "hg/controller/safety/collision/distance.h"
 #include "hg/controller/safety/collision/reach_bounds.h"
+#include "hg/core/random.h"
 #include "hg/model/chain_data.h"
 
 namespace hg::collision {
@@ -54,10 +54,9 @@ double distance_at(const Eigen::VectorXd& q, const std::vector<Shape>& shapes,
 
 void sample(const std::vector<Shape>& shapes, const std::vector<Interval>& range,
             model::ChainData& chain, std::vector<Candidate>& candidates) {
-  std::mt19937_64 random(kSeed);
+  Random random(kSeed);
   const auto uniform = [&](const Interval& interval) {
-    const double share = static_cast<double>(random() >> 11U) * 0x1p-53;
-    const double beyond = std::clamp((1.0 + 2.0 * kBeyond) * share - kBeyond, 0.0, 1.0);
+    const double beyond = std::clamp((1.0 + 2.0 * kBeyond) * random.next() - kBeyond, 0.0, 1.0);
     return interval.lb + beyond * (interval.ub - interval.lb);
   };
   Eigen::VectorXd q(chain.model().nv());
