@@ -181,10 +181,10 @@ struct UnitFaults {
 
   void type(std::string_view) {}
   template <typename T>
-  void operator()(std::string_view name, const T&, std::string_view note = {}) {
+  void operator()(std::string_view name, const T& value, std::string_view note = {}) {
     static const std::regex unit(".*_(s|us|m|mm|rad|deg|N|Nm|Hz|hz|m_per_s)");
     if (kIsNumber<T> && !std::regex_match(std::string(name), unit)) list.emplace_back(name);
-    (*this)(name, T{}, note, unit::kNone);
+    (*this)(name, value, note, unit::kNone);
   }
   template <typename T>
   void operator()(std::string_view, const T&, std::string_view note, const Unit&) {
