@@ -12,6 +12,7 @@
 #include "apps/offline/identify_command.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
+#include "hg/core/text.h"
 #include "hg/identify/recorded_friction.h"
 
 namespace hg::apps {
@@ -39,7 +40,7 @@ std::vector<Line> lines_of(const JointFriction& joint) {
           {"presliding_rad", found.presliding, nominal.presliding}};
 }
 
-std::string number(double value) { return fmt::format("{:.3g}", value); }
+constexpr int kDigits = 3;  // significant digits of printed numbers
 
 void print(const JointFriction& joint) {
   const FrictionEstimate& found = joint.found;
@@ -48,10 +49,11 @@ void print(const JointFriction& joint) {
       "rms unexplained\n",
       joint.name, found.forward_s, found.backward_s, found.reversals, found.speed, found.residual);
   for (const Line& line : lines_of(joint)) {
-    print_out("  {:<30}{:>9} {:<12}  device file {}\n", line.key,
-              line.found.is_found ? number(line.found.value) : "-",
-              line.found.is_found ? fmt::format("+- {}", number(line.found.deviation)) : "",
-              number(line.nominal));
+    print_out(
+        "  {:<30}{:>9} {:<12}  device file {}\n", line.key,
+        line.found.is_found ? to_text(line.found.value, kDigits) : "-",
+        line.found.is_found ? fmt::format("+- {}", to_text(line.found.deviation, kDigits)) : "",
+        to_text(line.nominal, kDigits));
   }
   for (const std::string& missing : found.missing) print_out("  not found: {}\n", missing);
 }
@@ -63,8 +65,8 @@ void print_yaml(const std::vector<JointFriction>& joints) {
     if (!joint.found.coulomb.is_found) print_out("    # nothing was found\n");
     for (const Line& line : lines_of(joint)) {
       if (!line.found.is_found) continue;
-      print_out("    {}: {}  # +- {}\n", line.key, number(line.found.value),
-                number(line.found.deviation));
+      print_out("    {}: {}  # +- {}\n", line.key, to_text(line.found.value, kDigits),
+                to_text(line.found.deviation, kDigits));
     }
     if (joint.found.presliding_elements > 0) {
       print_out("    presliding_elements: {}\n", joint.found.presliding_elements);

@@ -8,6 +8,7 @@
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/offline/identify_command.h"
+#include "hg/core/text.h"
 #include "hg/identify/recorded_elasticity.h"
 
 namespace hg::apps {
@@ -17,12 +18,13 @@ using identify::Figure;
 using identify::IdentifiedJoint;
 using identify::RecordedElasticity;
 
-std::string number(double value) { return fmt::format("{:.3g}", value); }
+constexpr int kDigits = 3;  // significant digits of printed numbers
 
 void print_line(const char* key, const Figure& found, double nominal) {
-  print_out("  {:<24}{:>9} {:<12}  files {}\n", key, found.is_found ? number(found.value) : "-",
-            found.is_found ? fmt::format("+- {}", number(found.interval())) : "",
-            nominal > 0.0 ? number(nominal) : "-");
+  print_out("  {:<24}{:>9} {:<12}  files {}\n", key,
+            found.is_found ? to_text(found.value, kDigits) : "-",
+            found.is_found ? fmt::format("+- {}", to_text(found.interval(), kDigits)) : "",
+            nominal > 0.0 ? to_text(nominal, kDigits) : "-");
 }
 
 void print_missing(const std::vector<std::string>& missing) {
@@ -61,11 +63,12 @@ void print_actuators(const RecordedElasticity& result) {
     const auto& found = joint.elasticity;
     if (!found.stiffness.is_found) continue;
     print_out("{}{}:\n", indent, joint.name);
-    print_out("{}  stiffness_Nm_per_rad: {}  # +- {}\n", indent, number(found.stiffness.value),
-              number(found.stiffness.interval()));
+    print_out("{}  stiffness_Nm_per_rad: {}  # +- {}\n", indent,
+              to_text(found.stiffness.value, kDigits),
+              to_text(found.stiffness.interval(), kDigits));
     if (!found.damping.is_found) continue;
-    print_out("{}  damping_Nms_per_rad: {}  # +- {}\n", indent, number(found.damping.value),
-              number(found.damping.interval()));
+    print_out("{}  damping_Nms_per_rad: {}  # +- {}\n", indent,
+              to_text(found.damping.value, kDigits), to_text(found.damping.interval(), kDigits));
   }
 }
 

@@ -100,25 +100,6 @@ bool is_pushed_back(const rendering::LawResult& law) noexcept {
   return law.contact.force.norm() > kPush;
 }
 
-void copy(const rendering::LawResult& law, CycleRecord& record) noexcept {
-  record.T_B_H = law.T_B_H;
-  record.T_B_E = law.T_B_E;
-  record.v_H = law.v_H;
-  record.a_H = law.a_H;
-  record.p_B_elbow = law.p_B_elbow;
-  record.sync_error_angle = law.sync_error_angle;
-  record.tau_a = law.tau_a;
-  record.budget = law.budget;
-  record.contact = law.contact;
-  std::copy_n(law.limits.begin(), law.limit_count, record.limits.begin());
-  record.limit_count = law.limit_count;
-  record.felt_limit = law.felt_limit;
-  record.w_felt = law.w_felt;
-  record.solver_status = law.solver_status;
-  record.solver_iterations = law.solver_iterations;
-  record.active_set_changes = law.active_set_changes;
-}
-
 }  // namespace
 
 Cycle::Cycle(const CycleConfig& config, const DeviceModel& device, const rendering::TwinModel& twin)
@@ -600,8 +581,12 @@ void Cycle::remember(std::uint64_t sequence, const CommandFrame& command) noexce
 void Cycle::fill(const Results& results, const Fault& warning, const TrackingReport& tracking,
                  const TouchReport& touch, std::uint32_t sanitised,
                  CycleRecord& record) const noexcept {
-  std::destroy_at(&record);  // rebuilt in place: `record = {}` would copy an empty one
-  ::new (&record) CycleRecord;
+  std::destroy_at(&record);  // rebuilt in place: an assignment would copy all of it once more
+  if (results.motion == Motion::kNone) {
+    ::new (&record) CycleRecord;
+  } else {
+    ::new (&record) CycleRecord{results.law};
+  }
   record.cycle = state_.cycle - 1;
   record.time_s = static_cast<double>(record.cycle) * dt_;
   // supervisor, after all rules of this cycle
@@ -623,7 +608,6 @@ void Cycle::fill(const Results& results, const Fault& warning, const TrackingRep
   record.collision = results.collision;
   record.q_p_target = results.gantry.command.q_target;
   // rendering
-  if (results.motion != Motion::kNone) copy(results.law, record);
   record.passivity = results.passivity;
   record.reference = results.moved.reference;
   record.twin = results.moved.twin;

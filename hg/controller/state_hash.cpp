@@ -19,9 +19,10 @@ class Hash {
  public:
   std::uint64_t value() const noexcept { return value_; }
 
-  // for the fields() of signals, whose names and notes are not part of the hash
+  // for the fields() of signals, whose names, notes and units are not part of the hash
   template <typename T>
-  void operator()(const char*, const T& value, const char* = "") noexcept {
+  void operator()(const char*, const T& value, const char* = "",
+                  const Unit& = unit::kNone) noexcept {
     mix(value);
   }
 

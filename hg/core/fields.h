@@ -2,15 +2,19 @@
 /// fields(archive, struct), which passes all its members to an archive. Recordings and their
 /// schema, datagrams, JSON, TypeScript and Python are archives over these lists.
 ///
-/// For each member the function calls archive(name, value, note), or
+/// For each member the function calls archive(name, value, note, unit), or
 /// archive.sequence(name, items, count, note) where only the first `count` items of an array are in
-/// use. Names are in lower case, as ROS demands. The note is a fragment with the unit, readable on
-/// its own: it becomes a comment of the schema, a docstring and a line of the documentation.
+/// use. Names are in lower case, as ROS demands. The note is a fragment, readable on its own: it
+/// becomes a comment of the schema, a docstring and a line of the documentation, and says what the
+/// member is, so that a comment beside the member says only what the note does not. The unit is
+/// required of floating-point numbers, unit::kNone included; no note has one.
 #pragma once
 
 #include <concepts>
 #include <string_view>
 #include <type_traits>
+
+#include "hg/core/unit.h"
 
 namespace hg {
 

@@ -17,4 +17,11 @@ std::string to_text(double value) {
   return {buffer.data(), result.ptr};
 }
 
+std::string to_text(double value, int digits) {
+  std::array<char, 64> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                    std::chars_format::general, digits);
+  return {buffer.data(), result.ptr};
+}
+
 }  // namespace hg

@@ -12,4 +12,8 @@ std::string in_quotes(std::string_view text);
 /// The shortest decimal number that reads back to the same value.
 std::string to_text(double value);
 
+/// The number with at most this many significant digits, as printf("%g") writes it:
+/// 0.0123, 1.2e-05.
+std::string to_text(double value, int digits);
+
 }  // namespace hg

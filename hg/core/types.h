@@ -43,8 +43,8 @@ struct Pose {
 
 template <typename Archive, Is<Pose> T>
 void fields(Archive& a, T& pose) {
-  a("p", pose.p, "position, m");
-  a("r", pose.R, "rotation matrix, row by row");
+  a("p", pose.p, "position", unit::kM);
+  a("r", pose.R, "rotation matrix, row by row", unit::kNone);
 }
 
 Pose operator*(const Pose& a, const Pose& b);

@@ -1,10 +1,10 @@
 #include "hg/hqp/printing.h"
 
 #include <cmath>
-#include <cstdio>
 #include <initializer_list>
 #include <string_view>
 
+#include "hg/core/text.h"
 #include "hg/hqp/solver/rows.h"
 
 namespace hg::hqp {
@@ -12,11 +12,7 @@ namespace {
 
 constexpr int kMostTerms = 6;  // most terms shown of a row
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
-}
+std::string number(double value) { return to_text(value, 6); }
 
 std::string padded(const std::string& text, std::size_t width) {
   return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;

@@ -32,7 +32,7 @@ class CdrReader {
   }
 
   template <typename T>
-  void operator()(const char*, T& value, const char* = "") {
+  void operator()(const char*, T& value, const char* = "", const Unit& = unit::kNone) {
     get(value);
   }
 

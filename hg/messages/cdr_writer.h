@@ -39,7 +39,7 @@ class CdrWriter {
   }
 
   template <typename T>
-  void operator()(const char*, const T& value, const char* = "") {
+  void operator()(const char*, const T& value, const char* = "", const Unit& = unit::kNone) {
     put(value);
   }
 

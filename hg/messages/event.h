@@ -15,7 +15,7 @@ struct Event {
 
 template <typename Archive, Is<Event> T>
 void fields(Archive& a, T& event) {
-  a("time_s", event.time_s, "nominal time of the run, s");
+  a("time_s", event.time_s, "nominal time of the run", unit::kS);
   a("name", event.name);
   a("text", event.text);
 }

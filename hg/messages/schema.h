@@ -24,8 +24,9 @@ class SchemaWriter {
   }
 
   template <typename T>
-  void operator()(const char* name, const T&, const char* note = "") {
-    line(type_name(static_cast<const T*>(nullptr)), name, with_numbers<T>(note));
+  void operator()(const char* name, const T&, const char* note = "",
+                  const Unit& unit = unit::kNone) {
+    line(type_name(static_cast<const T*>(nullptr)), name, with_unit(with_numbers<T>(note), unit));
   }
 
   template <typename T, std::size_t kCapacity>

@@ -1,15 +1,13 @@
 /// Units of a run's columns, and what the entries of their rows belong to.
 ///
-/// Units come from the notes of the fields, names of joints and limits from the recording's
-/// metadata "run" and "limits".
+/// Units come from the lists of fields, names of joints and limits from the recording's metadata
+/// "run" and "limits".
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "hg/recording/columns.h"
@@ -28,27 +26,6 @@ struct ColumnFacts {
   std::vector<std::string> units;   ///< unit of each entry with a label
 };
 
-/// Unit in a field's note: "link-side velocities, rad/s" has "rad/s"; "force N, torque Nm" has "N,
-/// Nm"; without one empty.
-inline std::string unit_in(std::string_view note) {
-  constexpr std::array<std::string_view, 15> kUnits = {
-      "s", "us", "m", "m/s",  "m/s^2",  "rad",     "rad/s", "rad/s^2",
-      "N", "Nm", "J", "Ns/m", "N/cm^2", "Celsius", "Hz"};
-  note = note.substr(0, note.find(';'));
-  std::string unit;
-  bool is_choice = false;
-  while (!note.empty()) {
-    const std::size_t end = std::min(note.find_first_of(" ,:"), note.size());
-    const std::string_view word = note.substr(0, end);
-    note.remove_prefix(std::min(end + 1, note.size()));
-    if (word == "or") is_choice = !unit.empty();
-    if (std::ranges::find(kUnits, word) == kUnits.end()) continue;
-    if (!unit.empty()) unit += is_choice ? " or " : ", ";
-    unit += word == "Celsius" ? "degC" : word;
-  }
-  return unit;
-}
-
 /// The parts of a run that entries of columns belong to.
 class RunParts {
  public:
@@ -66,11 +43,11 @@ class RunParts {
 
   ColumnFacts facts_of(const Column& column) const {
     ColumnFacts facts;
-    facts.unit = column.kind == 'f' ? unit_in(column.note) : "";
+    facts.unit = column.unit.text();
     facts.axis = name_of(column.axis);
     for (const Part& part : parts_of(column.axis)) {
       facts.labels.push_back(part.name);
-      facts.units.push_back(unit_of(facts.unit, part, facts.labels.size() - 1));
+      facts.units.push_back(unit_of(column.unit, part, facts.labels.size() - 1));
     }
     const auto is_first = [&](const std::string& unit) { return unit == facts.units[0]; };
     if (!facts.units.empty() && std::ranges::all_of(facts.units, is_first)) {
@@ -186,21 +163,19 @@ class RunParts {
     return all;
   }
 
-  // of entry `i` of a column in `unit`
-  static std::string unit_of(const std::string& unit, const Part& part, std::size_t i) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kAlternatives = {
-        {{"rad", "m"}, {"rad/s", "m/s"}, {"rad/s^2", "m/s^2"}, {"Nm", "N"}}};
-    if (const std::size_t comma = unit.find(", "); comma != unit.npos) {
-      return i % 6 < 3 ? unit.substr(0, comma) : unit.substr(comma + 2);
+  // of entry `i` of a column
+  static std::string unit_of(const Unit& unit, const Part& part, std::size_t i) {
+    switch (unit.per) {
+      case Unit::Per::kField:
+        break;
+      case Unit::Per::kHalf:
+        return i % 6 < 3 ? unit.linear : unit.angular;
+      case Unit::Per::kJoint:
+        if (part.unit == "1") return "";
+        if (part.unit == "rad") return unit.angular;
+        if (part.unit == "m") return unit.linear;
     }
-    if (part.unit == "1") return "";
-    for (const auto& [angle, slide] : kAlternatives) {
-      const bool is_one =
-          unit == angle || unit == slide || unit.starts_with(std::string(angle) + " or ");
-      if (is_one && part.unit == "rad") return std::string(angle);
-      if (is_one && part.unit == "m") return std::string(slide);
-    }
-    return unit;
+    return unit.text();
   }
 
   Parts gantry_, manipulator_, twin_, limits_;

@@ -37,7 +37,8 @@ enum class Axis {
 /// All numbers of one field, row after row.
 struct Column {
   std::string name;
-  std::string note;  ///< what it is, with its unit; see hg/core/fields.h
+  std::string note;  ///< what it is; see hg/core/fields.h
+  Unit unit;
   Axis axis = Axis::kNone;
   char kind = 'f';        ///< kind of the numbers as numpy writes it: b, i, u, f
   std::size_t bytes = 0;  ///< bytes of one number
@@ -94,8 +95,12 @@ class Columns {
   const std::vector<Column>& all() const noexcept { return columns_; }
 
   template <typename T>
-  void operator()(const char* name, const T& value, const char* note = "") {
-    if (pass_ == Pass::kDefine) note_ = messages::with_numbers<T>(note);
+  void operator()(const char* name, const T& value, const char* note = "",
+                  const Unit& unit = unit::kNone) {
+    if (pass_ == Pass::kDefine) {
+      note_ = messages::with_numbers<T>(note);
+      unit_ = unit;
+    }
     put(name, value);
   }
 
@@ -182,6 +187,7 @@ class Columns {
     if (pass_ == Pass::kDefine) {
       columns_.push_back({.name = path_ + name,
                           .note = note_,
+                          .unit = unit_,
                           .axis = axis,
                           .kind = kind_of<T>(),
                           .bytes = sizeof(T),
@@ -212,6 +218,7 @@ class Columns {
   bool is_sequence_ = false;
   std::string path_;
   std::string note_;      ///< of the field being defined
+  Unit unit_;             ///< of the field being defined
   std::size_t next_ = 0;  ///< column that the next field belongs to
   std::size_t rows_ = 0;
   std::vector<Column> columns_;

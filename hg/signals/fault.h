@@ -87,17 +87,17 @@ std::string_view to_string(Shaking shaking) noexcept;
 /// One fault: code, place, and the compared values.
 struct Fault {
   FaultCode code = FaultCode::kNone;
-  std::int16_t index = -1;  ///< Joint, limit or component concerned; -1 = none
-  double value = 0.0;       ///< Offending value
-  double limit = 0.0;       ///< Limit that the value was compared with
+  std::int16_t index = -1;
+  double value = 0.0;
+  double limit = 0.0;
 };
 
 template <typename Archive, Is<Fault> T>
 void fields(Archive& a, T& fault) {
   a("code", fault.code, "cause, a number of hg/signals/fault.h; 0 = none");
-  a("index", fault.index, "joint, limit or component; -1 = none");
-  a("value", fault.value, "offending value");
-  a("limit", fault.limit, "limit that the value was compared with");
+  a("index", fault.index, "joint, limit or component concerned; -1 = none");
+  a("value", fault.value, "offending value, in the unit of the rule", unit::kNone);
+  a("limit", fault.limit, "limit that the value was compared with", unit::kNone);
 }
 
 }  // namespace hg

@@ -14,96 +14,94 @@ namespace hg {
 
 /// Signals of the device's safety controller (PLC), docs/concepts/safety.md, [HANDBOOK] 6.8.
 struct SafetyInputs {
-  bool emergency_stop = false;    ///< Stop request: button, or fault of the safety controller
-  bool operator_enable = true;    ///< The operator holds the enabling switch
-  bool override_key = false;      ///< Slow motion with a free handle is permitted
-  bool is_field_clear = true;     ///< No person is in the scanner's field
-  bool has_disagreement = false;  ///< Channels of one input disagreed longer than allowed
+  bool emergency_stop = false;
+  bool operator_enable = true;
+  bool override_key = false;
+  bool is_field_clear = true;
+  bool has_disagreement = false;
 };
 
 template <typename Archive, Is<SafetyInputs> T>
 void fields(Archive& a, T& safety) {
-  a("emergency_stop", safety.emergency_stop, "stop requested by a safety input");
+  a("emergency_stop", safety.emergency_stop,
+    "stop requested by a button, or by a fault of the safety controller");
   a("operator_enable", safety.operator_enable, "enabling switch is held, or there is none");
   a("override_key", safety.override_key, "slow motion with a free handle is permitted");
   a("is_field_clear", safety.is_field_clear, "no person in the scanner's field, or no scanner");
-  a("has_disagreement", safety.has_disagreement, "channels of an input differed for too long");
+  a("has_disagreement", safety.has_disagreement,
+    "channels of one input differed longer than allowed");
 }
 
-/// Readings of the inertial units on the links, six numbers each, root to tip: accelerometer, then
-/// gyroscope.
+/// Readings of the inertial units on the links, six numbers each, root to tip.
 using InertialReadings = VectorUpTo<6 * kMaxInertialUnits>;
 
 /// Raw sensor values of one sample of a device.
 struct SensorFrame {
-  std::uint64_t sequence = 0;     ///< Sample number, incremented by one per sample
-  double time_s = 0.0;            ///< Time of the device's clock, s
-  VectorM q_m;                    ///< Link-side encoders; unlimited joints wrapped to [-pi, pi)
-  VectorM dq_m;                   ///< Link-side joint velocities
-  VectorM theta_m;                ///< Motor-side encoders at the output of the gear; empty = none
-  VectorM tau_m;                  ///< Joint torque sensors
-  VectorP q_p;                    ///< Gantry encoders
-  Vector6 w_S = Vector6::Zero();  ///< Wrench on the handle at S, resolved in S, force first
-  /// Accelerometer in S: acceleration minus gravity, resolved in S; zero without one.
+  std::uint64_t sequence = 0;
+  double time_s = 0.0;
+  VectorM q_m, dq_m, theta_m, tau_m;
+  VectorP q_p;
+  Vector6 w_S = Vector6::Zero();
   Eigen::Vector3d a_S = Eigen::Vector3d::Zero();
-  Eigen::Vector3d omega_S = Eigen::Vector3d::Zero();  ///< Gyroscope in S; zero without one
-  /// CommandFrame::sequence of the newest command in effect; gives the latency of the loop.
-  std::uint64_t answered_sequence = 0;
-  bool dead_man = false;  ///< The user's hand closes the dead-man switch of the handle
+  Eigen::Vector3d omega_S = Eigen::Vector3d::Zero();
+  std::uint64_t answered_sequence = 0;  ///< CommandFrame::sequence; gives the latency of the loop
+  bool dead_man = false;
   SafetyInputs safety;
-  VectorM temperature_m;         ///< Motor temperatures, degrees Celsius; empty = not measured
-  std::uint32_t bus_errors = 0;  ///< Missing fieldbus answers in this sample
-  FaultCode driver_fault = FaultCode::kNone;  ///< Fault of the driver without valid values
-  /// Inertial units on the links: acceleration minus gravity, m/s^2, and angular velocity, rad/s,
-  /// in their own axes; empty = none.
+  VectorM temperature_m;
+  std::uint32_t bus_errors = 0;
+  FaultCode driver_fault = FaultCode::kNone;  ///< The other values are then not valid
   InertialReadings inertial;
 };
 
 template <typename Archive, Is<SensorFrame> T>
 void fields(Archive& a, T& sensors) {
   a("sequence", sensors.sequence, "sample number, incremented by one per sample");
-  a("time_s", sensors.time_s, "time of the device's clock, s");
+  a("time_s", sensors.time_s, "time of the device's clock", unit::kS);
   a("q_m", sensors.q_m,
-    "link-side encoders of the manipulator, rad; unlimited joints in [-pi, pi)");
-  a("dq_m", sensors.dq_m, "link-side velocities of the manipulator, rad/s");
-  a("theta_m", sensors.theta_m, "motor-side encoders at the output of the gear, rad; empty = none");
-  a("tau_m", sensors.tau_m, "joint torque sensors, Nm; empty = none");
-  a("q_p", sensors.q_p, "gantry encoders, m");
-  a("w_s", sensors.w_S, "wrench on the handle at the sensor S, in S: force N, torque Nm");
-  a("a_s", sensors.a_S, "accelerometer in S: acceleration minus gravity, m/s^2");
-  a("omega_s", sensors.omega_S, "gyroscope in S, rad/s");
+    "link-side encoders of the manipulator; unlimited joints wrapped to [-pi, pi)",
+    unit::kJointPosition);
+  a("dq_m", sensors.dq_m, "link-side velocities of the manipulator", unit::kJointSpeed);
+  a("theta_m", sensors.theta_m, "motor-side encoders at the output of the gear; empty = none",
+    unit::kJointPosition);
+  a("tau_m", sensors.tau_m, "joint torque sensors; empty = none", unit::kJointTorque);
+  a("q_p", sensors.q_p, "gantry encoders", unit::kJointPosition);
+  a("w_s", sensors.w_S, "wrench on the handle at the sensor S, in S: force, torque", unit::kWrench);
+  a("a_s", sensors.a_S, "accelerometer in S: acceleration minus gravity; zero without one",
+    unit::kMPerS2);
+  a("omega_s", sensors.omega_S, "gyroscope in S; zero without one", unit::kRadPerS);
   a("answered_sequence", sensors.answered_sequence,
     "sequence of the newest command in effect; 0 = none yet");
-  a("dead_man", sensors.dead_man, "dead-man switch of the handle is closed");
+  a("dead_man", sensors.dead_man, "the user's hand closes the dead-man switch of the handle");
   a("safety", sensors.safety, "inputs of the safety controller");
-  a("temperature_m", sensors.temperature_m,
-    "motor temperatures, degrees Celsius; empty = not measured");
+  a("temperature_m", sensors.temperature_m, "motor temperatures; empty = not measured",
+    unit::kDegC);
   a("bus_errors", sensors.bus_errors, "fieldbus answers missing in this sample");
   a("driver_fault", sensors.driver_fault,
     "fault of the driver, a number of hg/signals/fault.h; 0 = none");
   a("inertial", sensors.inertial,
-    "inertial units on the links, each in its own axes: accelerometer m/s^2, gyroscope rad/s; "
-    "empty = none");
+    "inertial units on the links, each in its own axes: accelerometer (acceleration minus "
+    "gravity), gyroscope; empty = none",
+    unit::kImu);
 }
 
 /// Target of a simulated person's hand. Used by simulated devices only.
 struct HandTarget {
-  bool active = false;                            ///< false: the person's script sets the target
-  Eigen::Vector3d p_B = Eigen::Vector3d::Zero();  ///< Target position of the handle in B
-  double press = 0.0;                             ///< How far the hand presses the held lever, 0..1
-  bool turns = false;  ///< false: the hand leaves the handle free to rotate
-  /// Target orientation of the handle in B, used if `turns`
+  bool active = false;
+  Eigen::Vector3d p_B = Eigen::Vector3d::Zero();
+  double press = 0.0;
+  bool turns = false;
   Eigen::Matrix3d R_B = Eigen::Matrix3d::Identity();
 };
 
 template <typename Archive, Is<HandTarget> T>
 void fields(Archive& a, T& target) {
   a("active", target.active, "a simulated person follows this target, not its script");
-  a("p_b", target.p_B, "target position of the handle in the base frame, m");
-  a("press", target.press, "how far the hand presses its lever, 0..1");
+  a("p_b", target.p_B, "target position of the handle in the base frame", unit::kM);
+  a("press", target.press, "how far the hand presses the held lever, 0..1", unit::kNone);
   a("turns", target.turns,
     "the hand turns the handle to r_b; otherwise the handle may rotate freely");
-  a("r_b", target.R_B, "target orientation of the handle, row by row");
+  a("r_b", target.R_B, "target orientation of the handle in the base frame, row by row",
+    unit::kNone);
 }
 
 /// Buttons and keys of an operator's panel. Used by simulated devices only, except the emergency
@@ -112,8 +110,8 @@ struct SafetyPanel {
   bool emergency_stop = false;
   bool operator_enable = true;
   bool override_key = false;
-  bool person_in_field = false;  ///< A person besides the user is in the scanner's field
-  bool reset = false;            ///< Reset of the safety controller; acts on its rising edge
+  bool person_in_field = false;
+  bool reset = false;
 };
 
 template <typename Archive, Is<SafetyPanel> T>
@@ -157,7 +155,7 @@ enum class Parameter : std::uint8_t {
 /// New value of one parameter of the twin, approached smoothly within a second.
 struct ParameterChange {
   Parameter parameter = Parameter::kNone;
-  std::int16_t index = -1;  ///< Degree of freedom of the twin, or component; see Parameter
+  std::int16_t index = -1;
   double value = 0.0;
 };
 
@@ -165,7 +163,7 @@ template <typename Archive, Is<ParameterChange> T>
 void fields(Archive& a, T& change) {
   a("parameter", change.parameter);
   a("index", change.index, "degree of freedom of the twin, or component of the wrench");
-  a("value", change.value, "new value, SI units");
+  a("value", change.value, "new value, in the unit of the parameter", unit::kNone);
 }
 
 /// All inputs of a cycle other than sensors.
@@ -174,7 +172,7 @@ struct OperatorFrame {
   HandTarget hand_target;
   SafetyPanel panel;
   ParameterChange change;
-  std::uint32_t late_cycles = 0;  ///< Cycles late or left out by this run since the last cycle
+  std::uint32_t late_cycles = 0;
 };
 
 template <typename Archive, Is<OperatorFrame> T>
@@ -188,15 +186,12 @@ void fields(Archive& a, T& input) {
 
 /// Command to the device until the next sample.
 struct CommandFrame {
-  std::uint64_t sequence = 0;  ///< Sequence number of the answered SensorFrame
-  bool enable = false;         ///< Drives powered; false: drives off and brakes closed
-  VectorM q_m;                 ///< Reference positions of the manipulator
-  VectorM dq_m;                ///< Reference velocities of the manipulator
-  VectorM ddq_m;               ///< Reference accelerations of the manipulator
-  VectorM tau_m;               ///< Motor torques; empty: the drives follow the reference
-  VectorP dq_p;                ///< Gantry velocities
-  HandTarget hand_target;      ///< Passed through to a simulated person
-  SafetyPanel panel;           ///< Passed through to a simulated safety controller
+  std::uint64_t sequence = 0;
+  bool enable = false;
+  VectorM q_m, dq_m, ddq_m, tau_m;
+  VectorP dq_p;
+  HandTarget hand_target;
+  SafetyPanel panel;
 };
 
 /// Makes the command one that switches the drives off and moves nothing; positions stay.
@@ -212,13 +207,14 @@ template <typename Archive, Is<CommandFrame> T>
 void fields(Archive& a, T& command) {
   a("sequence", command.sequence, "sequence of the answered sensor frame");
   a("enable", command.enable, "drives powered; otherwise drives off and brakes closed");
-  a("q_m", command.q_m, "reference positions of the manipulator, rad");
-  a("dq_m", command.dq_m, "reference velocities of the manipulator, rad/s");
-  a("ddq_m", command.ddq_m, "reference accelerations of the manipulator, rad/s^2");
-  a("tau_m", command.tau_m, "motor torques, Nm; empty: the drives follow the reference");
-  a("dq_p", command.dq_p, "gantry velocities, m/s");
-  a("hand_target", command.hand_target, "target of a simulated hand");
-  a("panel", command.panel, "panel for a simulated safety controller");
+  a("q_m", command.q_m, "reference positions of the manipulator", unit::kJointPosition);
+  a("dq_m", command.dq_m, "reference velocities of the manipulator", unit::kJointSpeed);
+  a("ddq_m", command.ddq_m, "reference accelerations of the manipulator", unit::kJointAcceleration);
+  a("tau_m", command.tau_m, "motor torques; empty: the drives follow the reference",
+    unit::kJointTorque);
+  a("dq_p", command.dq_p, "gantry velocities", unit::kJointSpeed);
+  a("hand_target", command.hand_target, "target passed through to a simulated hand");
+  a("panel", command.panel, "panel passed through to a simulated safety controller");
 }
 
 }  // namespace hg

@@ -59,24 +59,28 @@ std::string_view to_string(LimitCause cause) noexcept;
 struct LimitReport {
   LimitState state = LimitState::kInactive;
   LimitCause cause = LimitCause::kNone;
-  double position = 0.0;        ///< Position of the limited quantity
-  double to_lower = kInfinity;  ///< Distance to the rendered limit, with margin and locks
+  double position = 0.0;
+  double to_lower = kInfinity;
   double to_upper = kInfinity;
-  double excess = 0.0;    ///< Distance outside the configured range, >= 0
-  double slack = 0.0;     ///< Acceleration by which a violated row misses its bound
-  double reaction = 0.0;  ///< Constraint force or torque in the quantity's own coordinate
+  double excess = 0.0;
+  double slack = 0.0;
+  double reaction = 0.0;
 };
 
 template <typename Archive, Is<LimitReport> T>
 void fields(Archive& a, T& report) {
   a("state", report.state);
   a("cause", report.cause);
-  a("position", report.position, "position of the limited quantity, rad or m");
-  a("to_lower", report.to_lower, "distance to the lower limit as rendered, rad or m");
-  a("to_upper", report.to_upper, "distance to the upper limit as rendered, rad or m");
-  a("excess", report.excess, "distance outside the configured range, rad or m");
-  a("slack", report.slack, "acceleration by which a violated row misses its bound");
-  a("reaction", report.reaction, "constraint force in the quantity's own coordinate, Nm or N");
+  a("position", report.position, "position of the limited quantity", unit::kJointPosition);
+  a("to_lower", report.to_lower, "distance to the lower limit as rendered, with margin and locks",
+    unit::kJointPosition);
+  a("to_upper", report.to_upper, "distance to the upper limit as rendered, with margin and locks",
+    unit::kJointPosition);
+  a("excess", report.excess, "distance outside the configured range, >= 0", unit::kJointPosition);
+  a("slack", report.slack, "acceleration by which a violated row misses its bound",
+    unit::kJointAcceleration);
+  a("reaction", report.reaction, "constraint force or torque in the quantity's own coordinate",
+    unit::kJointTorque);
 }
 
 }  // namespace hg

@@ -17,7 +17,7 @@ struct FiniteSum {
   double nothing = 0.0;
 
   template <typename T>
-  void operator()(const char*, const T& value, const char*) noexcept {
+  void operator()(const char*, const T& value, const char*, const Unit& = unit::kNone) noexcept {
     if (std::ranges::find(unchecked, static_cast<const void*>(&value)) != unchecked.end()) return;
     if constexpr (HasFields<T>) {
       fields(*this, value);

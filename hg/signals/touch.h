@@ -9,34 +9,35 @@ namespace hg {
 
 /// Detected contact with the arm; see compliance/ in hg/controller/safety.
 struct TouchReport {
-  VectorM torque;            ///< Joint torques of the contact, Nm; empty: detection is inactive
-  double share = 0.0;        ///< Largest ratio of joint torque to its threshold
-  bool is_reported = false;  ///< Contact detected: the arm yields
-  int joint = -1;  ///< Most distal joint beyond its threshold: its link is touched; -1 = none
-  Vector6 wrench = Vector6::Zero();  ///< Equivalent wrench on the handle
+  VectorM torque;
+  double share = 0.0;
+  bool is_reported = false;
+  int joint = -1;
+  Vector6 wrench = Vector6::Zero();
 };
 
 template <typename Archive, Is<TouchReport> T>
 void fields(Archive& a, T& touch) {
-  a("torque", touch.torque, "joint torques of the contact, Nm; empty: detection is inactive");
-  a("share", touch.share, "largest ratio of joint torque to its threshold");
+  a("torque", touch.torque, "joint torques of the contact; empty: detection is inactive",
+    unit::kJointTorque);
+  a("share", touch.share, "largest ratio of joint torque to its threshold", unit::kNone);
   a("is_reported", touch.is_reported, "contact detected: the arm yields");
-  a("joint", touch.joint, "most distal joint beyond its threshold; -1 = none");
-  a("wrench", touch.wrench, "equivalent wrench on the handle: force N, torque Nm");
+  a("joint", touch.joint, "most distal joint beyond its threshold: its link is touched; -1 = none");
+  a("wrench", touch.wrench, "equivalent wrench on the handle: force, torque", unit::kWrench);
 }
 
 /// Load on a simulated bystander hit by the arm.
 struct BystanderReport {
-  double force = 0.0;        ///< Contact force, N
-  double pressure = 0.0;     ///< Contact pressure, N/cm^2
-  double compression = 0.0;  ///< Compression of the body, m
+  double force = 0.0;
+  double pressure = 0.0;
+  double compression = 0.0;
 };
 
 template <typename Archive, Is<BystanderReport> T>
 void fields(Archive& a, T& bystander) {
-  a("force", bystander.force, "contact force on the body, N");
-  a("pressure", bystander.pressure, "contact pressure, N/cm^2");
-  a("compression", bystander.compression, "compression of the body, m");
+  a("force", bystander.force, "contact force on the body", unit::kN);
+  a("pressure", bystander.pressure, "contact pressure", unit::kNPerCm2);
+  a("compression", bystander.compression, "compression of the body", unit::kM);
 }
 
 }  // namespace hg

@@ -10,16 +10,14 @@ namespace hg {
 /// True state at the time of a SensorFrame. Wrenches act on the handle, at H, resolved in B, force
 /// first.
 struct Truth {
-  bool is_known = false;            ///< false: the device is real, all other members are invalid
-  VectorM q_m, dq_m;                ///< Link side, not wrapped
-  VectorM theta_m, dtheta_m;        ///< Motor side at the output of the gear
-  VectorM tau_J;                    ///< Torques transmitted by the springs, Nm
-  VectorM tau_motor;                ///< Motor torques, Nm
-  VectorP q_p, dq_p, ddq_p;         ///< Gantry, at its drives and encoders
-  Pose T_B_H;                       ///< Pose of the handle
-  Vector6 twist = Vector6::Zero();  ///< Twist (v; omega) of H
-  Vector6 acceleration = Vector6::Zero();  ///< (Classical acceleration of H; d omega/dt)
-  Vector6 w_H = Vector6::Zero();           ///< Wrench of the user
+  bool is_known = false;
+  VectorM q_m, dq_m, theta_m, dtheta_m;
+  VectorM tau_J, tau_motor;
+  VectorP q_p, dq_p, ddq_p;  ///< Gantry, at its drives and encoders
+  Pose T_B_H;
+  Vector6 twist = Vector6::Zero();
+  Vector6 acceleration = Vector6::Zero();
+  Vector6 w_H = Vector6::Zero();
   BystanderReport bystander;
 };
 
@@ -27,19 +25,22 @@ template <typename Archive, Is<Truth> T>
 void fields(Archive& a, T& truth) {
   a("is_known", truth.is_known,
     "true for a simulated device; otherwise all other fields are invalid");
-  a("q_m", truth.q_m, "link-side positions of the manipulator, rad");
-  a("dq_m", truth.dq_m, "link-side velocities of the manipulator, rad/s");
-  a("theta_m", truth.theta_m, "motor-side positions at the output of the gear, rad");
-  a("dtheta_m", truth.dtheta_m, "motor-side velocities, rad/s");
-  a("tau_j", truth.tau_J, "torques transmitted by the springs, Nm");
-  a("tau_motor", truth.tau_motor, "motor torques, Nm");
-  a("q_p", truth.q_p, "gantry positions, m");
-  a("dq_p", truth.dq_p, "gantry velocities, m/s");
-  a("ddq_p", truth.ddq_p, "gantry accelerations, m/s^2");
+  a("q_m", truth.q_m, "link-side positions of the manipulator, not wrapped", unit::kJointPosition);
+  a("dq_m", truth.dq_m, "link-side velocities of the manipulator", unit::kJointSpeed);
+  a("theta_m", truth.theta_m, "motor-side positions at the output of the gear",
+    unit::kJointPosition);
+  a("dtheta_m", truth.dtheta_m, "motor-side velocities at the output of the gear",
+    unit::kJointSpeed);
+  a("tau_j", truth.tau_J, "torques transmitted by the springs", unit::kJointTorque);
+  a("tau_motor", truth.tau_motor, "motor torques", unit::kJointTorque);
+  a("q_p", truth.q_p, "gantry positions", unit::kJointPosition);
+  a("dq_p", truth.dq_p, "gantry velocities", unit::kJointSpeed);
+  a("ddq_p", truth.ddq_p, "gantry accelerations", unit::kJointAcceleration);
   a("handle", truth.T_B_H, "handle in the base frame");
-  a("twist", truth.twist, "twist of the handle: m/s, rad/s");
-  a("acceleration", truth.acceleration, "acceleration of the handle: m/s^2, rad/s^2");
-  a("w_h", truth.w_H, "wrench of the user at the handle: force N, torque Nm");
+  a("twist", truth.twist, "twist of the handle: velocity, angular velocity", unit::kTwist);
+  a("acceleration", truth.acceleration,
+    "classical acceleration of the handle, then its angular acceleration", unit::kAcceleration);
+  a("w_h", truth.w_H, "wrench of the user at the handle: force, torque", unit::kWrench);
   a("bystander", truth.bystander, "load on a simulated bystander");
 }
 

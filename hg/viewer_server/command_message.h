@@ -77,13 +77,13 @@ void fields(Archive& a, T& hand) {
   a("p_B_m", hand.p_B);
   a("quaternion_B_H", hand.quaternion_B_H,
     "target orientation of the handle; null = the handle may rotate freely");
-  a("press", hand.press, "how far the hand presses its lever, 0..1");
+  a("press", hand.press, "how far the hand presses its lever, 0..1", unit::kNone);
 }
 
 template <typename Archive, Is<HoldMessage> T>
 void fields(Archive& a, T& hold) {
   a.type("hold");
-  a("sequence", hold.sequence, "rising number; repeated and older ones are ignored");
+  a("sequence", hold.sequence, "rising number; repeated and older ones are ignored", unit::kNone);
 }
 
 template <typename Archive, Is<WelcomeMessage> T>
@@ -95,17 +95,18 @@ void fields(Archive& a, T& welcome) {
 template <typename Archive, Is<CommandMessage> T>
 void fields(Archive& a, T& command) {
   a.type("command");
-  a("id", command.id, "any whole number of 0..2^53, comes back in the answer");
+  a("id", command.id, "any whole number of 0..2^53, comes back in the answer", unit::kNone);
   a("command", command.command);
   a("name", command.name, "name of the chosen option or setting; else empty");
   a("value", command.value,
-    "step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value, release_stop: page");
+    "step: cycles, speed: 0.1..1 (recordings ..8), seek: run time, set: value, release_stop: page",
+    unit::kNone);
 }
 
 template <typename Archive, Is<AnswerMessage> T>
 void fields(Archive& a, T& answer) {
   a.type("answer");
-  a("id", answer.id, "id of the command; -1 = the message could not be read");
+  a("id", answer.id, "id of the command; -1 = the message could not be read", unit::kNone);
   a("is_accepted", answer.is_accepted, "mode: followed by the cycle; set, panel: passed on");
   a("reason", answer.reason, "reason of the refusal; empty = accepted");
 }
@@ -113,7 +114,8 @@ void fields(Archive& a, T& answer) {
 template <typename Archive, Is<ValuesMessage> T>
 void fields(Archive& a, T& values) {
   a.type("values");
-  a("values", values.values, "values in the order of Scene.settings; null = unlimited");
+  a("values", values.values, "values in the order of Scene.settings; null = unlimited",
+    unit::kNone);
 }
 
 template <typename Archive, Is<EventMessage> T>

@@ -44,18 +44,20 @@ void fields(Archive& a, T& frame) {
   a("mode_text", mode_text(record), "mode and its cause as text");
   a("fault", std::string(has_fault ? to_string(record.fault.code) : ""), "empty = none");
   a("status", view.status_text, "status in one line");
-  a("q_device", q_device(record), "gantry, then reference of the manipulator, rad or m");
-  a("q_measured", joined(robot.q_p, robot.q_m), "gantry, then manipulator, rad or m");
-  a("dq_device", joined(robot.dq_p, record.reference.dq_m), "velocities of q_device, rad/s or m/s");
-  a("dq_measured", joined(robot.dq_p, robot.dq_m), "velocities of q_measured, rad/s or m/s");
+  a("q_device", q_device(record), "gantry, then reference of the manipulator",
+    unit::kJointPosition);
+  a("q_measured", joined(robot.q_p, robot.q_m), "gantry, then manipulator", unit::kJointPosition);
+  a("dq_device", joined(robot.dq_p, record.reference.dq_m), "velocities of q_device",
+    unit::kJointSpeed);
+  a("dq_measured", joined(robot.dq_p, robot.dq_m), "velocities of q_measured", unit::kJointSpeed);
   a("tau_measured_Nm", list(robot.tau_m),
     "torque sensors of the manipulator's joints; empty = none");
-  a("q_twin", list(record.twin.q_a), "coordinates of the twin, rad or m");
+  a("q_twin", list(record.twin.q_a), "coordinates of the twin", unit::kJointPosition);
   a("dq_twin", list(record.twin.dq_a),
-    "velocities of the twin, rad/s or m/s; a floating joint has 6, in its own frame");
+    "velocities of the twin; a floating joint has 6, in its own frame", unit::kJointSpeed);
   a("q_gantry_target_m", list(record.q_p_target), "gantry target of prepositioning");
-  a("tracking_error", list(record.tracking.error),
-    "reference minus link side of the manipulator, rad or m");
+  a("tracking_error", list(record.tracking.error), "reference minus link side of the manipulator",
+    unit::kJointPosition);
   a("is_clamped", record.tracking.is_clamped,
     "tracking was lost: the reference was moved back to the device");
   a("p_B_H_m", record.T_B_H.p, "position of the handle, at the reference");
@@ -72,9 +74,9 @@ void fields(Archive& a, T& frame) {
   a("contact", record.contact.surface >= 0 ? std::optional(record.contact) : std::nullopt,
     "null = none");
   a("limit_position", limit_positions(frame),
-    "positions of the limited quantities in the order of Scene.limits, rad or m");
+    "positions of the limited quantities in the order of Scene.limits", unit::kJointPosition);
   a("limit_distance", limit_distances(frame),
-    "distance to the nearer end, with margin; null = unbounded");
+    "distance to the nearer end, with margin; null = unbounded", unit::kJointPosition);
   a("budget", view.budget, "breakdown of the user's wrench");
   a("singularity", view.singularity);
   a("sync_error_mm", 1e3 * record.sync_error, "distance of handle and twin");

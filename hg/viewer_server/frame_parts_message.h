@@ -89,9 +89,10 @@ void fields(Archive& a, T& message) {
 
 template <typename Archive, Is<Ghost> T>
 void fields(Archive& a, T& ghost) {
-  a("time_s", ghost.time_s, "time of its run, s");
-  a("q_device", q_device(ghost.record), "gantry, then reference of the manipulator, rad or m");
-  a("q_twin", list(ghost.record.twin.q_a), "coordinates of the twin, rad or m");
+  a("time_s", ghost.time_s, "time of its run");
+  a("q_device", q_device(ghost.record), "gantry, then reference of the manipulator",
+    unit::kJointPosition);
+  a("q_twin", list(ghost.record.twin.q_a), "coordinates of the twin", unit::kJointPosition);
   a("p_B_H_m", ghost.record.T_B_H.p);
   a("force_N", Eigen::Vector3d(ghost.record.robot.w_H.template head<3>()));
 }

@@ -35,13 +35,15 @@ class JsonReader {
   }
 
   template <typename T>
-  void operator()(std::string_view name, T& field, std::string_view = {}) {
+  void operator()(std::string_view name, T& field, std::string_view = {},
+                  const Unit& = unit::kNone) {
     const nlohmann::json* json = find(name);
     is_right_ = is_right_ && json != nullptr && take(*json, field);
   }
 
   template <typename T>
-  void operator()(std::string_view name, std::optional<T>& field, std::string_view = {}) {
+  void operator()(std::string_view name, std::optional<T>& field, std::string_view = {},
+                  const Unit& = unit::kNone) {
     const nlohmann::json* json = find(name);
     field.reset();
     if (json == nullptr || json->is_null()) return;

@@ -28,7 +28,8 @@ class JsonWriter {
   void type(std::string_view word) { (*this)("type", word); }
 
   template <typename T>
-  void operator()(std::string_view name, const T& field, std::string_view = {}) {
+  void operator()(std::string_view name, const T& field, std::string_view = {},
+                  const Unit& = unit::kNone) {
     (text += '"').append(name) += "\":";
     value(field);
     text += ',';

@@ -84,8 +84,9 @@ std::string_view word_of(E value) {
 /// Passes the fields with these names to an archive.
 template <typename Archive, HasFields Struct>
 void pass_some(Archive& a, Struct& from, std::initializer_list<std::string_view> names) {
-  const auto pass = [&](const char* name, auto& field, const char* note = "") {
-    if (std::ranges::find(names, std::string_view(name)) != names.end()) a(name, field, note);
+  const auto pass = [&](const char* name, auto& field, const char* note = "",
+                        const Unit& unit = unit::kNone) {
+    if (std::ranges::find(names, std::string_view(name)) != names.end()) a(name, field, note, unit);
   };
   fields(pass, from);
 }

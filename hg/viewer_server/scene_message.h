@@ -27,7 +27,7 @@ void fields(Archive& a, T& scene) {
   a("box", scene.box);
   a("environment", scene.environment, "surroundings of the twin");
   a("surfaces", scene.surfaces);
-  a("shapes", scene.shapes, "of the device, watched for collisions with itself");
+  a("shapes", scene.shapes, "shapes of the device, watched for collisions with itself");
   a("checkpoints", scene.checkpoints, "places that the handle is to be brought to, in order");
   a("choices", scene.choices);
   a("settings", scene.settings);

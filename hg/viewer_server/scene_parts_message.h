@@ -59,20 +59,20 @@ void fields(Archive& a, T& joint) {
   a("planar", joint.planar,
     "planar joint of the URDF with this joint as one of three parts: slide, slide, turn");
   a("axis", joint.axis, "axis of such a part, in the frame of the planar joint");
-  a("q_min", bounded(joint.range.lb), "lower limit, rad or m; null = unbounded");
-  a("q_max", bounded(joint.range.ub), "upper limit, rad or m; null = unbounded");
-  a("dq_max", bounded(joint.dq_max), "speed limit, rad/s or m/s; null = unbounded");
-  a("tau_max", bounded(joint.tau_max), "peak torque or force, Nm or N; null = unknown");
+  a("q_min", bounded(joint.range.lb), "lower limit; null = unbounded", unit::kJointPosition);
+  a("q_max", bounded(joint.range.ub), "upper limit; null = unbounded", unit::kJointPosition);
+  a("dq_max", bounded(joint.dq_max), "speed limit; null = unbounded", unit::kJointSpeed);
+  a("tau_max", bounded(joint.tau_max), "peak torque or force; null = unknown", unit::kJointTorque);
 }
 
 template <typename Archive, Is<SceneFollower> T>
 void fields(Archive& a, T& follower) {
   a("joint", follower.joint);
   a("leader", follower.leader);
-  a("begin", follower.range.lb, "of the range of the leader, rad or m");
-  a("end", follower.range.ub, "of the range of the leader, rad or m");
+  a("begin", follower.range.lb, "begin of the range of the leader", unit::kJointPosition);
+  a("end", follower.range.ub, "end of the range of the leader", unit::kJointPosition);
   a("is_periodic", follower.is_periodic, "the range is one turn, and repeats");
-  a("values", follower.values, "at equal distances over the range, rad or m");
+  a("values", follower.values, "positions at equal distances over the range", unit::kJointPosition);
 }
 
 template <typename Archive, Is<SceneChain> T>
@@ -81,7 +81,7 @@ void fields(Archive& a, T& chain) {
   a("urdf", chain.urdf.empty() ? "" : chain.address, "address of the file, empty = none");
   a("p_B_root_m", chain.T_B_root.p);
   a("quaternion_B_root", quaternion(chain.T_B_root.R));
-  a("joints", chain.joints, "in the order of the coordinates");
+  a("joints", chain.joints, "joints in the order of the coordinates");
   a("followers", chain.followers, "joints of closed loops, which have no coordinates");
 }
 
@@ -89,9 +89,9 @@ template <typename Archive, Is<SceneLimitMessage> T>
 void fields(Archive& a, T& limit) {
   a("name", limit.name);
   a("kind", limit.kind);
-  a("unit", limit.unit, "unit of the position; its reaction is in Nm for rad, in N for m");
-  a("min", limit.min, "lower end; null = unbounded");
-  a("max", limit.max, "upper end; null = unbounded");
+  a("unit", limit.unit, "unit of the position; the reaction has that of a torque or of a force");
+  a("min", limit.min, "lower end; null = unbounded", unit::kJointPosition);
+  a("max", limit.max, "upper end; null = unbounded", unit::kJointPosition);
   a("priority", limit.priority,
     "level of the law: 1 is the coupling of hand and twin, then 2, 3, ...");
 }
@@ -118,17 +118,17 @@ void fields(Archive& a, T& shape) {
   a("link", shape.link, "link of the device's URDF that it moves with");
   a("p_link_m", shape.pose.p, "position of the centre");
   a("quaternion_link", quaternion(shape.pose.R));
-  a("radius_m", shape.radius, "of a capsule along z");
-  a("length_m", shape.length, "of a capsule, without its ends");
-  a("size_m", shape.size, "of a box; zero for a capsule");
+  a("radius_m", shape.radius, "radius of a capsule along z");
+  a("length_m", shape.length, "length of a capsule, without its ends");
+  a("size_m", shape.size, "size of a box; zero for a capsule");
 }
 
 template <typename Archive, Is<SceneCheckpoint> T>
 void fields(Archive& a, T& checkpoint) {
-  a("name", checkpoint.name, "of the event");
-  a("x_m", checkpoint.x, "in B");
-  a("y_m", checkpoint.y, "in B");
-  a("azimuth_rad", checkpoint.azimuth_rad, "of the hand axis, z of H, about z of B");
+  a("name", checkpoint.name, "name of the event");
+  a("x_m", checkpoint.x, "position in B");
+  a("y_m", checkpoint.y, "position in B");
+  a("azimuth_rad", checkpoint.azimuth_rad, "azimuth of the hand axis, z of H, about z of B");
 }
 
 template <typename Archive, Is<Choice> T>
@@ -155,11 +155,12 @@ void fields(Archive& a, T& setting) {
   a("name", setting.name, "name in the command \"set\"");
   a("group", setting.group, "joint of the twin, or empty");
   a("label", setting.label);
-  a("unit", setting.unit);
-  a("min", setting.min, "smallest accepted value");
-  a("max", setting.max, "largest accepted value");
-  a("value", bounded(setting.value), "initial value, later ones come as Values; null = unlimited");
-  a("step", setting.step);
+  a("unit", setting.unit, "unit of all numbers of the setting");
+  a("min", setting.min, "smallest accepted value", unit::kNone);
+  a("max", setting.max, "largest accepted value", unit::kNone);
+  a("value", bounded(setting.value), "initial value, later ones come as Values; null = unlimited",
+    unit::kNone);
+  a("step", setting.step, "step of the form", unit::kNone);
   a("help", setting.help);
 }
 

@@ -36,23 +36,24 @@ void fields(Archive& a, T& budget) {
 }
 
 struct Singularity {
-  double measure = 0.0;  ///< 0 = singular, 1 = the largest distance from it for this device
-  int limit = -1;        ///< catalogue index of the limit that keeps it away; -1 = none
+  double measure = 0.0;
+  int limit = -1;
 };
 
 template <typename Archive, Is<Singularity> T>
 void fields(Archive& a, T& singularity) {
-  a("measure", singularity.measure, "0 = singular, 1 = largest distance from it for this device");
+  a("measure", singularity.measure, "0 = singular, 1 = largest distance from it for this device",
+    unit::kNone);
   a("limit", singularity.limit, "index in Scene.limits of the limit that keeps it away; -1 = none");
 }
 
 /// State of the run as set by commands.
 struct RunState {
   bool is_paused = false;
-  double speed = 1.0;       ///< simulated or recorded seconds per second
-  bool is_over = false;     ///< stopped, a fault, or the end of a recording
-  double position_s = 0.0;  ///< time of the run, also of a recorded one
-  std::string recording;    ///< name of the file that is written or played; empty = none
+  double speed = 1.0;
+  bool is_over = false;
+  double position_s = 0.0;
+  std::string recording;
 
   bool operator==(const RunState&) const = default;
 };
@@ -60,15 +61,15 @@ struct RunState {
 template <typename Archive, Is<RunState> T>
 void fields(Archive& a, T& state) {
   a("is_paused", state.is_paused);
-  a("speed", state.speed, "simulated or recorded seconds per second");
+  a("speed", state.speed, "simulated or recorded time over real time", unit::kNone);
   a("is_over", state.is_over, "stopped, a fault, or the end of a recording");
-  a("position_s", state.position_s, "time of the run, also of a recorded one, s");
+  a("position_s", state.position_s, "time of the run, also of a recorded one");
   a("recording", state.recording, "name of the file that is written or played; empty = none");
 }
 
 /// Second run, overlaid on the first.
 struct Ghost {
-  double time_s = 0.0;  ///< time of its run, s
+  double time_s = 0.0;
   CycleRecord record;
 };
 

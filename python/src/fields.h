@@ -22,8 +22,9 @@ class FieldBinder {
   FieldBinder(nb::class_<T>& target, const T& blank) : target_(target), blank_(blank) {}
 
   template <typename Value>
-  void operator()(const char* name, Value& value, const char* note = "") {
-    add(name, Offset<Value>{distance(&value)}, note);
+  void operator()(const char* name, Value& value, const char* note = "",
+                  const Unit& unit = unit::kNone) {
+    add(name, Offset<Value>{distance(&value)}, with_unit(note, unit).c_str());
   }
 
   template <typename Item, std::size_t kCapacity>

@@ -21,26 +21,27 @@ class Table {
 
   template <typename T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  void operator()(const char* name, const T&, const char* note) {
+  void operator()(const char* name, const T&, const char* note, const Unit& unit = unit::kNone) {
     if constexpr (std::is_enum_v<T> || std::same_as<T, bool>) {
-      row(4, "u32", name, note);
+      row(4, "u32", name, note, unit);
     } else {
       row(sizeof(T), std::is_floating_point_v<T> ? "f64" : fmt::format("u{}", 8 * sizeof(T)), name,
-          note);
+          note, unit);
     }
   }
   template <std::size_t kSize>
-  void operator()(const char* name, const Text<kSize>&, const char* note) {
-    row(kSize, fmt::format("char[{}]", kSize), name, note);
+  void operator()(const char* name, const Text<kSize>&, const char* note,
+                  const Unit& unit = unit::kNone) {
+    row(kSize, fmt::format("char[{}]", kSize), name, note, unit);
   }
   template <int kRows, int kOptions, int kMaxRows>
   void operator()(const char* name, const Eigen::Matrix<double, kRows, 1, kOptions, kMaxRows, 1>&,
-                  const char* note) {
+                  const char* note, const Unit& unit = unit::kNone) {
     if constexpr (kRows == Eigen::Dynamic) {
       row(4, "u32", fmt::format("count of {}", name), fmt::format("0..{}", kMaxRows));
       zeros("zero");
     }
-    row(8 * kMaxRows, fmt::format("f64[{}]", kMaxRows), name, note);
+    row(8 * kMaxRows, fmt::format("f64[{}]", kMaxRows), name, note, unit);
   }
   void zeros(const char* name) { row(4, "u32", name, ""); }
 
@@ -49,8 +50,8 @@ class Table {
 
  private:
   void row(std::size_t size, const std::string& type, const std::string& name,
-           const std::string& note) {
-    rows.push_back({offset_, type, name, note});
+           const std::string& note, const Unit& unit = unit::kNone) {
+    rows.push_back({offset_, type, name, unit.text(), note});
     offset_ += size;
   }
   std::size_t offset_;
@@ -61,7 +62,7 @@ Json message(const char* title) {
   Table table(size_of<Header>());
   const Message blank{};
   layout(table, blank);
-  table.rows.push_back({table.end(), "u32", "checksum", ""});
+  table.rows.push_back({table.end(), "u32", "checksum", "", ""});
   return {{"title", title},
           {"type", static_cast<int>(kTypeOf<Message>)},
           {"bytes", table.end() + 4},

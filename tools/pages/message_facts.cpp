@@ -84,8 +84,9 @@ class Fields {
   void type(std::string_view word) { rows.push_back({"type", '"' + std::string(word) + '"', ""}); }
 
   template <typename T>
-  void operator()(std::string_view name, const T&, std::string_view note = {}) {
-    rows.push_back({name, Type<T>::name(), note});
+  void operator()(std::string_view name, const T&, std::string_view note = {},
+                  const Unit& unit = unit::kNone) {
+    rows.push_back({name, Type<T>::name(), with_unit(std::string(note), unit)});
   }
 
   Json rows = Json::array();

@@ -55,7 +55,7 @@ def datagram_tables(facts):
     for message in facts:
         size = f" (type {message['type']}, {message['bytes']} bytes)" if "type" in message else ""
         sections.append(f"### {message['title']}{size}\n\n"
-                        + table(["offset", "type", "field", ""], message["rows"], rule="---:"))
+                        + table(["offset", "type", "field", "unit", ""], message["rows"], rule="---:"))
     return "\n".join(sections)
 
 

@@ -3,7 +3,6 @@
 /// SI units; frames and chains as in hg/signals/state.h.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "hg/signals/gantry_task.h"
@@ -28,30 +27,10 @@ struct LawInput {
   std::uint64_t cycle = 0;  ///< Number of the cycle under which its problem is kept
 };
 
-/// What the law found in one cycle. Poses and velocities are those at the time of the sample.
-struct LawResult {
-  VectorM ddq_m;  ///< Accelerations of the manipulator joints
-  VectorA ddq_a;  ///< Accelerations of the twin joints
-
-  Pose T_B_H;                                     ///< Handle at the reference
-  Pose T_B_E;                                     ///< End effector of the twin
-  Eigen::Vector3d v_H = Eigen::Vector3d::Zero();  ///< Velocity of the handle at the reference, m/s
-  Eigen::Vector3d a_H = Eigen::Vector3d::Zero();  ///< Acceleration of the end effector, m/s^2
-  Eigen::Vector3d p_B_elbow = Eigen::Vector3d::Zero();  ///< Elbow; zero: the device names none
-  double sync_error = 0.0;                              ///< Distance of H and E, m
-  double sync_error_angle = 0.0;                        ///< Angle between H and E, rad
-
-  VectorA tau_a;          ///< Torque of the user on the twin, J_a^T w
-  Budget budget;          ///< Parts of the user's torque
-  ContactReport contact;  ///< Contact of the end effector with virtual surfaces
-  std::array<LimitReport, kMaxLimits> limits{};  ///< In the order of the catalogue
-  int limit_count = 0;                           ///< Number of limits in the catalogue
-  int felt_limit = -1;                           ///< Index of the limit felt most; -1 = none
-  Vector6 w_felt = Vector6::Zero();  ///< Wrench of that limit on the handle (device rows only)
-
-  SolverStatus solver_status = SolverStatus::kNotRun;
-  int solver_iterations = 0;   ///< Active sets of all solves of this cycle
-  int active_set_changes = 0;  ///< Limit rows whose state differs from that in the last cycle
+/// What the law found in one cycle, recorded but for the accelerations.
+struct LawResult : LawReport {
+  VectorM ddq_m;  ///< Accelerations of the manipulator joints, rad/s^2 or m/s^2
+  VectorA ddq_a;  ///< Accelerations of the twin joints, rad/s^2 or m/s^2
 };
 
 }  // namespace hg::rendering

@@ -36,7 +36,7 @@ class Encoder {
 
   template <typename T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  void operator()(const char*, T value, const char*) noexcept {
+  void operator()(const char*, T value, const char*, const Unit& = unit::kNone) noexcept {
     if constexpr (std::is_enum_v<T> || std::same_as<T, bool>) {
       put(static_cast<std::uint32_t>(value));
     } else {
@@ -44,12 +44,13 @@ class Encoder {
     }
   }
   template <std::size_t kSize>
-  void operator()(const char*, const Text<kSize>& text, const char*) noexcept {
+  void operator()(const char*, const Text<kSize>& text, const char*,
+                  const Unit& = unit::kNone) noexcept {
     put(text.bytes);
   }
   template <int kRows, int kOptions, int kMaxRows>
   void operator()(const char*, const Eigen::Matrix<double, kRows, 1, kOptions, kMaxRows, 1>& v,
-                  const char*) noexcept {
+                  const char*, const Unit& = unit::kNone) noexcept {
     if constexpr (kRows == Eigen::Dynamic) {
       put(static_cast<std::uint32_t>(v.size()));
       zeros("");
@@ -79,7 +80,7 @@ class Decoder {
 
   template <typename T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  void operator()(const char*, T& value, const char*) noexcept {
+  void operator()(const char*, T& value, const char*, const Unit& = unit::kNone) noexcept {
     if constexpr (std::same_as<T, bool>) {
       const auto number = take<std::uint32_t>();
       require(number <= 1);
@@ -93,12 +94,12 @@ class Decoder {
     }
   }
   template <std::size_t kSize>
-  void operator()(const char*, Text<kSize>& text, const char*) noexcept {
+  void operator()(const char*, Text<kSize>& text, const char*, const Unit& = unit::kNone) noexcept {
     text.bytes = take<std::array<char, kSize>>();
   }
   template <int kRows, int kOptions, int kMaxRows>
   void operator()(const char*, Eigen::Matrix<double, kRows, 1, kOptions, kMaxRows, 1>& v,
-                  const char*) noexcept {
+                  const char*, const Unit& = unit::kNone) noexcept {
     if constexpr (kRows == Eigen::Dynamic) {
       const auto count = take<std::uint32_t>();
       zeros("");

@@ -4,9 +4,9 @@
 ///
 /// Messages of the protocol itself are sent as their fields() stand. Of the frames only the members
 /// listed here are sent, in this order: a new member of a frame is recorded at once, and sent from
-/// the protocol version on that lists it. An archive is called with name, value and note. Truth
-/// values and enumerations take 4 bytes; vectors of variable length have their count, 4 zero bytes,
-/// and room for their largest length.
+/// the protocol version on that lists it. An archive is called with name, value, note and unit.
+/// Truth values and enumerations take 4 bytes; vectors of variable length have their count, 4 zero
+/// bytes, and room for their largest length.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,11 @@
 
 namespace hg::udp {
 
-/// Name and note of one field of a frame. Fields of inner structs have a path:
+/// Name, note and unit of one field of a frame. Fields of inner structs have a path:
 /// "safety.override_key".
 struct FieldText {
   std::string name, note;
+  Unit unit;
 };
 
 /// The archive that finds the text of the member at an address. Use text_of() below.
@@ -30,14 +31,15 @@ class FieldFinder {
   explicit FieldFinder(const void* wanted) : wanted_(wanted) {}
 
   template <typename T>
-  void operator()(const char* name, const T& value, const char* note = "") {
+  void operator()(const char* name, const T& value, const char* note = "",
+                  const Unit& unit = unit::kNone) {
     if constexpr (HasFields<T>) {
       const std::string outer = path_;
       path_ += std::string(name) + ".";
       fields(*this, value);
       path_ = outer;
     } else if (static_cast<const void*>(&value) == wanted_) {
-      found = {path_ + name, note};
+      found = {path_ + name, note, unit};
     }
   }
 
@@ -48,7 +50,7 @@ class FieldFinder {
   std::string path_;
 };
 
-/// Name and note of a member of `frame`, from its fields(). Empty for anything else.
+/// Name, note and unit of a member of `frame`, from its fields(). Empty for anything else.
 template <HasFields Frame, typename Member>
 FieldText text_of(const Frame& frame, const Member& member) {
   FieldFinder finder(&member);
@@ -61,15 +63,14 @@ FieldText text_of(const Frame& frame, const Member& member) {
 template <typename Archive, typename Frame, typename Member>
 void pass(Archive& a, Frame& frame, Member& member) {
   if constexpr (HasFields<Member>) {
-    const auto pass_inner = [&](const char*, auto& inner, const char* = "") {
-      pass(a, frame, inner);
-    };
+    const auto pass_inner = [&](const char*, auto& inner, const char* = "",
+                                const Unit& = unit::kNone) { pass(a, frame, inner); };
     fields(pass_inner, member);
   } else if constexpr (requires { Archive::kIgnoresText; }) {
     a("", member, "");
   } else {
     const FieldText text = text_of(frame, member);
-    a(text.name.c_str(), member, text.note.c_str());
+    a(text.name.c_str(), member, text.note.c_str(), text.unit);
   }
 }
 

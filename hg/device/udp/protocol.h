@@ -59,12 +59,12 @@ enum class Interface : std::uint32_t { kPosition = 1, kTorque = 2 };
 
 /// Properties of a device on which both sides must agree.
 struct Description {
-  Text<64> device;  ///< name of the device in its device.yaml
+  Text<64> device;
   std::uint32_t n_p = 0;
   std::uint32_t n_m = 0;
   double rate_Hz = 0.0;
   Interface interface = Interface::kPosition;
-  bool is_lock_step = false;  ///< each side waits for the other instead of for a clock
+  bool is_lock_step = false;
 };
 
 template <typename Archive, Is<Description> T>
@@ -72,9 +72,10 @@ void fields(Archive& a, T& description) {
   a("device", description.device, "name of the device as in its device.yaml, UTF-8");
   a("n_p", description.n_p, "gantry axes, 0..2");
   a("n_m", description.n_m, "joints of the manipulator, 6 or 7");
-  a("rate_Hz", description.rate_Hz, "frames per second");
+  a("rate_Hz", description.rate_Hz, "rate of frames", unit::kHz);
   a("interface", description.interface, "1: the drives follow q_m, 2: the drives give tau_m");
-  a("is_lock_step", description.is_lock_step, "0: real time, 1: lock-step");
+  a("is_lock_step", description.is_lock_step,
+    "0: real time, 1: lock-step, each side waits for the other");
 }
 
 enum class ConnectionRefusal : std::uint32_t {
@@ -107,10 +108,10 @@ void fields(Archive& a, T& header) {
   a("magic", header.magic, "48 47 44 50, \"HGDP\"");
   a("version", header.version, "version of this protocol: 2");
   a("type", header.type, "type of the message");
-  a("length", header.length, "length of the datagram with header and checksum");
+  a("length", header.length, "length of the datagram with header and checksum", unit::kBytes);
   a("session", header.session, "number from the welcome; 0 in a hello and in a refusal");
   a("number", header.number, "1, 2, 3 .. for the sender's datagrams of this session");
-  a("time_ns", header.time_ns, "time of sending on the sender's clock");
+  a("time_ns", header.time_ns, "time of sending on the sender's clock", unit::kNs);
 }
 
 struct Hello {
@@ -129,7 +130,7 @@ void fields(Archive& a, T& hello) {
 struct Welcome {
   std::uint64_t nonce = 0;
   ConnectionRefusal refusal = ConnectionRefusal::kNone;
-  bool is_simulated = false;  ///< no machine moves, whatever is commanded
+  bool is_simulated = false;
   Description actual;
   double command_timeout_s = 0.0;
   Text<64> server;
@@ -140,10 +141,11 @@ template <typename Archive, Is<Welcome> T>
 void fields(Archive& a, T& welcome) {
   a("nonce", welcome.nonce, "nonce of the answered hello");
   a("refusal", welcome.refusal, "0 none, 1 busy, 2 version, 3 descriptions do not fit, 4 key");
-  a("is_simulated", welcome.is_simulated, "1: a simulation, where no machine moves");
+  a("is_simulated", welcome.is_simulated,
+    "1: a simulation, where no machine moves, whatever is commanded");
   fields(a, welcome.actual);
   a("command_timeout_s", welcome.command_timeout_s,
-    "time without a command after which the drives are switched off");
+    "time without a command after which the drives are switched off", unit::kS);
   a("server", welcome.server, "text for the log, UTF-8");
   a("reason", welcome.reason, "reason of a refusal for people, UTF-8");
 }

@@ -9,9 +9,11 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "hg/core/fields.h"
+#include "hg/core/test/unit_words.h"
 #include "hg/messages/cdr_reader.h"
 #include "hg/messages/cdr_writer.h"
 #include "hg/messages/schema.h"
@@ -39,19 +41,29 @@ consteval int member_count() {
 // The fields of one struct.
 struct List {
   int members = 0;
-  std::vector<std::string> names, notes;
+  std::vector<std::string> names, notes, units;
+  std::vector<std::string>
+      undeclared;  // floating-point numbers without a unit, unit::kNone neither
 
   template <typename T>
-  void operator()(const char* name, const T&, const char* note = "") {
+  void operator()(const char* name, const T& value, const char* note = "") {
+    constexpr bool kIsNumber = std::is_floating_point_v<T> || requires { value.rows(); };
+    if (kIsNumber) undeclared.emplace_back(name);
+    (*this)(name, value, note, unit::kNone);
+  }
+  template <typename T>
+  void operator()(const char* name, const T&, const char* note, const Unit& unit) {
     ++members;
     names.emplace_back(name);
     notes.emplace_back(note);
+    units.push_back(unit.text());
   }
   template <typename T, std::size_t kCapacity>
   void sequence(const char* name, const std::array<T, kCapacity>&, int, const char* note) {
     members += 2;  // items and their number
     names.emplace_back(name);
     notes.emplace_back(note);
+    units.emplace_back();
   }
 };
 
@@ -76,7 +88,7 @@ class Walk {
   }
 
   template <typename T>
-  void operator()(const char*, const T&, const char* = "") {
+  void operator()(const char*, const T&, const char* = "", const Unit& = unit::kNone) {
     if constexpr (HasFields<T>) walk<T>();
   }
   template <typename T, std::size_t kCapacity>
@@ -112,7 +124,10 @@ TEST(Fields, AllStructsOfASampleHaveThem) {
 
 TEST(Fields, NameEveryMemberOfEveryStruct) {
   for_every_struct([]<typename Struct>(const Struct*) {
-    EXPECT_EQ(list_of<Struct>().members, member_count<Struct>()) << struct_name<Struct>();
+    int members = member_count<Struct>();
+    // the base counts as one member
+    if (std::is_base_of_v<LawReport, Struct>) members += member_count<LawReport>() - 1;
+    EXPECT_EQ(list_of<Struct>().members, members) << struct_name<Struct>();
   });
 }
 
@@ -136,7 +151,9 @@ TEST(Fields, AreTheLinesOfTheSchemaInTheSameOrder) {
       std::string line;
       std::getline(lines, line);
       EXPECT_NE(line.find(" " + list.names[i]), std::string::npos) << line;
-      EXPECT_NE(line.find(list.notes[i]), std::string::npos) << line;
+      const std::string& unit = list.units[i];
+      const std::string note = (unit.empty() ? "" : "# [" + unit + "] ") + list.notes[i];
+      EXPECT_NE(line.find(note), std::string::npos) << line;
     }
   });
 }
@@ -152,6 +169,20 @@ TEST(Fields, HaveNotesThatCanBeReadAlone) {
       for (const std::string_view word : {"nobody", "somebody", "told"}) {
         EXPECT_EQ(note.find(word), std::string::npos) << struct_name<Struct>() << ": " << note;
       }
+    }
+  });
+}
+
+TEST(Fields, DeclareTheUnitOfEveryNumber) {
+  for_every_struct([]<typename Struct>(const Struct*) {
+    EXPECT_EQ(list_of<Struct>().undeclared, std::vector<std::string>{}) << struct_name<Struct>();
+  });
+}
+
+TEST(Fields, HaveNoUnitInTheirNotes) {
+  for_every_struct([]<typename Struct>(const Struct*) {
+    for (const std::string& note : list_of<Struct>().notes) {
+      EXPECT_EQ(unit_word_in(note), "") << struct_name<Struct>() << ": " << note;
     }
   });
 }

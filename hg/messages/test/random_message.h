@@ -16,14 +16,16 @@ class RandomFiller {
   explicit RandomFiller(std::uint64_t seed) : random_(seed) {}
 
   template <HasFields T>
-  void operator()(const char*, T& message, const char* = "") {
+  void operator()(const char*, T& message, const char* = "", const Unit& = unit::kNone) {
     fields(*this, message);
   }
 
-  void operator()(const char*, bool& value, const char* = "") { value = random_() % 2 == 1; }
+  void operator()(const char*, bool& value, const char* = "", const Unit& = unit::kNone) {
+    value = random_() % 2 == 1;
+  }
 
   template <IsScalar T>
-  void operator()(const char*, T& value, const char* = "") {
+  void operator()(const char*, T& value, const char* = "", const Unit& = unit::kNone) {
     const std::uint64_t bits = random_();
     std::memcpy(&value, &bits, sizeof(T));
   }
@@ -31,7 +33,7 @@ class RandomFiller {
   template <int kRows, int kCols, int kOptions, int kMaxRows, int kMaxCols>
   void operator()(const char* name,
                   Eigen::Matrix<double, kRows, kCols, kOptions, kMaxRows, kMaxCols>& matrix,
-                  const char* = "") {
+                  const char* = "", const Unit& = unit::kNone) {
     if constexpr (kRows == Eigen::Dynamic) matrix.resize(length_up_to(kMaxRows));
     for (Eigen::Index i = 0; i < matrix.size(); ++i) (*this)(name, matrix(i));
   }

@@ -24,21 +24,14 @@ RunParts door_parts() {
                   {{"00.name", "m1"}, {"00.unit", "rad"}, {"01.name", "slide"}, {"01.unit", "m"}});
 }
 
-TEST(UnitIn, FindsTheUnitInANote) {
-  EXPECT_EQ(unit_in("link-side velocities of the manipulator, rad/s"), "rad/s");
-  EXPECT_EQ(unit_in("nominal time, s; log time minus the start of the run"), "s");
-  EXPECT_EQ(unit_in("wrench on the handle at the sensor S, in S: force N, torque Nm"), "N, Nm");
-  EXPECT_EQ(unit_in("coordinates, rad or m; a floating joint has x y z qx qy qz qw"), "rad or m");
-  EXPECT_EQ(unit_in("motor temperatures, degrees Celsius; empty = not measured"), "degC");
-  EXPECT_EQ(unit_in("index of the limit that the user feels most; -1 = none"), "");
-}
-
 TEST(ColumnFacts, EntriesHaveNamesAndUnitsOfTheirJoints) {
   const RunParts parts = door_parts();
   EXPECT_EQ(facts(parts, "robot.q_p").labels, (Texts{"turn", "rail"}));
   EXPECT_EQ(facts(parts, "robot.q_p").units, (Texts{"rad", "m"}));
   EXPECT_EQ(facts(parts, "robot.dq_p").units, (Texts{"rad/s", "m/s"}));
   EXPECT_EQ(facts(parts, "robot.tau_m").unit, "Nm");
+  EXPECT_EQ(facts(parts, "tracking.error").unit, "rad");
+  EXPECT_EQ(facts(parts, "limits.slack").units, (Texts{"rad/s^2", "m/s^2"}));
   EXPECT_EQ(facts(parts, "limits.reaction").units, (Texts{"Nm", "N"}));
   EXPECT_EQ(facts(parts, "limits.reaction").axis, "limit");
   EXPECT_EQ(facts(parts, "robot.w_h").units, (Texts{"N", "N", "N", "Nm", "Nm", "Nm"}));
@@ -55,10 +48,13 @@ TEST(ColumnFacts, AFloatingJointHasSevenCoordinatesAndSixVelocities) {
   EXPECT_EQ(dq.units, (Texts{"m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s", "m/s"}));
 }
 
-TEST(ColumnFacts, WithoutMetadataUnitsAreThoseOfTheNotes) {
+TEST(ColumnFacts, WithoutMetadataUnitsAreThoseOfTheFields) {
   const ColumnFacts q = facts(RunParts(), "twin.q_a");
   EXPECT_EQ(q.unit, "rad or m");
   EXPECT_TRUE(q.labels.empty());
+  EXPECT_EQ(facts(RunParts(), "time_s").unit, "s");
+  EXPECT_EQ(facts(RunParts(), "sensors.inertial").unit, "m/s^2, rad/s");
+  EXPECT_EQ(facts(RunParts(), "tracking.torque_share").unit, "");
 }
 
 TEST(ColumnFacts, EveryWideColumnSaysWhatItsEntriesBelongTo) {

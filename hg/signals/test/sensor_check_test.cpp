@@ -72,7 +72,7 @@ struct Numbers {
   std::vector<std::pair<std::string, double*>> all;
 
   template <typename T>
-  void operator()(const char* name, T& value, const char*) {
+  void operator()(const char* name, T& value, const char*, const Unit& = unit::kNone) {
     if constexpr (HasFields<T>) {
       fields(*this, value);
     } else if constexpr (std::is_same_v<T, double>) {
@@ -107,7 +107,7 @@ struct Resize {
   std::string name;
 
   template <typename T>
-  void operator()(const char* field, T& value, const char*) {
+  void operator()(const char* field, T& value, const char*, const Unit& = unit::kNone) {
     if constexpr (HasFields<T>) {
       fields(*this, value);
     } else if constexpr (std::is_class_v<T>) {

@@ -12,9 +12,13 @@
 #include "hg/core/enumerators.h"
 #include "hg/core/index.h"
 #include "hg/core/open_file.h"
+#include "hg/core/test/unit_words.h"
 #include "hg/viewer_server/access.h"
+#include "hg/viewer_server/command_message.h"
+#include "hg/viewer_server/frame_message.h"
 #include "hg/viewer_server/frame_parts_message.h"
 #include "hg/viewer_server/limit_text.h"
+#include "hg/viewer_server/scene_message.h"
 #include "hg/viewer_server/scene_parts_message.h"
 
 namespace hg::viewer_server {
@@ -147,7 +151,7 @@ Json frame_of(const View& view, const LimitCatalogue& limits = make_scene().limi
 struct Names {
   std::vector<std::string> list;
   template <typename T>
-  void operator()(const char* name, const T&, const char* = "") {
+  void operator()(const char* name, const T&, const char* = "", const Unit& = unit::kNone) {
     list.emplace_back(name);
   }
 };
@@ -168,6 +172,54 @@ TEST(MessagesTs, HasAllFieldsOfStructsThatAreSentAsTheyAre) {
   expect_all_in_typescript<HandBudget>("Budget");
   expect_all_in_typescript<Singularity>("Singularity");
   expect_all_in_typescript<RunState>("RunState");
+}
+
+// Fields with a unit in their note, and floating-point numbers whose unit stands neither in their
+// name nor in the list.
+struct UnitFaults {
+  std::vector<std::string> list;
+
+  void type(std::string_view) {}
+  template <typename T>
+  void operator()(std::string_view name, const T& value, std::string_view note = {}) {
+    static const std::regex unit(".*_(s|us|m|mm|rad|deg|N|Nm|Hz|hz|m_per_s)");
+    if (kIsNumber<T> && !std::regex_match(std::string(name), unit)) list.emplace_back(name);
+    (*this)(name, value, note, unit::kNone);
+  }
+  template <typename T>
+  void operator()(std::string_view, const T&, std::string_view note, const Unit&) {
+    if (!unit_word_in(note).empty()) list.emplace_back(note);
+  }
+
+ private:
+  template <typename T>
+  static constexpr bool kIsNumber =
+      std::is_same_v<T, double> || std::is_same_v<T, Vec3> || std::is_same_v<T, Eigen::Vector3d> ||
+      std::is_same_v<T, std::optional<double>> || std::is_same_v<T, std::vector<double>> ||
+      std::is_same_v<T, std::vector<std::optional<double>>>;
+};
+
+template <typename... Messages>
+std::vector<std::string> unit_faults(const Messages&... messages) {
+  UnitFaults faults;
+  (fields(faults, messages), ...);
+  return faults.list;
+}
+
+TEST(Messages, DeclareTheUnitOfEveryNumberOutsideOfTheNote) {
+  const View view = make_view();
+  const LimitCatalogue limits;
+  EXPECT_EQ(unit_faults(Scene{}, SceneChain{}, SceneJoint{}, SceneFollower{}, SceneLimitMessage{},
+                        Eigen::AlignedBox3d{}, SceneSurface{}, SceneShape{}, SceneCheckpoint{},
+                        Choices{}, Choice{}, Setting{}),
+            std::vector<std::string>{});
+  EXPECT_EQ(unit_faults(FrameMessage{view, limits}, FeltLimitMessage{}, ActiveLimitMessage{},
+                        ContactReport{}, HandBudget{}, Singularity{}, RunState{},
+                        SafetyMessage{view}, Ghost{}),
+            std::vector<std::string>{});
+  EXPECT_EQ(unit_faults(HandMessage{}, HoldMessage{}, CommandMessage{}, WelcomeMessage{},
+                        AnswerMessage{}, ValuesMessage{}, EventMessage{}),
+            std::vector<std::string>{});
 }
 
 TEST(MessagesTs, HasTheFieldsThatAreChosenByName) {

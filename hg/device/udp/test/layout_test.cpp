@@ -6,6 +6,7 @@
 #include <string>
 #include <type_traits>
 
+#include "hg/core/test/unit_words.h"
 #include "hg/device/udp/codec.h"
 
 namespace hg::udp {
@@ -16,16 +17,16 @@ class Alignment {
  public:
   template <typename T>
   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  void operator()(const char* name, const T&, const char*) {
+  void operator()(const char* name, const T&, const char*, const Unit& = unit::kNone) {
     field(std::is_enum_v<T> || std::same_as<T, bool> ? 4 : sizeof(T), name);
   }
   template <std::size_t kSize>
-  void operator()(const char* name, const Text<kSize>&, const char*) {
+  void operator()(const char* name, const Text<kSize>&, const char*, const Unit& = unit::kNone) {
     field(kSize, name);
   }
   template <int kRows, int kOptions, int kMaxRows>
   void operator()(const char* name, const Eigen::Matrix<double, kRows, 1, kOptions, kMaxRows, 1>&,
-                  const char*) {
+                  const char*, const Unit& = unit::kNone) {
     if constexpr (kRows == Eigen::Dynamic) {
       field(4, "count");
       zeros("zero");
@@ -72,7 +73,8 @@ TEST(Layout, EveryMessageFitsIntoADatagramThatNoNetworkDivides) {
 struct Texts {
   std::set<std::string> names;
   template <typename T>
-  void operator()(const char* name, const T&, const char* note) {
+  void operator()(const char* name, const T&, const char* note, const Unit& = unit::kNone) {
+    EXPECT_EQ(unit_word_in(note), "") << name;
     EXPECT_TRUE(names.insert(name).second) << name << " is sent twice";
     EXPECT_STRNE(note, "") << name;
   }
