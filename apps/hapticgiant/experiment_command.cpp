@@ -73,7 +73,7 @@ struct SeedsArguments {
   std::vector<std::string> hands = {"own"};  ///< hands: "own" or presets
   int count = 16;
   std::uint64_t first = 1;
-  scenario::ScenarioOptions world;  ///< device, twin, law, bounds, gantry and braking of all runs
+  scenario::ScenarioOptions world;  ///< device, twin and law of all runs
   std::string json;                 ///< file for all runs; empty = none
   std::string markdown;             ///< file for the table; empty = none
 };
@@ -328,7 +328,7 @@ void add_seeds(CLI::App& experiment, int& exit_code) {
   command->add_option("--first", arguments->first, "the first of them")
       ->check(whole_number(0.0))
       ->capture_default_str();
-  add_law_options(*command, arguments->world);
+  add_law_option(*command, arguments->world.law);
   command->add_option("--json", arguments->json, "write all runs as JSON to this file");
   command->add_option("--markdown", arguments->markdown,
                       "write the table as Markdown to this file");

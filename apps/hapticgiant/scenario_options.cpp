@@ -11,17 +11,6 @@
 #include "hg/config/simulation/script_schema.h"
 
 namespace hg::apps {
-void add_choice(CLI::App& command, const char* option, std::string& value,
-                std::vector<std::string> names, const char* what) {
-  const CLI::IsMember check(names);
-  const std::string last = names.back();
-  names.pop_back();
-  command
-      .add_option(
-          option, value,
-          fmt::format("{} or {}{}; default: the device's", fmt::join(names, ", "), last, what))
-      ->check(check);
-}
 
 void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
   command
@@ -61,16 +50,26 @@ void add_scenario_options(CLI::App& command, scenario::ScenarioOptions& world) {
                           [](double value) { return value >= 100.0 && value <= 20000.0; }));
 }
 
-void add_law_options(CLI::App& command, scenario::ScenarioOptions& world) {
-  add_choice(command, "--law", world.law, names_of(config::kLaws));
-  add_choice(command, "--bounds", world.bounds, names_of(config::kBounds));
-  add_choice(command, "--gantry", world.gantry, names_of(config::kGantries));
-  add_choice(command, "--braking", world.braking, names_of(config::kBrakings));
-}
-
-void add_passivity_option(CLI::App& command, scenario::ScenarioOptions& world) {
-  add_choice(command, "--passivity", world.passivity, names_of(config::kPassivityReactions),
-             " on a hand and a device that shake each other");
+void add_law_option(CLI::App& command, std::string& law, std::vector<std::string> more) {
+  std::vector<std::string> names = names_of(config::kLawPresets);
+  names.insert(names.end(), more.begin(), more.end());
+  const CLI::IsMember check(names);
+  const std::string last = names.back();
+  names.pop_back();
+  command
+      .add_option("--law", law,
+                  fmt::format("{} or {}; default: the device's", fmt::join(names, ", "), last))
+      ->check(check);
+  const auto refuse = [&](const char* option, const char* instead) {
+    const auto fail = [=](const std::string&) {
+      throw CLI::ValidationError(option, std::string("is no option any more: ") + instead);
+    };
+    command.add_option_function<std::string>(option, fail)->group("");
+  };
+  refuse("--bounds", "use --law as_published for law and bounds of the paper");
+  refuse("--gantry", "use --law gantry for a gantry that the law leads");
+  refuse("--braking", "use --law together for limits that brake together");
+  refuse("--passivity", "use --set device.passivity.reaction=act");
 }
 
 }  // namespace hg::apps
