@@ -114,6 +114,14 @@ Option Command::add_flag(const std::string& name, bool& value, const std::string
   return Option(self_->add_flag(name, value, help));
 }
 
+void Command::retire_option(const std::string& name, const std::string& instead) const {
+  self_
+      ->add_option_function<std::string>(
+          name,
+          [=](const std::string&) { refuse_option(name, "is no option any more: " + instead); })
+      ->group("");
+}
+
 void Command::callback(const std::function<void()>& run) const { self_->callback(run); }
 void Command::footer(const std::string& text) const { self_->footer(text); }
 void Command::require_subcommand() const { self_->require_subcommand(); }

@@ -68,6 +68,8 @@ class Command {
   Option add_option(const std::string& name, T& value, const std::string& help) const;
   /// A flag; with '!' before its name it sets `value` to false.
   Option add_flag(const std::string& name, bool& value, const std::string& help) const;
+  /// An option of earlier versions, which the help does not show; `instead` says what to use.
+  void retire_option(const std::string& name, const std::string& instead) const;
   /// Runs when the command line names this command.
   void callback(const std::function<void()>& run) const;
   void footer(const std::string& text) const;

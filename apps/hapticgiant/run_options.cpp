@@ -74,8 +74,7 @@ void add_run(Command app, const std::string& program, int& exit_code) {
       .check(number_that("more than 0", [](double value) { return value > 0.0; }));
   const Option fast = command.add_flag(
       "--fast", arguments->is_fast, "as fast as it can instead of in real time; without the page");
-  add_law_options(command, arguments->world);
-  add_passivity_option(command, arguments->world);
+  add_law_option(command, arguments->world.law);
   command.add_option("--summary", arguments->summary,
                      "write the closing summary as JSON to this file");
   const Option no_viewer =

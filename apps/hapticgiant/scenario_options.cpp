@@ -11,17 +11,6 @@
 #include "hg/config/simulation/script_schema.h"
 
 namespace hg::apps {
-void add_choice(Command command, const char* option, std::string& value,
-                std::vector<std::string> names, const char* what) {
-  const std::vector<std::string> all = names;
-  const std::string last = names.back();
-  names.pop_back();
-  command
-      .add_option(
-          option, value,
-          fmt::format("{} or {}{}; default: the device's", fmt::join(names, ", "), last, what))
-      .one_of(all);
-}
 
 void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
   command
@@ -60,16 +49,20 @@ void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
                          [](double value) { return value >= 100.0 && value <= 20000.0; }));
 }
 
-void add_law_options(Command command, scenario::ScenarioOptions& world) {
-  add_choice(command, "--law", world.law, names_of(config::kLaws));
-  add_choice(command, "--bounds", world.bounds, names_of(config::kBounds));
-  add_choice(command, "--gantry", world.gantry, names_of(config::kGantries));
-  add_choice(command, "--braking", world.braking, names_of(config::kBrakings));
-}
-
-void add_passivity_option(Command command, scenario::ScenarioOptions& world) {
-  add_choice(command, "--passivity", world.passivity, names_of(config::kPassivityReactions),
-             " on a hand and a device that shake each other");
+void add_law_option(Command command, std::string& law, std::vector<std::string> more) {
+  std::vector<std::string> names = names_of(config::kLawPresets);
+  names.insert(names.end(), more.begin(), more.end());
+  const std::vector<std::string> all = names;
+  const std::string last = names.back();
+  names.pop_back();
+  command
+      .add_option("--law", law,
+                  fmt::format("{} or {}; default: the device's", fmt::join(names, ", "), last))
+      .one_of(all);
+  command.retire_option("--bounds", "use --law as_published for law and bounds of the paper");
+  command.retire_option("--gantry", "use --law gantry for a gantry that the law leads");
+  command.retire_option("--braking", "use --law together for limits that brake together");
+  command.retire_option("--passivity", "use --set device.passivity.reaction=act");
 }
 
 }  // namespace hg::apps

@@ -19,16 +19,11 @@ inline constexpr char kSimulationHelp[] =
 /// parsing.
 void add_scenario_options(Command command, scenario::ScenarioOptions& world);
 
-/// Adds law, bounds, gantry and braking. `world` must outlive parsing.
-void add_law_options(Command command, scenario::ScenarioOptions& world);
-void add_passivity_option(Command command, scenario::ScenarioOptions& world);
+/// Adds --law, which takes a preset or one of `more`, and refuses the options of earlier versions.
+/// `law` must outlive parsing.
+void add_law_option(Command command, std::string& law, std::vector<std::string> more = {});
 
-/// Adds an option that takes one of `names`; its help lists them, then `what` they are about.
-/// Without it the device decides.
-void add_choice(Command command, const char* option, std::string& value,
-                std::vector<std::string> names, const char* what = "");
-
-/// Names of a list of choices such as config::kLaws.
+/// Names of a list of choices such as config::kLawPresets.
 template <typename List>
 std::vector<std::string> names_of(const List& choices) {
   std::vector<std::string> names;

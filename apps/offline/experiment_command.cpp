@@ -73,8 +73,7 @@ struct SeedsArguments {
   std::vector<std::string> scenarios;        ///< scenarios; empty: see scripted_scenarios()
   std::vector<std::string> hands = {"own"};  ///< hands: "own" or presets
   int count = 16;
-  std::uint64_t first = 1;
-  scenario::ScenarioOptions world;  ///< device, twin, law, bounds, gantry and braking of all runs
+  scenario::ScenarioOptions world;  ///< device, twin and law of all runs
   std::string json;                 ///< file for all runs; empty = none
   std::string markdown;             ///< file for the table; empty = none
 };
@@ -298,10 +297,9 @@ int experiment_seeds(const SeedsArguments& arguments) {
   }
   check_output(arguments.json);
   check_writable(arguments.markdown, kMarkdown);
-  print_out(fmt::format("HapticGiant {}  seeds {} to {}\n\n", kVersion, arguments.first,
-                        arguments.first + static_cast<std::uint64_t>(arguments.count) - 1));
+  print_out(fmt::format("HapticGiant {}  seeds 1 to {}\n\n", kVersion, arguments.count));
   const std::vector<experiments::SeededRun> runs =
-      experiments::play_seeds(trials, arguments.first, arguments.count, progress_of("runs"));
+      experiments::play_seeds(trials, 1, arguments.count, progress_of("runs"));
   return report(experiments::to_json(trials, runs), "seeds", arguments.json, "", "seeds.md",
                 arguments.markdown);
 }
@@ -322,13 +320,10 @@ void add_seeds(Command experiment, int& exit_code) {
       .delimiter(',')
       .one_of(hands)
       .capture_default_str();
-  command.add_option("--count", arguments->count, "seeds per scenario and hand")
+  command.add_option("--count", arguments->count, "seeds per scenario and hand, from 1 on")
       .check(whole_number(1.0, 1e6))
       .capture_default_str();
-  command.add_option("--first", arguments->first, "the first of them")
-      .check(whole_number(0.0))
-      .capture_default_str();
-  add_law_options(command, arguments->world);
+  add_law_option(command, arguments->world.law);
   command.add_option("--json", arguments->json, "write all runs as JSON to this file");
   command.add_option("--markdown", arguments->markdown, "write the table as Markdown to this file");
   command.callback([arguments, &exit_code] { exit_code = experiment_seeds(*arguments); });

@@ -17,8 +17,6 @@
 #include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
-#include "apps/offline/experiment_run.h"
-#include "hg/config/law_names.h"
 #include "hg/core/error.h"
 
 namespace hg::apps {
@@ -36,7 +34,6 @@ constexpr std::array<PaperExperiment, 4> kExperiments = {
 std::string command_of(const PaperExperimentArguments& arguments, std::string_view name) {
   std::string command = fmt::format("hapticgiant experiment {}", name);
   if (!arguments.law.empty()) command += " --law " + arguments.law;
-  if (!arguments.bounds.empty()) command += " --bounds " + arguments.bounds;
   if (arguments.seed) command += fmt::format(" --seed {}", *arguments.seed);
   if (arguments.duration_s) command += fmt::format(" --duration {:g}", *arguments.duration_s);
   return command;
@@ -51,7 +48,6 @@ int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& a
     RunArguments run;
     run.world.seed = arguments.seed;
     run.world.law = law;
-    run.world.bounds = arguments.bounds;
     run.duration_s = arguments.duration_s;
     run.is_fast = true;
     const auto play = [&](const PaperExperiment& played) {
@@ -89,10 +85,7 @@ int run_paper_experiments(const PaperExperimentArguments& arguments,
 }
 
 void add_options(Command command, PaperExperimentArguments& arguments) {
-  std::vector<std::string> laws = names_of(config::kLaws);
-  laws.emplace_back("both");
-  add_choice(command, "--law", arguments.law, laws);
-  add_choice(command, "--bounds", arguments.bounds, names_of(config::kBounds));
+  add_law_option(command, arguments.law, {"both"});
   command.add_option("--seed", arguments.seed, "of noise and tremor: the same seed, the same files")
       .check(whole_number(0.0));
   command.add_option("--out", arguments.out, "folder; one per experiment is made in it")

@@ -16,8 +16,7 @@ class Command;
 
 struct PaperExperimentArguments {
   std::string out = "experiments";    ///< output folder, with a subfolder per experiment
-  std::string law;                    ///< law, "gauss", "paper" or "both"; empty = the device's
-  std::string bounds;                 ///< bounds, "recoverable" or "paper"; empty = the device's
+  std::string law;                    ///< preset, or "both" gauss and paper; empty = the device's
   std::optional<std::uint64_t> seed;  ///< seed of noise and tremor; unset = the device's
   std::optional<double> duration_s;   ///< duration; unset = until the script has played
   std::string docs;                   ///< folder of documentation to refresh; empty = none

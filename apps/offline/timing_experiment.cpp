@@ -33,7 +33,6 @@ Json measure(const PaperExperimentArguments& arguments, const std::string& law, 
   run.world.seed = arguments.seed;
   run.world.rate_Hz = rate_Hz;
   run.world.law = law;
-  run.world.bounds = arguments.bounds;
   run.world.device = arguments.device;
   run.world.twin = arguments.twin;
   const bool is_own = arguments.device.empty() && arguments.twin.empty();

@@ -32,7 +32,7 @@ tune::TuningProblem problem_of(const config::SimulatedDeviceConfig& device,
           .noise = tune::noise_of(device),
           .plant = tune::simulated(device),
           .friction = tune::unexpected_friction(device),
-          .body = {.mass = arguments.mass, .damping = arguments.damping},
+          .body = {.mass = arguments.mass},
           .postures = config::random_postures(device.model, arguments.postures, arguments.seed)};
 }
 
@@ -41,9 +41,6 @@ std::string command_of(const TuneArguments& arguments) {
   const TuneArguments usual;
   if (arguments.vibration > 0.0) command += fmt::format(" --vibration {:g}", arguments.vibration);
   if (arguments.mass != usual.mass) command += fmt::format(" --mass {:g}", arguments.mass);
-  if (arguments.damping != usual.damping) {
-    command += fmt::format(" --damping {:g}", arguments.damping);
-  }
   if (arguments.postures != usual.postures) {
     command += fmt::format(" --postures {}", arguments.postures);
   }
@@ -63,7 +60,7 @@ int run_tune(const TuneArguments& arguments) {
   if (!arguments.only_checks) make_folder(arguments.out);
   print_out("HapticGiant {}  {} {}: {} numbers, {} postures, a body of {:g} kg and {:g} Ns/m\n\n",
             kVersion, arguments.only_checks ? "checks" : "tunes", device.name, tune::knobs().size(),
-            problem.postures.size(), arguments.mass, arguments.damping);
+            problem.postures.size(), arguments.mass, problem.body.damping);
   const double limit = arguments.vibration > 0.0 ? arguments.vibration : now.vibration;
   std::vector<double> limits;
   if (!arguments.only_checks) limits.push_back(limit);
@@ -120,9 +117,6 @@ void add_tune(Command app, int& exit_code) {
       .check(number_within(1e-4, 10.0));
   command.add_option("--mass", arguments->mass, "of the body that is rendered, kg")
       .check(number_within(0.1, 100.0))
-      .capture_default_str();
-  command.add_option("--damping", arguments->damping, "likewise, Ns/m")
-      .check(number_within(0.0, 1000.0))
       .capture_default_str();
   command.add_option("--postures", arguments->postures, "in which it must hold")
       .check(whole_number(1.0, 1000.0))

@@ -13,7 +13,6 @@ struct TuneArguments {
   std::string out = "tune";  ///< folder of the report
   double vibration = 0.0;    ///< largest vibration, m/s^2; 0 = the device's present one
   double mass = 6.0;         ///< mass of the rendered body, kg
-  double damping = 4.0;      ///< damping of the rendered body, Ns/m
   int postures = 40;         ///< number of postures of the proof
   std::uint32_t seed = 1;    ///< seed of the postures
   bool has_front = false;    ///< also tunes for less and more vibration

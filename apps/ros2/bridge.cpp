@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/ros2/live_client.h"
+#include "apps/ros2/live_connection.h"
 #include "apps/ros2/parameters.h"
 #include "apps/ros2/type_hashes.h"
 #include "hg/core/error.h"
@@ -41,8 +41,36 @@ void say(const std::string& text) {
   std::fflush(stdout);
 }
 
+std::string_view text_of(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Throws SetupError.
+bridges::LiveAddress parse_live_address(const std::string& text) {
+  const auto fail = [&] {
+    return SetupError(fmt::format(
+        "--live {}: expected the address that the run prints, ws://HOST:PORT/live?token=TOKEN",
+        text));
+  };
+  constexpr std::string_view kScheme = "ws://";
+  if (!text.starts_with(kScheme)) throw fail();
+  const std::size_t slash = text.find('/', kScheme.size());
+  const std::string authority = text.substr(kScheme.size(), slash - kScheme.size());
+  const std::size_t colon = authority.rfind(':');
+  if (slash == std::string::npos || colon == std::string::npos || colon == 0) throw fail();
+  bridges::LiveAddress address = {authority.substr(0, colon), authority.substr(colon + 1),
+                                  text.substr(slash)};
+  if (address.host.starts_with('[') && address.host.ends_with(']')) {
+    address.host = address.host.substr(1, address.host.size() - 2);
+  }
+  if (address.port.empty() || address.port.find_first_not_of("0123456789") != std::string::npos) {
+    throw fail();
+  }
+  return address;
+}
+
 // connects node and run; one thread
-class Bridge final : public LiveListener {
+class Bridge final : public bridges::LiveListener {
  public:
   explicit Bridge(const BridgeOptions& options);
   ~Bridge() override;
@@ -81,13 +109,13 @@ class Bridge final : public LiveListener {
   };
 
   void opened(const std::string& server) override;
-  bool offered(const LiveChannel& channel) override;
-  void offered(const LiveService& service) override;
-  void withdrawn(const LiveService& service) override;
-  void received(const LiveChannel& channel, std::span<const std::byte> message) override;
+  bool offered(const bridges::LiveChannel& channel) override;
+  void offered(const bridges::LiveService& service) override;
+  void withdrawn(const bridges::LiveService& service) override;
+  void received(const bridges::LiveChannel& channel, std::string_view message) override;
   void parameters(const nlohmann::json& values, const std::string& id) override;
-  void on_status(const std::string& status) override;
-  void answered(std::uint32_t call, std::span<const std::byte> message) override;
+  void status(const std::string& text, bool is_error) override;
+  void answered(std::uint32_t call, std::string_view message) override;
   void failed(std::uint32_t call, const std::string& why) override;
   void closed(const std::string& why) override;
 
@@ -111,7 +139,7 @@ class Bridge final : public LiveListener {
   std::vector<In> in_;
   std::map<std::string, Offered> services_;  // by name
   std::unique_ptr<Parameters> parameters_;
-  std::shared_ptr<LiveClient> client_;  // null: not connected, nor trying to
+  std::shared_ptr<bridges::LiveConnection> client_;  // null: not connected, nor trying to
   bool is_open_ = false;
   Clock::time_point next_try_;
   std::map<std::uint32_t, Call> calls_;
@@ -162,7 +190,7 @@ void Bridge::connect() {
     }
     address = runs.front();
   }
-  client_ = connect_live(context_, parse_live_address(address), *this);
+  client_ = bridges::connect_live(context_, parse_live_address(address), *this);
 }
 
 void Bridge::opened(const std::string& server) {
@@ -189,7 +217,7 @@ void Bridge::closed(const std::string& why) {
   }
 }
 
-bool Bridge::offered(const LiveChannel& channel) {
+bool Bridge::offered(const bridges::LiveChannel& channel) {
   const bool is_event = channel.type == kEvent;
   const std::string type(is_event ? kText : std::string_view(channel.type));
   if (!is_known_type(type)) return false;
@@ -203,7 +231,8 @@ bool Bridge::offered(const LiveChannel& channel) {
   return true;
 }
 
-void Bridge::received(const LiveChannel& channel, std::span<const std::byte> message) {
+void Bridge::received(const bridges::LiveChannel& channel, std::string_view bytes) {
+  Bytes message = std::as_bytes(std::span(bytes));
   Out& out = out_[channel.topic];
   if (channel.type == kEvent) {
     messages::Event event;
@@ -214,7 +243,7 @@ void Bridge::received(const LiveChannel& channel, std::span<const std::byte> mes
   ++(out.publisher->publish(message) ? out.sent : out.refused);
 }
 
-void Bridge::offered(const LiveService& service) {
+void Bridge::offered(const bridges::LiveService& service) {
   if (options_.is_view || service.type != kTrigger) return;
   Offered& offered = services_[service.name];
   offered.id = service.id;
@@ -223,7 +252,7 @@ void Bridge::offered(const LiveService& service) {
   }
 }
 
-void Bridge::withdrawn(const LiveService& service) {
+void Bridge::withdrawn(const bridges::LiveService& service) {
   if (const auto found = services_.find(service.name); found != services_.end()) {
     found->second.id = 0;
   }
@@ -233,9 +262,9 @@ void Bridge::parameters(const nlohmann::json& values, const std::string& id) {
   if (parameters_) parameters_->take(values, id);
 }
 
-void Bridge::on_status(const std::string& status) {
-  if (parameters_) parameters_->on_status(status);
-  say_once("the run: " + status);
+void Bridge::status(const std::string& text, bool /*is_error*/) {
+  if (parameters_) parameters_->on_status(text);
+  say_once("the run: " + text);
 }
 
 void Bridge::arrived() {
@@ -261,9 +290,9 @@ void Bridge::look_at_ros() {
       }
       calls_[++called_] = {name, request, Clock::now()};
       if (is_stop) {
-        client_->call_at_once(offered.id, called_, request.message);
+        client_->call_at_once(offered.id, called_, text_of(request.message));
       } else {
-        client_->call(offered.id, called_, request.message);
+        client_->call(offered.id, called_, text_of(request.message));
       }
     }
   }
@@ -278,14 +307,14 @@ void Bridge::pass_on(In& in) {
   while (in.subscription->take(message)) newest.swap(message);
   if (newest.empty() || !is_open_) return;
   if (in.offer == 0) in.offer = client_->offer(in.topic, in.type);
-  client_->publish(in.offer, newest);
+  client_->publish(in.offer, text_of(newest));
   ++in.sent;
 }
 
-void Bridge::answered(std::uint32_t call, std::span<const std::byte> message) {
+void Bridge::answered(std::uint32_t call, std::string_view message) {
   const auto found = calls_.find(call);
   if (found == calls_.end()) return;
-  answer(found->second.service, found->second.request, message);
+  answer(found->second.service, found->second.request, std::as_bytes(std::span(message)));
   calls_.erase(found);
 }
 

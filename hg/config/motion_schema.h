@@ -13,13 +13,17 @@ namespace hg::config {
 
 template <class V>
 void describe(V& v, rendering::RenderingOptions& options, std::size_t manipulator_joints) {
-  v.choice("law", options.law, kLaws, "how limits become forces; paper needs six joints");
-  v.choice("bounds", options.bounds, kBounds, "how limits become bounds on accelerations");
+  LawPreset law = LawPreset::kGauss;
+  v.choice("law", law, kLawPresets,
+           "preset of the law; paper and as_published need six joints, see docs/concepts/law.md");
+  set_parts(options, law);
+  v.choice("bounds", options.bounds, kBounds,
+           "for experiments, instead of the preset's: how limits become bounds on accelerations");
   v.choice("gantry", options.gantry, kGantries,
-           "what moves the gantry: with law gauss its accelerations can be unknowns of the law");
+           "for experiments, instead of the preset's: what moves the gantry");
   v.choice("braking", options.braking, kBrakings,
-           "how motors brake before limits: before each separately, or before all that are near "
-           "together, where law and bounds model the motors");
+           "for experiments, instead of the preset's: whether motors brake before each limit "
+           "separately or before all that are near together");
   v.number("T_C_s", options.T_C, kPositive,
            "bounds paper: time within which virtual joints and frames return, at least a period");
   v.number("solver_budget", options.solver_budget, kCount,
@@ -31,7 +35,7 @@ void describe(V& v, rendering::RenderingOptions& options, std::size_t manipulato
            "of a seventh joint, towards its goal");
   v.number("kD_posture_1_per_s", options.kD_posture, kNotNegative, "of a seventh joint, damping");
   v.rule(options.law != rendering::Law::kPaper || manipulator_joints <= 6, "law",
-         "paper needs six manipulator joints: use gauss", "'paper'");
+         "the law of the paper needs six manipulator joints: use gauss");
 }
 
 template <class V>

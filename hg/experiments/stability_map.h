@@ -10,6 +10,7 @@
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/safety/passivity/passivity.h"
 #include "hg/experiments/decay.h"
+#include "hg/experiments/place.h"
 #include "hg/simulator/person/hand.h"
 
 namespace hg::experiments {
@@ -46,9 +47,9 @@ struct StabilityConfig {
   CalmRule calm;
   /// Passivity reaction, off: the map shows where contact becomes unstable without it.
   passivity::Reaction reaction = passivity::Reaction::kOff;
-  double least_mass = 0.1;                     ///< lightest twin tried, kg
-  double mass_tolerance = 0.05;                ///< relative tolerance of the smallest stable mass
-  Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
+  double least_mass = 0.1;                    ///< lightest twin tried, kg
+  double mass_tolerance = 0.05;               ///< relative tolerance of the smallest stable mass
+  Eigen::Vector3d position = Place{}.middle;  ///< position of the handle, m in B
 };
 
 /// Result of one kick.

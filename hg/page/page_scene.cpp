@@ -255,7 +255,7 @@ viewer_server::Choices page_choices(const scenario::ScenarioOptions& options) {
   choices.people.insert(
       choices.people.begin(),
       {{"", "as in the scenario"}, {"mouse", "Only the mouse"}, {"none", "No person"}});
-  for (const auto& law : config::kLaws) {
+  for (const auto& law : config::kLawPresets) {
     choices.laws.push_back({std::string(law.name), title_of(std::string(law.name))});
   }
   choices.scenario = options.scenario;

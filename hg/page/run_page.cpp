@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "hg/config/law_names.h"
 #include "hg/core/error.h"
 #include "hg/core/text.h"
 #include "hg/page/page_scene.h"
@@ -132,7 +133,7 @@ viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
   scene.run = number_;
   scene.duration_s = scenario::planned_duration_s(*run.scenario);
   scene.choices = page_choices(*run.options);
-  scene.choices.law = rendering::to_string(run.scenario->device.rendering.law);
+  scene.choices.law = config::preset_name(run.scenario->device.rendering);
   scene.settings = page_settings(form_);
   scene.refusal = run.fixed_by.empty() ? run.refusal : run.fixed_by;
   for (const Order& order : orders()) {

@@ -130,26 +130,45 @@ ScenarioOptions recorded_options(const std::string& text) {
     if (option == "--seed") options.seed = std::strtoull(value.c_str(), nullptr, 10);
     if (option == "--plant") options.plant = value;
     if (option == "--law") options.law = value;
-    if (option == "--bounds") options.bounds = value;
-    if (option == "--gantry") options.gantry = value;
-    if (option == "--braking") options.braking = value;
-    if (option == "--passivity") options.passivity = value;
   }
   return options;
 }
 
+// applies the options of earlier versions for single parts of the law and for passivity
+void apply_earlier(const std::string& text, config::Scenario& scenario) {
+  rendering::RenderingOptions& law = scenario.device.rendering;
+  std::istringstream words(text);
+  for (std::string option, value; words >> option;) {
+    if (!std::getline(words >> std::ws, value)) return;
+    const auto is = [&](const char* name) { return option == name; };
+    if (is("--bounds")) choose("--bounds", value, {config::kBounds}, law.bounds);
+    if (is("--gantry")) choose("--gantry", value, {config::kGantries}, law.gantry);
+    if (is("--braking")) choose("--braking", value, {config::kBrakings}, law.braking);
+    if (is("--passivity")) {
+      choose("--passivity", value, {config::kPassivityReactions},
+             scenario.device.passivity.reaction);
+    }
+  }
+  config::settle_law(scenario);
+}
+
+// applies --law; parts of the law that device.yaml gives by keys of their own stay
 void apply_law(const ScenarioOptions& options, config::Scenario& scenario) {
-  choose("--law", options.law, config::Choices<rendering::Law>(config::kLaws),
-         scenario.device.rendering.law);
-  choose("--bounds", options.bounds, config::Choices<rendering::Bounds>(config::kBounds),
-         scenario.device.rendering.bounds);
-  choose("--gantry", options.gantry, config::Choices<rendering::Gantry>(config::kGantries),
-         scenario.device.rendering.gantry);
-  choose("--braking", options.braking, config::Choices<rendering::Braking>(config::kBrakings),
-         scenario.device.rendering.braking);
-  choose("--passivity", options.passivity,
-         config::Choices<passivity::Reaction>(config::kPassivityReactions),
-         scenario.device.passivity.reaction);
+  if (!options.law.empty()) {
+    config::LawPreset preset = config::LawPreset::kGauss;
+    choose("--law", options.law, {config::kLawPresets}, preset);
+    rendering::RenderingOptions& law = scenario.device.rendering;
+    const rendering::RenderingOptions own = law;
+    set_parts(law, preset);
+    const auto is_given = [&](const char* key) {  // else its place is that of the map around it
+      const config::Places& places = scenario.device.places;
+      const config::Place place = places.nearest(key), around = places.nearest("rendering");
+      return place.line != around.line || place.column != around.column;
+    };
+    if (is_given("rendering.bounds")) law.bounds = own.bounds;
+    if (is_given("rendering.gantry")) law.gantry = own.gantry;
+    if (is_given("rendering.braking")) law.braking = own.braking;
+  }
   config::settle_law(scenario);
 }
 
@@ -284,10 +303,6 @@ std::string to_text(const ScenarioOptions& options) {
   if (options.seed) line("--seed", fmt::format("{}", *options.seed));
   if (options.step_s) line("--step", fmt::format("{}", *options.step_s));
   line("--law", options.law);
-  line("--bounds", options.bounds);
-  line("--gantry", options.gantry);
-  line("--braking", options.braking);
-  line("--passivity", options.passivity);
   for (const std::string& change : options.changes) line("--set", change);
   return text;
 }
@@ -305,7 +320,9 @@ std::string hash_of(const std::vector<config::SourceText>& sources) {
 config::Scenario load_recorded(std::vector<config::SourceText> sources, const std::string& text) {
   const ScenarioOptions options = recorded_options(text);
   config::SourceReader reader(sources);
-  return apply_all(options, reader, config::load_scenario(std::move(sources)));
+  config::Scenario scenario = apply_all(options, reader, config::load_scenario(std::move(sources)));
+  apply_earlier(text, scenario);
+  return scenario;
 }
 
 }  // namespace hg::scenario

@@ -25,11 +25,7 @@ struct ScenarioOptions {
   std::string hand;     ///< hand, "relaxed", "normal" or "stiff"; empty = the script's
   std::optional<std::uint64_t> seed;  ///< seed of the simulation
   std::optional<double> step_s;       ///< largest step of the plant
-  std::string law;                    ///< law, "gauss" or "paper"; empty = the device's
-  std::string bounds;                 ///< bounds, "recoverable" or "paper"; empty = the device's
-  std::string gantry;     ///< guidance of the gantry, "law" or "rule"; empty = the device's
-  std::string braking;    ///< braking, "alone" or "together"; empty = the device's
-  std::string passivity;  ///< passivity reaction, "off", "observe" or "act"; empty = the device's
+  std::string law;                    ///< preset, see config::LawPreset; empty = the device's
   /// Values for keys of the files, "PART.KEY=VALUE"; a part is scenario, device, simulation, twin
   /// or script: "twin.joints.hinge.damping_Nms_per_rad=2"
   std::vector<std::string> changes;

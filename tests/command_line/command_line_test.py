@@ -97,6 +97,25 @@ class MainJob(TemporaryFolder):
             self.assertEqual(code, 2)
             self.assertIn(words, err)
 
+    def test_a_preset_sets_four_parts_of_the_law(self):
+        summary = self.folder / "summary.json"
+        for options, parts in ((("--law", "as_published"), ("paper", "paper", "rule", "alone")),
+                               (("--law", "together", "--set", "device.rendering.gantry=law"),
+                                ("gauss", "recoverable", "law", "together"))):
+            code, out, err = run("run", "door", "--user", "none", "--fast", "--no-recording", "--duration",
+                                 "0.1", "--summary", summary, *options)
+            self.assertEqual((code, err), (0, ""), out)
+            facts = json.loads(summary.read_text())
+            self.assertEqual(tuple(facts[key] for key in ("law", "bounds", "gantry", "braking")), parts)
+
+    def test_options_for_single_parts_of_the_law_name_the_preset(self):
+        for option, instead in (("--bounds", "--law as_published"), ("--gantry", "--law gantry"),
+                                ("--braking", "--law together"),
+                                ("--passivity", "--set device.passivity.reaction=act")):
+            code, _, err = run("run", "door", option, "law")
+            self.assertEqual(code, 2)
+            self.assertIn(f"{option}: is no option any more: use {instead}", err)
+
     def test_other_simulated_machines_lie_beside_the_shipped_one(self):
         peaks = {}
         for machine in (None, "as_published", "harder"):

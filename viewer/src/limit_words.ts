@@ -62,7 +62,7 @@ export function reaction_text(reaction: number, unit: SceneLimit["unit"]): strin
   return `${size.toFixed(size < 10 ? 1 : 0)} ${unit === "rad" ? "Nm" : "N"}`;
 }
 
-export interface NearLimit {
+interface NearLimit {
   index: number;
   distance: number;
 }

@@ -6,7 +6,7 @@ import type { Link } from "./data/freshness";
 import type { Safety, Scene } from "./messages";
 import { element, write } from "./page";
 
-export interface StopText {
+interface StopText {
   text: string;
   note: string;
   announcement: string;

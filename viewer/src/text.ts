@@ -50,7 +50,7 @@ export function share_between(
   return Math.min(1, Math.max(0, (value - min) / (max - min)));
 }
 
-export function force_of(frame: Frame): number {
+function force_of(frame: Frame): number {
   const force = Math.hypot(...frame.force_N);
   return Number.isFinite(force) ? force : 0;
 }
@@ -102,7 +102,7 @@ export function note_text(frame: Frame, is_run: boolean): string {
   return frame.is_clamped ? "The device lost track of its reference and catches up." : "";
 }
 
-export interface ModeText {
+interface ModeText {
   text: string;
   kind: string; // how it is painted
 }

@@ -63,7 +63,7 @@ const DARK: Theme = {
   exposure: 1.0,
 };
 
-export type ThemeChoice = "system" | "light" | "dark";
+type ThemeChoice = "system" | "light" | "dark";
 
 const STORED_AS = "hapticgiant.theme";
 const system = matchMedia("(prefers-color-scheme: dark)");

@@ -1,23 +1,23 @@
-/// Client of the live interface of a running program: the Foxglove WebSocket protocol, version 1.
-///
-/// Source: https://github.com/foxglove/ws-protocol (specification). Messages are CDR bytes.
+/// Client of the live interface of a running program; it connects again whenever that ends.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "apps/ros2/live_connection.h"
 #include "link.h"
 
 namespace hapticgiant {
 
-using Bytes = std::string_view;
+using Bytes = hg::bridges::Bytes;
 
 /// The service whose calls overtake all others: those that still wait fail.
 inline constexpr const char* kStop = "/hapticgiant/stop";
@@ -53,11 +53,11 @@ using FindLink = std::function<Link()>;
 /// Connection that is opened again whenever it is lost. All functions are for the thread of the
 /// io_context. A program that is too slow to take messages loses them; requests without a
 /// connection fail at once.
-class LiveClient {
+class LiveClient : private hg::bridges::LiveListener {
  public:
   LiveClient(boost::asio::io_context& context, FindLink find_link, std::vector<std::string> topics,
              std::vector<Publication> publications, LiveEvents events);
-  ~LiveClient();
+  ~LiveClient() override;
 
   void publish(const std::string& topic, Bytes message);
   void call(const std::string& service, Bytes request, OnAnswer on_answer);
@@ -69,10 +69,24 @@ class LiveClient {
   std::string get(const std::string& path) const;
 
  private:
-  class Session;
+  using Requests = std::map<std::uint32_t, OnAnswer>;
+
+  void opened(const std::string& server) override;
+  bool offered(const hg::bridges::LiveChannel& channel) override;
+  void offered(const hg::bridges::LiveService& service) override;
+  void withdrawn(const hg::bridges::LiveService& service) override;
+  void received(const hg::bridges::LiveChannel& channel, Bytes message) override;
+  void clock(std::uint64_t time_ns) override;
+  void fetched(std::uint32_t request, const hg::bridges::LiveAsset& asset) override;
+  void parameters(const nlohmann::json& values, const std::string& id) override;
+  void status(const std::string& text, bool is_error) override;
+  void answered(std::uint32_t call, Bytes message) override;
+  void failed(std::uint32_t call, const std::string& why) override;
+  void closed(const std::string& why) override;
 
   void connect();
-  void retry(const std::string& reason);
+  void connect_after(std::chrono::milliseconds pause);
+  static void answer(Requests& requests, std::uint32_t id, const Answer& answer);
 
   boost::asio::io_context& context_;
   const FindLink find_link_;
@@ -81,7 +95,12 @@ class LiveClient {
   const LiveEvents events_;
   Link link_;
   boost::asio::steady_timer timer_;
-  std::shared_ptr<Session> session_;
+  std::shared_ptr<hg::bridges::LiveConnection> connection_;
+  bool is_open_ = false;
+  std::map<std::string, std::uint32_t> offers_;  ///< numbers of topics that this client sends
+  std::map<std::string, std::uint32_t> services_;
+  Requests calls_, fetches_;
+  std::uint32_t last_id_ = 0;
 };
 
 }  // namespace hapticgiant

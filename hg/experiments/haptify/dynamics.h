@@ -11,6 +11,7 @@
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/experiments/haptify/measures.h"
+#include "hg/experiments/place.h"
 
 namespace hg::haptify {
 
@@ -19,7 +20,7 @@ struct DynamicsConfig {
   double angle = 0.25;   ///< angle of a rotational stroke, rad, [A]
   std::vector<double> duration_s = {1.6, 1.0, 0.7};  ///< durations of one stroke, s: several speeds
   int strokes = 6;                                   ///< number of strokes per duration
-  Eigen::Vector3d position{0.0, 0.0, -0.775};        ///< middle of the box of the handle, m in B
+  Eigen::Vector3d position = experiments::Place{}.middle;  ///< position of the handle, m in B
 };
 
 /// Number of stroke axes; 0..2: along x, y, z of B; 3..5: azimuth, pitch, roll of the hand.

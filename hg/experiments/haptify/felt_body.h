@@ -10,6 +10,7 @@
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/experiments/decay.h"
+#include "hg/experiments/place.h"
 #include "hg/simulator/person/hand.h"
 
 namespace hg::haptify {
@@ -17,7 +18,7 @@ namespace hg::haptify {
 struct PullConfig {
   double rise_s = 0.02;               ///< rise time of the force, s
   double from_s = 0.05, to_s = 0.25;  ///< evaluated interval after the begin of the force, s
-  Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
+  Eigen::Vector3d position = experiments::Place{}.middle;  ///< position of the handle, m in B
 };
 
 struct Pull {
@@ -37,7 +38,7 @@ struct TwistConfig {
   /// Rule for rest, as for a linear kick ([C] 3); 0.06 rad/s are 6 mm/s a hand's breadth off the
   /// axis.
   experiments::CalmRule calm = {.calm_speed = 0.06};
-  Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
+  Eigen::Vector3d position = experiments::Place{}.middle;  ///< position of the handle, m in B
 };
 
 struct Twist {

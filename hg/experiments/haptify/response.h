@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hg/config/simulation/scenario.h"
+#include "hg/experiments/place.h"
 #include "hg/simulator/person/script.h"
 
 namespace hg::haptify {
@@ -22,9 +23,9 @@ struct ResponseConfig {
   double force = 10.0;  ///< amplitude of the push, N: beyond the friction of the joints, [A]
   int periods = 5;      ///< evaluated periods per frequency, at least `least_s` long
   double least_s = 2.0;
-  Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< middle of the box of the handle, m in B
-  double step_force = 10.0;                    ///< height of the force step for the latency, N
-  double watched_s = 0.15;                     ///< time observed after the step, s
+  Eigen::Vector3d position = experiments::Place{}.middle;  ///< position of the handle, m in B
+  double step_force = 10.0;  ///< height of the force step for the latency, N
+  double watched_s = 0.15;   ///< time observed after the step, s
 };
 
 /// The scenario with the handle in the middle, played by an instrument: a script without tremor.

@@ -10,12 +10,14 @@
 #include "hg/config/simulation/scenario.h"
 #include "hg/experiments/decay.h"
 #include "hg/experiments/haptify/play.h"
+#include "hg/experiments/place.h"
 #include "hg/simulator/person/hand.h"
 
 namespace hg::haptify {
 
 struct SurfaceConfig {
-  Eigen::Vector3d position{0.0, 0.0, -0.775};  ///< position of the surface below the hand, m in B
+  /// Position of the surface below the hand, m in B
+  Eigen::Vector3d position = experiments::Place{}.middle;
   double clearance = 0.01;  ///< height of the handle above the surface at the begin, m
   // sliding
   double slide_stiffness = 2000.0;  ///< stiffness while sliding, N/m

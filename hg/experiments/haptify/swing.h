@@ -7,6 +7,7 @@
 #include <string>
 
 #include "hg/config/simulation/scenario.h"
+#include "hg/experiments/place.h"
 
 namespace hg::haptify {
 
@@ -16,8 +17,8 @@ struct SwingConfig {
   double damping = 1.0;  ///< damping of the hinge, Nms/rad
   double watched_s = 6.0;
   int swings = 4;  ///< number of evaluated swings
-  Eigen::Vector3d position{0.0, 0.0,
-                           -0.775};  ///< position of the handle where the spring is at rest, m in B
+  /// Position of the handle where the spring is at rest, m in B
+  Eigen::Vector3d position = experiments::Place{}.middle;
 };
 
 /// Oscillation of a signal about zero.

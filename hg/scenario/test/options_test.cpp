@@ -4,20 +4,56 @@
 
 #include <string>
 
+#include "hg/config/law_names.h"
 #include "hg/core/test/message_of.h"
+#include "hg/scenario/names.h"
 
 namespace hg::scenario {
 namespace {
 
 TEST(Options, ARecordingKeepsThoseThatDetermineTheCycle) {
-  const ScenarioOptions options = {
-      .scenario = "door", .rate_Hz = 500.0, .law = "paper", .bounds = "paper"};
-  EXPECT_EQ(to_text(options), "--rate-hz 500\n--law paper\n--bounds paper\n");
+  const ScenarioOptions options = {.scenario = "door", .rate_Hz = 500.0, .law = "as_published"};
+  EXPECT_EQ(to_text(options), "--rate-hz 500\n--law as_published\n");
   const config::Scenario recorded =
       load_recorded(load({.scenario = "door"}).sources, to_text(options));
   EXPECT_EQ(recorded.device.model.rate_Hz, 500.0);
   EXPECT_EQ(recorded.device.rendering.law, rendering::Law::kPaper);
   EXPECT_EQ(recorded.device.rendering.bounds, rendering::Bounds::kPaper);
+}
+
+TEST(Options, EveryPresetSetsTheFourPartsOfTheLaw) {
+  const auto parts = [](const char* law) {
+    const analysis::RunFacts facts = facts_of_scenario(load({.scenario = "door", .law = law}));
+    return facts.law + " " + facts.bounds + " " + facts.gantry + " " + facts.braking;
+  };
+  EXPECT_EQ(parts(""), "gauss recoverable rule alone");
+  EXPECT_EQ(parts("gauss"), "gauss recoverable rule alone");
+  EXPECT_EQ(parts("gantry"), "gauss recoverable law alone");
+  EXPECT_EQ(parts("together"), "gauss recoverable rule together");
+  EXPECT_EQ(parts("paper"), "paper recoverable rule alone");
+  EXPECT_EQ(parts("as_published"), "paper paper rule alone");
+}
+
+TEST(Options, ASinglePartOfTheLawReplacesThatOfThePreset) {
+  const ScenarioOptions options = {
+      .scenario = "door",
+      .law = "paper",
+      .changes = {"device.rendering.bounds=paper", "device.rendering.law=together"}};
+  const config::Scenario scenario = load(options);
+  EXPECT_EQ(config::preset_name(scenario.device.rendering), "as_published");
+  const config::Scenario recorded = load_recorded(scenario.sources, to_text(options));
+  EXPECT_EQ(config::preset_name(recorded.device.rendering), "as_published");
+}
+
+TEST(Options, ARecordingOfAnEarlierVersionKeepsItsPartsOfTheLaw) {
+  const config::Scenario recorded = load_recorded(
+      load({.scenario = "door"}).sources,
+      "--seed 3\n--law paper\n--bounds paper\n--gantry law\n--braking together\n--passivity act\n");
+  EXPECT_EQ(recorded.device.rendering.law, rendering::Law::kPaper);
+  EXPECT_EQ(recorded.device.rendering.bounds, rendering::Bounds::kPaper);
+  EXPECT_EQ(recorded.device.rendering.gantry, rendering::Gantry::kLaw);
+  EXPECT_EQ(recorded.device.rendering.braking, rendering::Braking::kTogether);
+  EXPECT_EQ(recorded.device.passivity.reaction, passivity::Reaction::kAct);
 }
 
 TEST(Options, AnUnknownNameIsRefusedWithItsOption) {

@@ -23,7 +23,6 @@ import numpy as np
 
 from .chain import InputError
 
-CRITERIA = ("logdet", "lambda_min", "trace")
 MEASURES = ("covariance", "gramian")
 WINDOWS, WINDOW_S = 4, 0.03  # where and how long placements are compared during the search
 PRIOR_Q = 0.5  # rad or m, before the first measurement

@@ -10,7 +10,6 @@ from . import pages, tables
 from .runs import Run, condition_data, condition_text, label_of
 
 PATH_REACHED_M = 0.05  # a checkpoint counts
-SPRING_S = 0.5  # the spring of the hand stretches first
 
 # Time of the script, counted from the grasp, in which it provokes an event, and what the person
 # does then: segments of models/scripts. The same event at another time does not count.

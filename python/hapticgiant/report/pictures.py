@@ -78,7 +78,7 @@ def column(table, name):
 
 # single panels: also used on the first page
 
-def draw_view(panel, view, has_legend=False):
+def draw_view(panel, view):
     """Positions of the handle seen along one axis, and the limits of the handle."""
     rows = np.array(view["rows"], dtype=float)
     height, width = rows.shape

@@ -14,9 +14,8 @@ from hapticgiant.command_line import nearest
 
 OPTIONS = {"scenario": "", "device": "--device", "twin": "--twin", "user": "--user",
            "simulation": "--simulation", "plant": "--plant", "sensors": "--sensors",
-           "hand": "--hand", "seed": "--seed", "law": "--law", "bounds": "--bounds",
-           "gantry": "--gantry", "braking": "--braking", "passivity": "--passivity",
-           "rate_Hz": "--rate-hz", "step_s": "--step", "duration_s": "--duration"}
+           "hand": "--hand", "seed": "--seed", "law": "--law", "rate_Hz": "--rate-hz",
+           "step_s": "--step", "duration_s": "--duration"}
 """Options of `hapticgiant run` that a study may give, and how the command line calls them."""
 FILES = ("scenario", "device", "twin", "user", "simulation")  # options that may name a file
 PARTS = ("scenario", "device", "simulation", "twin", "script")  # before the dot of a key

@@ -6,7 +6,7 @@ import { protocols } from "./token";
 
 const RETRY_MS = 1000;
 
-export interface Receiver {
+interface Receiver {
   on_message(message: Message): void;
   on_refused(reason: string): void; // of a message that cannot be read
   on_state(is_connected: boolean): void;

@@ -2,7 +2,7 @@
 
 import type { Frame, Scene, SceneJoint } from "../messages";
 
-export const HISTORY_FRAMES = 7200; // two minutes at 60 Hz
+const HISTORY_FRAMES = 7200; // two minutes at 60 Hz
 
 // A table that forgets its oldest rows; columns are views without a copy.
 export class Table {

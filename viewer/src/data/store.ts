@@ -13,7 +13,7 @@ import { authorization } from "./token";
 const RETRY_MS = 1000; // of the scene
 const BACK_S = 0.05; // time that goes back by less has been rounded
 
-export interface Listener {
+interface Listener {
   on_scene?(scene: Scene): void; // another run has started, or the first one
   on_frame?(frame: Frame): void;
   on_event?(event: Event): void;

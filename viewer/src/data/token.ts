@@ -10,7 +10,7 @@ export function page_options(): URLSearchParams {
 }
 
 // True when there was one in the address.
-export function keep_token(): boolean {
+function keep_token(): boolean {
   const options = page_options();
   const token = options.get(NAME);
   if (token === null) return false;

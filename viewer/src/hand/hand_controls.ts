@@ -24,7 +24,7 @@ const SPINS: Record<string, number> = { q: 1, e: -1 }; // turn while dragging, a
 const OWN_SPACE = "button, summary, input"; // the space bar works them
 const LABEL_AWAY = 26; // px, from the handle
 
-export function has_lever(scene: Scene): boolean {
+function has_lever(scene: Scene): boolean {
   return scene.twin.joints.some((joint) => /lever|handle|latch/i.test(joint.name));
 }
 

@@ -20,7 +20,7 @@ export const PART_NAMES = Object.keys(PARTS) as Part[];
 
 export type Kind = "force" | "torque";
 
-export interface Share {
+interface Share {
   part: Part;
   value: number; // N or Nm along the user's force or torque
 }

@@ -4,7 +4,7 @@
 const WIDE = 200; // steps
 const FINE = 3; // exponent
 
-export interface Range {
+interface Range {
   min: number;
   max: number;
   step: number;

@@ -10,7 +10,7 @@ const TABS = [
   ["events", "Events", "What has happened"],
 ] as const;
 
-export type Tab = (typeof TABS)[number][0];
+type Tab = (typeof TABS)[number][0];
 
 export class Tabs {
   private readonly buttons = new Map<Tab, HTMLButtonElement>();

@@ -20,7 +20,7 @@ const SURFACES: [RegExp, Surface][] = [
 ];
 const PAINTED: Surface = { roughness: 0.5, metalness: 0.05 };
 
-export function surface_of(name: string): Surface {
+function surface_of(name: string): Surface {
   return SURFACES.find(([names]) => names.test(name))?.[1] ?? PAINTED;
 }
 

@@ -40,7 +40,7 @@ const LARGE: Action[] = ["start", "end", "go_on"];
 export type Send = (command: Ability, content?: Json) => Promise<Outcome>;
 
 // Keys belong to who types.
-export function is_writing(target: EventTarget | null): boolean {
+function is_writing(target: EventTarget | null): boolean {
   return target instanceof HTMLInputElement || target instanceof HTMLTextAreaElement;
 }
 

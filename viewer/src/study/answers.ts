@@ -2,18 +2,18 @@
 
 import type { Form, Item, Pair, ParticipantState } from "./messages";
 
-export interface Draft {
+interface Draft {
   answers: Record<string, number | string>;
   winners: Record<string, string>; // by pair
   order: Pair[]; // drawn, also which is left
   at: number; // the pair that is asked; -1: the items
 }
 
-export function pair_name([first, second]: Pair): string {
+function pair_name([first, second]: Pair): string {
   return `${first}/${second}`;
 }
 
-export function is_answered(item: Item, answers: Draft["answers"]): boolean {
+function is_answered(item: Item, answers: Draft["answers"]): boolean {
   return item.kind === "text" || typeof answers[item.name] === "number";
 }
 

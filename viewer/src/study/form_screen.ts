@@ -8,7 +8,7 @@ import type { Form, Json, Pair, ParticipantState } from "./messages";
 import { heading_of, main_button, type Desk, type Screen } from "./screens";
 import type { Outcome } from "./study_link";
 
-export interface FormDesk extends Desk {
+interface FormDesk extends Desk {
   submit(answers: Json): Promise<Outcome>;
 }
 

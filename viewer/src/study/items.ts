@@ -29,7 +29,7 @@ export function name_and_question(form: Form, item: Item): [string, string] {
   return at < 0 ? ["", item.text] : [item.text.slice(0, at), item.text.slice(at + 2)];
 }
 
-export function question_text(form: Form, item: Item): (HTMLElement | string)[] {
+function question_text(form: Form, item: Item): (HTMLElement | string)[] {
   const [name, question] = name_and_question(form, item);
   if (name === "") return [question];
   const first = question.charAt(0).toUpperCase() + question.slice(1);

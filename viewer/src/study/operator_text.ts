@@ -33,7 +33,7 @@ const PHASES: Record<Exclude<Phase, "closed" | "participant" | "complete">, stri
   failed: "No result",
 };
 
-export function present_step({ steps, position }: OperatorState): Step | null {
+function present_step({ steps, position }: OperatorState): Step | null {
   return (position === null ? null : steps[position]) ?? null;
 }
 
@@ -80,7 +80,7 @@ export function kind_text({ people, hand }: OperatorState): string {
   return `${people === "real" ? "Real people" : "Simulated people"}, ${hands[hand]}`;
 }
 
-export interface EventRow {
+interface EventRow {
   name: string;
   time_s: number | null; // null: expected, has not happened
   is_expected: boolean;

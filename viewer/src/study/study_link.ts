@@ -12,7 +12,7 @@ export type Outcome =
   | { kind: "refused"; problem: string }
   | { kind: "lost" }; // it may have been done
 
-export interface Receiver {
+interface Receiver {
   on_message(message: Json & { kind: string }): void; // all but answers
   on_connection(is_connected: boolean): void;
 }

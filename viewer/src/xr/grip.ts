@@ -6,7 +6,7 @@ import type { Quaternion as Turn, Vec3 } from "../messages";
 
 const STAND_BACK = 0.55; // m, from the handle
 
-export interface Held {
+interface Held {
   from: Vector3;
   attitude: Quaternion;
   handle: Vector3;

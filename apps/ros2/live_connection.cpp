@@ -1,6 +1,4 @@
-#include "apps/ros2/live_client.h"
-
-#include <fmt/format.h>
+#include "apps/ros2/live_connection.h"
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
@@ -19,9 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "hg/core/error.h"
-
-namespace hg::ros2 {
+namespace hg::bridges {
 namespace {
 
 namespace asio = boost::asio;
@@ -29,29 +25,35 @@ namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 using nlohmann::json;
 
-constexpr std::size_t kMostWaiting = 256;         // messages to the run
-constexpr std::size_t kMostSaid = 200;            // of an HTTP answer
-constexpr std::size_t kMostBytes = 64u << 20u;    // of one message from the run
-constexpr std::chrono::seconds kPatience(5);      // for a run that says nothing at all
-constexpr std::byte kMessage{1}, kResponse{3};    // from the server
-constexpr char kOwnMessage = 1, kOwnRequest = 2;  // from a client
+constexpr std::size_t kMostWaiting = 256;       // messages to the run
+constexpr int kErrorLevel = 2;                  // of a status
+constexpr std::size_t kMostSaid = 200;          // of an HTTP answer
+constexpr std::size_t kMostBytes = 64u << 20u;  // of one message from the run
+constexpr std::chrono::seconds kPatience(5);    // for a run that says nothing at all
+constexpr char kMessage = 1, kTime = 2, kResponse = 3, kAsset = 4;  // from the server
+constexpr char kOwnMessage = 1, kOwnRequest = 2;                    // from a client
 
+// Takes a number off the front; 0 where the bytes end too early.
 template <typename Number>
-Number number_at(std::span<const std::byte> bytes, std::size_t offset) {
-  Number number;
-  std::memcpy(&number, bytes.data() + offset, sizeof number);
+Number take(Bytes& bytes) {
+  Number number = 0;
+  const std::size_t size = std::min(sizeof number, bytes.size());
+  if (size == sizeof number) std::memcpy(&number, bytes.data(), size);
+  bytes.remove_prefix(size);
   return number;
+}
+
+Bytes take(Bytes& bytes, std::size_t size) {
+  const Bytes front = bytes.substr(0, size);
+  bytes.remove_prefix(front.size());
+  return front;
 }
 
 void append(std::string& bytes, std::uint32_t number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-void append(std::string& bytes, std::span<const std::byte> more) {
-  bytes.append(reinterpret_cast<const char*>(more.data()), more.size());
-}
-
-class Connection final : public LiveClient, public std::enable_shared_from_this<Connection> {
+class Connection final : public LiveConnection, public std::enable_shared_from_this<Connection> {
  public:
   Connection(asio::io_context& context, LiveListener& listener)
       : listener_(&listener), resolver_(context), socket_(context) {}
@@ -60,10 +62,9 @@ class Connection final : public LiveClient, public std::enable_shared_from_this<
   void abandon() override;
   std::uint32_t offer(std::string_view topic, std::string_view type) override;
   void withdraw(std::uint32_t topic) override;
-  void publish(std::uint32_t topic, std::span<const std::byte> message) override;
-  void call(std::uint32_t service, std::uint32_t call, std::span<const std::byte> request) override;
-  void call_at_once(std::uint32_t service, std::uint32_t call,
-                    std::span<const std::byte> request) override;
+  void publish(std::uint32_t topic, Bytes message) override;
+  void call(std::uint32_t service, std::uint32_t call, Bytes request) override;
+  void call_at_once(std::uint32_t service, std::uint32_t call, Bytes request) override;
   void send(const json& message) override;
   std::uint64_t dropped() const override { return dropped_; }
 
@@ -80,9 +81,8 @@ class Connection final : public LiveClient, public std::enable_shared_from_this<
   void take_text(std::string_view text);
   void take_channels(const json& channels);
   void take_services(const json& services);
-  void take_bytes(std::span<const std::byte> bytes);
-  static std::string call_bytes(std::uint32_t service, std::uint32_t call,
-                                std::span<const std::byte> request);
+  void take_bytes(Bytes bytes);
+  static std::string call_bytes(std::uint32_t service, std::uint32_t call, Bytes request);
   void push(Waiting waiting);
   void write();
   void end(const std::string& why);
@@ -120,8 +120,8 @@ void Connection::open() {
   beast::get_lowest_layer(socket_).expires_never();
   beast::error_code ignored;
   beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
-  socket_.set_option(websocket::stream_base::timeout{
-      .handshake_timeout = kPatience, .idle_timeout = kPatience, .keep_alive_pings = true});
+  socket_.set_option(
+      websocket::stream_base::timeout{kPatience, kPatience, /*keep_alive_pings=*/true});
   socket_.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
     request.set(beast::http::field::sec_websocket_protocol, "foxglove.sdk.v1");
   }));
@@ -141,11 +141,11 @@ std::string Connection::refusal(beast::error_code error) const {
   if (response_.result() == beast::http::status::forbidden) {
     return "the token is that of another run, or wrong (HTTP 403)";
   }
-  const std::string_view reason(response_.reason().data(), response_.reason().size());
+  const std::string reason(response_.reason().data(), response_.reason().size());
   std::string said = response_.body().substr(0, kMostSaid);
-  std::ranges::replace(said, '\n', ' ');
-  return fmt::format("expected a run there, got HTTP {} {}{}{}", status, reason,
-                     said.empty() ? "" : ": ", said);
+  std::replace(said.begin(), said.end(), '\n', ' ');
+  return "expected a run there, got HTTP " + std::to_string(status) + " " + reason +
+         (said.empty() ? "" : ": ") + said;
 }
 
 void Connection::abandon() {
@@ -173,10 +173,10 @@ void Connection::read() {
       if (self->socket_.got_text()) {
         self->take_text(text);
       } else {
-        self->take_bytes(std::as_bytes(std::span(text)));
+        self->take_bytes(text);
       }
     } catch (const json::exception& broken) {
-      return self->end(fmt::format("a message that cannot be read: {}", broken.what()));
+      return self->end(std::string("a message that cannot be read: ") + broken.what());
     }
     self->buffer_.consume(self->buffer_.size());
     if (self->listener_ != nullptr) self->read();
@@ -206,7 +206,7 @@ void Connection::take_text(std::string_view text) {
   } else if (op == "serviceCallFailure") {
     listener_->failed(message.at("callId"), message.value("message", ""));
   } else if (op == "status") {
-    listener_->on_status(message.value("message", ""));
+    listener_->status(message.value("message", ""), message.value("level", 0) == kErrorLevel);
   }
 }
 
@@ -229,17 +229,33 @@ void Connection::take_services(const json& services) {
   }
 }
 
-void Connection::take_bytes(std::span<const std::byte> bytes) {
-  constexpr std::size_t kHead =
-      1 + 4 + 8;  // kind, subscription, time; response: service, call, size
-  if (bytes.size() < kHead) return;
-  if (bytes[0] == kMessage) {
-    const auto found = channels_.find(number_at<std::uint32_t>(bytes, 1));
-    if (found != channels_.end()) listener_->received(found->second, bytes.subspan(kHead));
-  } else if (bytes[0] == kResponse) {
-    const std::size_t encoding = number_at<std::uint32_t>(bytes, 9);
-    if (encoding > bytes.size() - kHead) return;
-    listener_->answered(number_at<std::uint32_t>(bytes, 5), bytes.subspan(kHead + encoding));
+void Connection::take_bytes(Bytes bytes) {
+  switch (take<char>(bytes)) {
+    case kMessage: {
+      const auto found = channels_.find(take<std::uint32_t>(bytes));
+      take<std::uint64_t>(bytes);  // the time of the log; messages have stamps of their own
+      if (found != channels_.end()) listener_->received(found->second, bytes);
+      break;
+    }
+    case kTime:
+      listener_->clock(take<std::uint64_t>(bytes));
+      break;
+    case kResponse: {
+      take<std::uint32_t>(bytes);  // service
+      const auto call = take<std::uint32_t>(bytes);
+      take(bytes, take<std::uint32_t>(bytes));  // encoding
+      listener_->answered(call, bytes);
+      break;
+    }
+    case kAsset: {
+      const auto request = take<std::uint32_t>(bytes);
+      const bool is_ok = take<std::uint8_t>(bytes) == 0;
+      const std::string error(take(bytes, take<std::uint32_t>(bytes)));
+      listener_->fetched(request, {is_ok, error, bytes});
+      break;
+    }
+    default:
+      break;
   }
 }
 
@@ -254,40 +270,41 @@ void Connection::withdraw(std::uint32_t topic) {
   send({{"op", "unadvertise"}, {"channelIds", {topic}}});
 }
 
-void Connection::publish(std::uint32_t topic, std::span<const std::byte> message) {
+void Connection::publish(std::uint32_t topic, Bytes message) {
+  if (waiting_.size() >= kMostWaiting) {
+    ++dropped_;
+    return;
+  }
   std::string bytes(1, kOwnMessage);
   append(bytes, topic);
-  append(bytes, message);
+  bytes += message;
   push({std::move(bytes), false});
 }
 
-void Connection::call(std::uint32_t service, std::uint32_t call,
-                      std::span<const std::byte> request) {
+void Connection::call(std::uint32_t service, std::uint32_t call, Bytes request) {
   push({call_bytes(service, call, request), false, call});
 }
 
-void Connection::call_at_once(std::uint32_t service, std::uint32_t call,
-                              std::span<const std::byte> request) {
+void Connection::call_at_once(std::uint32_t service, std::uint32_t call, Bytes request) {
   std::vector<std::uint32_t> overtaken;
-  std::erase_if(waiting_, [&](const Waiting& one) {
-    if (one.call == 0 || one.is_urgent) return false;
-    overtaken.push_back(one.call);
-    return true;
-  });
+  const auto is_overtaken = [](const Waiting& one) { return one.call != 0 && !one.is_urgent; };
+  for (const Waiting& one : waiting_) {
+    if (is_overtaken(one)) overtaken.push_back(one.call);
+  }
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), is_overtaken), waiting_.end());
   waiting_.push_front({call_bytes(service, call, request), false, call, true});
   for (const std::uint32_t each : overtaken) listener_->failed(each, "a stop came after it");
   if (!is_writing_) write();
 }
 
-std::string Connection::call_bytes(std::uint32_t service, std::uint32_t call,
-                                   std::span<const std::byte> request) {
+std::string Connection::call_bytes(std::uint32_t service, std::uint32_t call, Bytes request) {
   constexpr std::string_view kEncoding = "cdr";
   std::string bytes(1, kOwnRequest);
   append(bytes, service);
   append(bytes, call);
   append(bytes, static_cast<std::uint32_t>(kEncoding.size()));
   bytes += kEncoding;
-  append(bytes, request);
+  bytes += request;
   return bytes;
 }
 
@@ -297,10 +314,6 @@ void Connection::send(const json& message) {
 }
 
 void Connection::push(Waiting waiting) {
-  if (waiting_.size() >= kMostWaiting) {
-    ++dropped_;
-    return;
-  }
   waiting_.push_back(std::move(waiting));
   if (!is_writing_) write();
 }
@@ -320,34 +333,11 @@ void Connection::write() {
 
 }  // namespace
 
-LiveAddress parse_live_address(const std::string& text) {
-  const auto fail = [&] {
-    return SetupError(fmt::format(
-        "--live {}: expected the address that the run prints, ws://HOST:PORT/live?token=TOKEN",
-        text));
-  };
-  constexpr std::string_view kScheme = "ws://";
-  if (!text.starts_with(kScheme)) throw fail();
-  const std::size_t slash = text.find('/', kScheme.size());
-  const std::string authority = text.substr(kScheme.size(), slash - kScheme.size());
-  const std::size_t colon = authority.rfind(':');
-  if (slash == std::string::npos || colon == std::string::npos || colon == 0) throw fail();
-  LiveAddress address = {authority.substr(0, colon), authority.substr(colon + 1),
-                         text.substr(slash)};
-  if (address.host.starts_with('[') && address.host.ends_with(']')) {
-    address.host = address.host.substr(1, address.host.size() - 2);
-  }
-  if (address.port.empty() || address.port.find_first_not_of("0123456789") != std::string::npos) {
-    throw fail();
-  }
-  return address;
-}
-
-std::shared_ptr<LiveClient> connect_live(asio::io_context& context, const LiveAddress& address,
-                                         LiveListener& listener) {
+std::shared_ptr<LiveConnection> connect_live(asio::io_context& context, const LiveAddress& address,
+                                             LiveListener& listener) {
   const auto made = std::make_shared<Connection>(context, listener);
   made->connect(address);
   return made;
 }
 
-}  // namespace hg::ros2
+}  // namespace hg::bridges
