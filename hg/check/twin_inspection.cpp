@@ -21,6 +21,7 @@ using rendering::Element;
 using rendering::TorqueAt;
 using rendering::Total;
 
+constexpr double kRoundedUp = 1.0 + 1e-9;  // where a limit is derived from another one
 constexpr int kPostures = 500;
 constexpr std::uint64_t kSeed = 1;
 constexpr double kLightMass = 1.5, kLightInertia = 0.015;  // kg, kg m^2: half of [C] 3
@@ -29,6 +30,15 @@ constexpr double kLightMass = 1.5, kLightInertia = 0.015;  // kg, kg m^2: half o
 std::string dof_key(const rendering::TwinDof& dof, const char* quantity, const char* angle,
                     const char* length) {
   return fmt::format("joints.{}.{}_{}", dof.name, quantity, dof.is_angle ? angle : length);
+}
+
+// Largest speed of a joint by the URDF, rad/s or m/s; infinite where none is given.
+double velocity_max_of(const config::Twin& twin, const std::string& joint) {
+  for (const model::Urdf& urdf : urdfs_among(twin.sources)) {
+    const auto found = std::ranges::find(urdf.joints, joint, &model::UrdfJoint::name);
+    if (found != urdf.joints.end()) return found->velocity_max;
+  }
+  return kInfinity;
 }
 
 void inspect_mass_matrix(const TwinFigures& figures, Collector& out) {
@@ -55,6 +65,35 @@ void inspect_weight(const TwinFigures& figures, Collector& out) {
                         "least {:g}: a light twin may swing with a stiff hand",
                         figures.inertia, kLightInertia),
             "give the moving links more inertia, or their joints more damping");
+  }
+}
+
+// Joints that follow others have no limits of their own in the law: those of the leader must hold
+// theirs.
+void inspect_followers(const config::Twin& twin, Collector& out) {
+  for (const model::Coupling& coupling : twin.model.chain.couplings()) {
+    const auto leader =
+        std::ranges::find(twin.model.dofs, coupling.leader, &rendering::TwinDof::name);
+    if (leader == twin.model.dofs.end()) continue;
+    const limits::JointLimits& limits = leader->limits;
+    const double ratio = coupling.curve ? coupling.curve->steepest() : std::abs(coupling.ratio);
+    const double largest = velocity_max_of(twin, coupling.joint) / ratio;
+    if (limits.dq_max > largest * kRoundedUp) {
+      out.add(Severity::kWarning, dof_key(*leader, "dq_max", "rad_per_s", "m_per_s"),
+              fmt::format("with {:.4g} {} the joint {}, which follows, moves {:.3g} times as fast: "
+                          "{:.3g}, more than its {:.3g}",
+                          limits.dq_max, leader->is_angle ? "rad/s" : "m/s", coupling.joint, ratio,
+                          ratio * limits.dq_max, ratio * largest),
+              fmt::format("lower it to {:.4g}", largest));
+    }
+    if (!coupling.curve) continue;
+    const Interval range = coupling.curve->range();
+    if (limits.q_min >= range.lb && limits.q_max <= range.ub) continue;
+    out.add(Severity::kWarning, dof_key(*leader, "q_max", "rad", "m"),
+            fmt::format("moves in {:.4g} .. {:.4g}, but the curve that {} follows is given for "
+                        "{:.4g} .. {:.4g}: beyond it is straight",
+                        limits.q_min, limits.q_max, coupling.joint, range.lb, range.ub),
+            "stay within the curve, or give it for the whole range");
   }
 }
 
@@ -182,6 +221,7 @@ Findings inspect(const config::Twin& twin, double dt) {
   inspect_mass_matrix(figures, out);
   inspect_weight(figures, out);
   inspect_bodies(twin.sources, out);
+  inspect_followers(twin, out);
   inspect_ignored(twin.sources, UrdfUse::kTwin, out);
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const rendering::TwinDof& dof = twin.model.dofs[i];

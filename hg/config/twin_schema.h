@@ -86,36 +86,40 @@ void describe_chain(V& v, TwinDraft& d) {
          "whether the root link of the URDF moves freely, by a joint 'root'");
 }
 
-/// Joints of the URDF, for the couplings between them.
-struct UrdfJointNames {
-  std::vector<std::string> names;
-  std::vector<bool> are_slides;
+/// Links and joints of the URDF, for the joints that follow others.
+struct UrdfParts {
+  std::vector<std::string> links, joint_names;
+  std::vector<model::UrdfJoint> joints;  ///< by name
+
+  /// Unit of the positions of a joint; kEither for -1.
+  JointUnit unit_of(int joint) const {
+    if (joint < 0) return JointUnit::kEither;
+    return joints[joint].type == model::UrdfJointType::kPrismatic ? JointUnit::kLength
+                                                                  : JointUnit::kAngle;
+  }
 };
 
 template <class V>
-void describe(V& v, model::Coupling& coupling, const UrdfJointNames& joints) {
+void describe(V& v, model::Coupling& coupling, const UrdfParts& urdf) {
   int joint = -1, leader = -1;
-  v.name("joint", joint, joints.names, "a joint of the URDF", "the joint that follows",
+  v.name("joint", joint, urdf.joint_names, "a joint of the URDF", "the joint that follows",
          Need::kRequired);
-  v.name("follows", leader, joints.names, "a joint of the URDF", "the joint that leads",
+  v.name("follows", leader, urdf.joint_names, "a joint of the URDF", "the joint that leads",
          Need::kRequired);
-  JointUnit unit = JointUnit::kEither;
-  if (joint >= 0) unit = joints.are_slides[joint] ? JointUnit::kLength : JointUnit::kAngle;
   v.number("ratio", coupling.ratio, kRatio,
            "its speed over that of the joint that leads, in their own units, not 0");
-  v.joint_number({"offset_rad", "offset_m"}, unit, coupling.offset, kAnyNumber,
+  v.joint_number({"offset_rad", "offset_m"}, urdf.unit_of(joint), coupling.offset, kAnyNumber,
                  "its position where the joint that leads is at 0");
   v.rule(coupling.ratio != 0.0, "ratio", "must not be 0");
   v.rule(joint < 0 || joint != leader, "follows", "a joint cannot follow itself");
-  if (joint >= 0) coupling.joint = joints.names[joint];
-  if (leader >= 0) coupling.leader = joints.names[leader];
+  if (joint >= 0) coupling.joint = urdf.joint_names[joint];
+  if (leader >= 0) coupling.leader = urdf.joint_names[leader];
 }
 
 template <class V>
-void describe_couplings(V& v, std::vector<model::Coupling>& couplings,
-                        const UrdfJointNames& joints) {
+void describe_couplings(V& v, std::vector<model::Coupling>& couplings, const UrdfParts& urdf) {
   v.list(
-      "couplings", [&](auto& child) { describe(child, couplings.emplace_back(), joints); },
+      "couplings", [&](auto& child) { describe(child, couplings.emplace_back(), urdf); },
       "joints that move with others, as by 'mimic' of the URDF: gears, racks; they may be beside "
       "the "
       "chain. Such a joint is none of 'joints': limits and forces are given at the joint that "
@@ -123,33 +127,38 @@ void describe_couplings(V& v, std::vector<model::Coupling>& couplings,
 }
 
 template <class V>
-void describe(V& v, model::ClosedLoop& loop, const std::vector<std::string>& links,
-              const std::vector<std::string>& joints) {
+void describe(V& v, model::ClosedLoop& loop, const UrdfParts& urdf) {
   int link = -1, meets = -1, leader = -1;
   std::vector<int> follow;
-  v.name("link", link, links, "a link of the URDF", "one end of the loop", Need::kRequired);
-  v.name("meets", meets, links, "a link of the URDF", "the other end: the origins of both coincide",
-         Need::kRequired);
-  v.name("leads", leader, joints, "a joint of the URDF",
+  v.name("link", link, urdf.links, "a link of the URDF", "one end of the loop", Need::kRequired);
+  v.name("meets", meets, urdf.links, "a link of the URDF",
+         "the other end: the origins of both coincide", Need::kRequired);
+  v.name("leads", leader, urdf.joint_names, "a joint of the URDF",
          "the joint that moves the loop; it is one of the chain to the handle", Need::kRequired);
-  v.names("follow", follow, joints, "a joint of the URDF",
+  v.names("follow", follow, urdf.joint_names, "a joint of the URDF",
           "one to three joints that keep it closed; two for a planar linkage", Need::kRequired);
   v.rule(!v.is_given("follow") || (!follow.empty() && follow.size() <= 3), "follow",
          "one to three joints must keep the loop closed", std::to_string(follow.size()));
-  if (link >= 0) loop.link = links[link];
-  if (meets >= 0) loop.meets = links[meets];
-  if (leader >= 0) loop.leader = joints[leader];
-  for (const int joint : follow) loop.follow.push_back(joints[joint]);
+  if (link >= 0) loop.link = urdf.links[link];
+  if (meets >= 0) loop.meets = urdf.links[meets];
+  if (leader >= 0) loop.leader = urdf.joint_names[leader];
+  for (const int joint : follow) loop.follow.push_back(urdf.joint_names[joint]);
 }
 
 template <class V>
-void describe_loops(V& v, std::vector<model::ClosedLoop>& loops,
-                    const std::vector<std::string>& links, const std::vector<std::string>& joints) {
+void describe_loops(V& v, std::vector<model::ClosedLoop>& loops, const UrdfParts& urdf) {
   v.list(
-      "loops", [&](auto& child) { describe(child, loops.emplace_back(), links, joints); },
+      "loops", [&](auto& child) { describe(child, loops.emplace_back(), urdf); },
       "closed loops, such as four-bar hinges. A URDF is a tree: cut the loop at a joint and give "
       "both sides a link there. The joints that follow move with the one that leads, within its "
       "range");
+}
+
+/// Joints that follow others.
+template <class V>
+void describe_followers(V& v, TwinDraft& d, const UrdfParts& urdf) {
+  describe_couplings(v, d.couplings, urdf);
+  describe_loops(v, d.loops, urdf);
 }
 
 /// Range of a parameter in the terms of the descriptions.

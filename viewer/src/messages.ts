@@ -39,7 +39,7 @@ export interface SceneChain {
   p_B_root_m: Vec3;
   quaternion_B_root: Quaternion;
   joints: SceneJoint[]; // in the order of the coordinates
-  followers: SceneFollower[]; // joints of closed loops, which have no coordinates
+  followers: SceneFollower[]; // joints that follow by curves, which have no coordinates
 }
 
 // a joint of a chain
@@ -54,7 +54,7 @@ export interface SceneJoint {
   tau_max: number | null; // peak torque or force, Nm or N; null = unknown
 }
 
-// a joint of a closed loop: its position over that of the joint it follows
+// a joint that follows another one by a curve: its position over the other's
 export interface SceneFollower {
   joint: string;
   leader: string;
