@@ -1,14 +1,18 @@
 /// Description of twin.yaml.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hg/config/schema.h"
 #include "hg/config/twin.h"
+#include "hg/model/cam.h"
 #include "hg/model/chain_model.h"
 #include "hg/signals/twin_parameter.h"
 
@@ -91,6 +95,8 @@ struct UrdfParts {
   std::vector<std::string> links, joint_names;
   std::vector<model::UrdfJoint> joints;  ///< by name
 
+  /// Name of a joint; empty for -1.
+  std::string name_of(int joint) const { return joint < 0 ? "" : joint_names[joint]; }
   /// Unit of the positions of a joint; kEither for -1.
   JointUnit unit_of(int joint) const {
     if (joint < 0) return JointUnit::kEither;
@@ -99,21 +105,33 @@ struct UrdfParts {
   }
 };
 
+/// Indices of two joints in the URDF; -1: unknown.
+struct Follower {
+  int joint = -1, leader = -1;
+};
+
+/// The joint that follows and the one that leads.
+template <class V>
+Follower describe_joints_of(V& v, model::Coupling& coupling, const UrdfParts& urdf) {
+  Follower pair;
+  v.name("joint", pair.joint, urdf.joint_names, "a joint of the URDF", "the joint that follows",
+         Need::kRequired);
+  v.name("follows", pair.leader, urdf.joint_names, "a joint of the URDF", "the joint that leads",
+         Need::kRequired);
+  v.rule(pair.joint < 0 || pair.joint != pair.leader, "follows", "a joint cannot follow itself");
+  coupling.joint = urdf.name_of(pair.joint);
+  coupling.leader = urdf.name_of(pair.leader);
+  return pair;
+}
+
 template <class V>
 void describe(V& v, model::Coupling& coupling, const UrdfParts& urdf) {
-  int joint = -1, leader = -1;
-  v.name("joint", joint, urdf.joint_names, "a joint of the URDF", "the joint that follows",
-         Need::kRequired);
-  v.name("follows", leader, urdf.joint_names, "a joint of the URDF", "the joint that leads",
-         Need::kRequired);
+  const Follower pair = describe_joints_of(v, coupling, urdf);
   v.number("ratio", coupling.ratio, kRatio,
            "its speed over that of the joint that leads, in their own units, not 0");
-  v.joint_number({"offset_rad", "offset_m"}, urdf.unit_of(joint), coupling.offset, kAnyNumber,
+  v.joint_number({"offset_rad", "offset_m"}, urdf.unit_of(pair.joint), coupling.offset, kAnyNumber,
                  "its position where the joint that leads is at 0");
   v.rule(coupling.ratio != 0.0, "ratio", "must not be 0");
-  v.rule(joint < 0 || joint != leader, "follows", "a joint cannot follow itself");
-  if (joint >= 0) coupling.joint = urdf.joint_names[joint];
-  if (leader >= 0) coupling.leader = urdf.joint_names[leader];
 }
 
 template <class V>
@@ -154,11 +172,55 @@ void describe_loops(V& v, std::vector<model::ClosedLoop>& loops, const UrdfParts
       "range");
 }
 
+/// A cam becomes a coupling by a curve; one with a fault becomes none.
+template <class V>
+void describe_cam(V& v, std::vector<model::Coupling>& couplings, const UrdfParts& urdf) {
+  model::Coupling coupling;
+  const Follower pair = describe_joints_of(v, coupling, urdf);
+  v.rule(std::ranges::count(couplings, coupling.joint, &model::Coupling::joint) == 0, "joint",
+         "follows another joint already");
+  std::uint32_t repeats = 0;
+  v.whole(
+      "repeats_per_turn", repeats, 100,
+      "how often the points come in a turn of the joint that leads, which then may turn without "
+      "end; 0: once, and that joint stays between the first and the last");
+  v.rule(repeats == 0 || urdf.unit_of(pair.leader) != JointUnit::kLength, "repeats_per_turn",
+         "the joint that leads must turn");
+  std::vector<model::CamPoint> points;
+  v.list(
+      "points",
+      [&](auto& child) {
+        model::CamPoint& point = points.emplace_back();
+        child.joint_number({"at_rad", "at_m"}, urdf.unit_of(pair.leader), point.leader, kAnyNumber,
+                           "position of the joint that leads", Need::kRequired);
+        child.joint_number({"position_rad", "position_m"}, urdf.unit_of(pair.joint), point.follower,
+                           kAnyNumber, "position of the joint that follows there", Need::kRequired);
+      },
+      "2 .. 200, by position of the joint that leads, at least 3 where they repeat; between them a "
+      "cubic spline, smooth with its slope and curvature",
+      Need::kRequired);
+  const double period = repeats > 0 ? 2.0 * M_PI / repeats : kInfinity;
+  const std::string fault = model::cam_fault(points, period);
+  v.rule(fault.empty(), "points", fault);
+  if (!fault.empty() || coupling.joint.empty()) return;
+  const model::Cam cam = model::make_cam(points, period);
+  const Interval& limits = urdf.joints[pair.joint].position;
+  v.rule(limits.contains(cam.travel.lb) && limits.contains(cam.travel.ub), "points",
+         "the joint that follows must stay within its limits, " + model::to_text(limits.lb) +
+             " .. " + model::to_text(limits.ub),
+         model::to_text(cam.travel.lb) + " .. " + model::to_text(cam.travel.ub));
+  coupling.curve = cam.curve;
+  couplings.push_back(std::move(coupling));
+}
+
 /// Joints that follow others.
 template <class V>
 void describe_followers(V& v, TwinDraft& d, const UrdfParts& urdf) {
   describe_couplings(v, d.couplings, urdf);
   describe_loops(v, d.loops, urdf);
+  v.list(
+      "cams", [&](auto& child) { describe_cam(child, d.couplings, urdf); },
+      "joints that follow others by a curve, as on a cam: valves, presses, feeders");
 }
 
 /// Range of a parameter in the terms of the descriptions.

@@ -82,8 +82,9 @@ inline constexpr std::array kElements = {
             .twin_members = 1,
             .leave_out = [](TwinModel& twin) { twin.w_ref.setZero(); }},
     Element{.key = "mass_scale", .twin_members = 1},
-    Element{.key = "couplings"},  // part of the chain, as `loops`
+    Element{.key = "couplings"},  // part of the chain, as are the next
     Element{.key = "loops"},
+    Element{.key = "cams"},
 };
 
 /// Members of TwinDof that are none of an element: name, q_index, is_angle.
