@@ -174,11 +174,15 @@ void describe_loops(V& v, std::vector<model::ClosedLoop>& loops, const UrdfParts
 
 /// A cam becomes a coupling by a curve; one with a fault becomes none.
 template <class V>
-void describe_cam(V& v, std::vector<model::Coupling>& couplings, const UrdfParts& urdf) {
+void describe_cam(V& v, TwinDraft& d, const UrdfParts& urdf) {
   model::Coupling coupling;
   const Follower pair = describe_joints_of(v, coupling, urdf);
-  v.rule(std::ranges::count(couplings, coupling.joint, &model::Coupling::joint) == 0, "joint",
-         "follows another joint already");
+  const bool follows =
+      std::ranges::count(d.couplings, coupling.joint, &model::Coupling::joint) > 0 ||
+      std::ranges::any_of(d.loops, [&](const model::ClosedLoop& loop) {
+        return std::ranges::count(loop.follow, coupling.joint) > 0;
+      });
+  v.rule(!follows, "joint", "follows another joint already");
   std::uint32_t repeats = 0;
   v.whole(
       "repeats_per_turn", repeats, 100,
@@ -210,7 +214,7 @@ void describe_cam(V& v, std::vector<model::Coupling>& couplings, const UrdfParts
              " .. " + model::to_text(limits.ub),
          model::to_text(cam.travel.lb) + " .. " + model::to_text(cam.travel.ub));
   coupling.curve = cam.curve;
-  couplings.push_back(std::move(coupling));
+  d.couplings.push_back(std::move(coupling));
 }
 
 /// Joints that follow others.
@@ -219,7 +223,7 @@ void describe_followers(V& v, TwinDraft& d, const UrdfParts& urdf) {
   describe_couplings(v, d.couplings, urdf);
   describe_loops(v, d.loops, urdf);
   v.list(
-      "cams", [&](auto& child) { describe_cam(child, d.couplings, urdf); },
+      "cams", [&](auto& child) { describe_cam(child, d, urdf); },
       "joints that follow others by a curve, as on a cam: valves, presses, feeders");
 }
 

@@ -166,6 +166,15 @@ TEST(Twin, CamsThatCannotBeAreRefusedAtTheirPlace) {
                      "wheel_joint, follows: lever_joint, " +
                      points + "}\n"),
             "twin.yaml:7:13: cams[0].joint: follows another joint already");
+  EXPECT_EQ(message_of([] {
+              example(
+                  "lift_door",
+                  "loops: [{link: upper_arm_end, meets: hinge_on_door, leads: lower_hinge, "
+                  "follow: [door_hinge, upper_hinge]}]\ncams:\n  - {joint: upper_hinge, follows: "
+                  "lower_hinge, points: [{at_rad: 0, position_rad: 0}, {at_rad: 1, "
+                  "position_rad: 2}]}\n");
+            }),
+            "twin.yaml:7:13: cams[0].joint: follows another joint already");
 }
 
 TEST(Twin, ACamKeepsTheJointThatFollowsWithinItsLimits) {
