@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hg/controller/rendering/braking.h"
+#include "hg/controller/rendering/twin_elements.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/chain_data.h"
@@ -78,14 +79,9 @@ std::string acceleration_text(const StiffnessLimits& limits) {
 
 struct Spring {
   const rendering::TwinDof* dof = nullptr;
-  double inertia = 0.0;    // moving inertia, kg m^2 or kg
-  double stiffness = 0.0;  // Nm/rad or N/m; with a profile where it is steepest
+  double inertia = 0.0;        // moving inertia, kg m^2 or kg
+  rendering::Total stiffness;  // Nm/rad or N/m, of all elements, each where it is steepest
 };
-
-std::string key_of(const rendering::TwinDof& dof) {
-  if (!dof.profile.empty()) return fmt::format("joints.{}.profile", dof.name);
-  return fmt::format("joints.{}.stiffness_{}", dof.name, dof.is_angle ? "Nm_per_rad" : "N_per_m");
-}
 
 // Those of which `worth` is below `least`, one finding about the worst.
 template <typename Worth, typename Text>
@@ -99,11 +95,12 @@ void warn_of(const std::vector<Spring>& springs, double least, const Worth& wort
   const rendering::TwinDof& dof = *worst->dof;
   const double share = worth(*worst) / least;
   out.add(
-      Severity::kWarning, key_of(dof),
-      fmt::format("{:g} {} on {:.2g} {} {}{}", worst->stiffness, dof.is_angle ? "Nm/rad" : "N/m",
-                  worst->inertia, dof.is_angle ? "kg m^2" : "kg", text(*worst),
-                  others > 0 ? fmt::format("; so do {} other joints", others) : ""),
-      fmt::format("lower it to {:.2g}, or give the joint more inertia", share * worst->stiffness));
+      Severity::kWarning, rendering::item_of(*worst->stiffness.most, dof),
+      fmt::format("{:g} {} on {:.2g} {} {}{}", worst->stiffness.value,
+                  dof.is_angle ? "Nm/rad" : "N/m", worst->inertia, dof.is_angle ? "kg m^2" : "kg",
+                  text(*worst), others > 0 ? fmt::format("; so do {} other joints", others) : ""),
+      fmt::format("lower it to {:.2g}, or give the joint more inertia",
+                  share * worst->stiffness.value));
 }
 
 void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Collector& out) {
@@ -114,26 +111,26 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const rendering::TwinDof& dof = twin.model.dofs[i];
     const auto k = static_cast<Eigen::Index>(i);
-    const double stiffness = dof.stiffness + dof.closer.stiffness + dof.profile.steepest();
-    if (stiffness > 0.0) springs.push_back({&dof, 1.0 / mobility(k, k), stiffness});
+    const rendering::Total stiffness = rendering::total_of(&rendering::Element::stiffness, dof);
+    if (stiffness.value > 0.0) springs.push_back({&dof, 1.0 / mobility(k, k), stiffness});
   }
   const double fastest = limits.frequency_Hz();
   warn_of(
       springs, 1.0,
       [&](const Spring& spring) {
-        return spring.inertia * std::pow(kTurn * fastest, 2) / spring.stiffness;
+        return spring.inertia * std::pow(kTurn * fastest, 2) / spring.stiffness.value;
       },
       [&](const Spring& spring) {
         return fmt::format(
             "swing with {:.1f} Hz; this device shows up to {:.1f} Hz, where the "
             "{:.1f} ms from wrench to motion are {:g} degrees",
-            std::sqrt(spring.stiffness / spring.inertia) / kTurn, fastest, 1e3 * limits.delay,
+            std::sqrt(spring.stiffness.value / spring.inertia) / kTurn, fastest, 1e3 * limits.delay,
             kPhase_deg);
       },
       out);
   // how far from its rest the handle may be: its lever cancels
   const auto way = [&](const Spring& spring) {
-    return spring.inertia * limits.acceleration / spring.stiffness;
+    return spring.inertia * limits.acceleration / spring.stiffness.value;
   };
   warn_of(
       springs, kLeastWay, way,
@@ -175,7 +172,8 @@ StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
                             .delay = std::max(delay_of(device), device.model.dt())};
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const double speed = dq[i];
-    limits.damping += twin.model.dofs[i].damping * speed * speed;
+    const rendering::TwinDof& dof = twin.model.dofs[i];
+    limits.damping += rendering::total_of(&rendering::Element::damping, dof).value * speed * speed;
   }
   limits.acceleration = braking_of(device, twin);
   return limits;

@@ -8,6 +8,7 @@
 
 #include "hg/check/ignored_urdf.h"
 #include "hg/check/twin_bodies.h"
+#include "hg/controller/rendering/twin_elements.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/joint_range.h"
@@ -16,19 +17,28 @@
 namespace hg::check {
 namespace {
 
+using rendering::Element;
+using rendering::TorqueAt;
+using rendering::Total;
+
+constexpr double kRoundedUp = 1.0 + 1e-9;  // where a limit is derived from another one
 constexpr int kPostures = 500;
 constexpr std::uint64_t kSeed = 1;
 constexpr double kLightMass = 1.5, kLightInertia = 0.015;  // kg, kg m^2: half of [C] 3
 
-// "joints.hinge.damping_Nms_per_rad" for ("damping", "Nms_per_rad", "Ns_per_m")
+// "joints.hinge.dq_max_rad_per_s" for ("dq_max", "rad_per_s", "m_per_s")
 std::string dof_key(const rendering::TwinDof& dof, const char* quantity, const char* angle,
                     const char* length) {
-  if (dof.q_index < 0) {  // a floating joint: "root rx" belongs to joint root
-    const std::string joint = dof.name.substr(0, dof.name.find_last_of(' '));
-    return fmt::format("joints.{}.{}{}_{}", joint, dof.is_angle ? "angular_" : "", quantity,
-                       dof.is_angle ? angle : length);
-  }
   return fmt::format("joints.{}.{}_{}", dof.name, quantity, dof.is_angle ? angle : length);
+}
+
+// Largest speed of a joint by the URDF, rad/s or m/s; infinite where none is given.
+double velocity_max_of(const config::Twin& twin, const std::string& joint) {
+  for (const model::Urdf& urdf : urdfs_among(twin.sources)) {
+    const auto found = std::ranges::find(urdf.joints, joint, &model::UrdfJoint::name);
+    if (found != urdf.joints.end()) return found->velocity_max;
+  }
+  return kInfinity;
 }
 
 void inspect_mass_matrix(const TwinFigures& figures, Collector& out) {
@@ -55,6 +65,35 @@ void inspect_weight(const TwinFigures& figures, Collector& out) {
                         "least {:g}: a light twin may swing with a stiff hand",
                         figures.inertia, kLightInertia),
             "give the moving links more inertia, or their joints more damping");
+  }
+}
+
+// Joints that follow others have no limits of their own in the law: those of the leader must hold
+// theirs.
+void inspect_followers(const config::Twin& twin, Collector& out) {
+  for (const model::Coupling& coupling : twin.model.chain.couplings()) {
+    const auto leader =
+        std::ranges::find(twin.model.dofs, coupling.leader, &rendering::TwinDof::name);
+    if (leader == twin.model.dofs.end()) continue;
+    const limits::JointLimits& limits = leader->limits;
+    const double ratio = coupling.curve ? coupling.curve->steepest() : std::abs(coupling.ratio);
+    const double largest = velocity_max_of(twin, coupling.joint) / ratio;
+    if (limits.dq_max > largest * kRoundedUp) {
+      out.add(Severity::kWarning, dof_key(*leader, "dq_max", "rad_per_s", "m_per_s"),
+              fmt::format("with {:.4g} {} the joint {}, which follows, moves {:.3g} times as fast: "
+                          "{:.3g}, more than its {:.3g}",
+                          limits.dq_max, leader->is_angle ? "rad/s" : "m/s", coupling.joint, ratio,
+                          ratio * limits.dq_max, ratio * largest),
+              fmt::format("lower it to {:.4g}", largest));
+    }
+    if (!coupling.curve) continue;
+    const Interval range = coupling.curve->range();
+    if (limits.q_min >= range.lb && limits.q_max <= range.ub) continue;
+    out.add(Severity::kWarning, dof_key(*leader, "q_max", "rad", "m"),
+            fmt::format("moves in {:.4g} .. {:.4g}, but the curve that {} follows is given for "
+                        "{:.4g} .. {:.4g}: beyond it is straight",
+                        limits.q_min, limits.q_max, coupling.joint, range.lb, range.ub),
+            "stay within the curve, or give it for the whole range");
   }
 }
 
@@ -88,46 +127,47 @@ void inspect_limits(const rendering::TwinDof& dof, double start, Collector& out)
 
 // The law holds a spring's torque over a period. With c = d dt / m and k = K dt^2 / m that is
 // stable for k / 2 < c < 2; it shows no more damping than c = 1, however large it is set.
-void inspect_spring(const rendering::TwinDof& dof, double inertia, double dt, Collector& out) {
-  const double stiffness = dof.stiffness + dof.closer.stiffness;
-  const double c = dof.damping * dt / inertia;
-  const double k = stiffness * dt * dt / inertia;
-  const std::string damping = dof_key(dof, "damping", "Nms_per_rad", "Ns_per_m");
+void inspect_springs(const rendering::TwinDof& dof, double inertia, double dt, Collector& out) {
+  const Total stiffness = total_of(&Element::stiffness, dof, TorqueAt::kBegin);
+  const Total damping = total_of(&Element::damping, dof);
+  const Total friction = total_of(&Element::friction, dof);
+  const double c = damping.value * dt / inertia;
+  const double k = stiffness.value * dt * dt / inertia;
   if (c >= 1.0) {
-    out.add(Severity::kWarning, damping,
+    out.add(Severity::kWarning, item_of(*damping.most, dof),
             fmt::format("damping * dt / inertia is {:.3g} with the {:.2g} {} that move in the "
                         "lightest posture, expected below 1: the rate cannot show so much",
                         c, inertia, dof.is_angle ? "kg m^2" : "kg"),
             fmt::format("lower it to {:.2g}, or give the links more inertia", inertia / dt));
   }
   if (k >= 1.0) {
-    out.add(k < 4.0 ? Severity::kWarning : Severity::kFault,
-            dof_key(dof, "stiffness", "Nm_per_rad", "N_per_m"),
+    out.add(k < 4.0 ? Severity::kWarning : Severity::kFault, item_of(*stiffness.most, dof),
             fmt::format("stiffness * dt^2 / inertia is {:.3g}, must be below 1: the spring is too "
                         "stiff for the rate",
                         k),
             fmt::format("lower it to {:.2g}, or give the links more inertia",
                         0.5 * inertia / (dt * dt)));
-  } else if (0.5 * k > c && dof.friction == 0.0) {
-    out.add(Severity::kWarning, damping,
+  } else if (0.5 * k > c && friction.value == 0.0) {
+    out.add(Severity::kWarning, item_of(*damping.most, dof),
             fmt::format("{:g} is less than stiffness * dt / 2 = {:.2g}: the spring gains energy "
                         "while the twin is not held",
-                        dof.damping, 0.5 * stiffness * dt),
-            fmt::format("raise it to {:.2g} or more", stiffness * dt));
+                        damping.value, 0.5 * stiffness.value * dt),
+            fmt::format("raise it to {:.2g} or more", stiffness.value * dt));
   }
 }
 
-// The torque of a profile is taken in the middle of a period, which gains no energy and is stable
-// for a slope of K dt^2 / m < 4.
-void inspect_profile(const rendering::TwinDof& dof, double inertia, double dt, Collector& out) {
-  const double k = dof.profile.steepest() * dt * dt / inertia;
+// A torque over position that is taken in the middle of a period gains no energy and is stable for
+// a slope of K dt^2 / m < 4.
+void inspect_slopes(const rendering::TwinDof& dof, double inertia, double dt, Collector& out) {
+  const Total stiffness = total_of(&Element::stiffness, dof, TorqueAt::kMiddle);
+  const double k = stiffness.value * dt * dt / inertia;
   if (k < 1.0) return;
   const char* unit = dof.is_angle ? "Nm/rad" : "N/m";
   out.add(
-      k < 4.0 ? Severity::kWarning : Severity::kFault, fmt::format("joints.{}.profile", dof.name),
+      k < 4.0 ? Severity::kWarning : Severity::kFault, item_of(*stiffness.most, dof),
       fmt::format("its steepest part has {:.3g} {}, expected less than inertia / dt^2 = {:.3g}: "
                   "it is too steep for the rate",
-                  dof.profile.steepest(), unit, inertia / (dt * dt)),
+                  stiffness.value, unit, inertia / (dt * dt)),
       "move its points apart, or give the links more inertia");
 }
 
@@ -181,12 +221,13 @@ Findings inspect(const config::Twin& twin, double dt) {
   inspect_mass_matrix(figures, out);
   inspect_weight(figures, out);
   inspect_bodies(twin.sources, out);
+  inspect_followers(twin, out);
   inspect_ignored(twin.sources, UrdfUse::kTwin, out);
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const rendering::TwinDof& dof = twin.model.dofs[i];
     if (dof.q_index >= 0) inspect_limits(dof, twin.model.q_start[dof.q_index], out);
-    inspect_spring(dof, figures.smallest_inertia[i], dt, out);
-    inspect_profile(dof, figures.smallest_inertia[i], dt, out);
+    inspect_springs(dof, figures.smallest_inertia[i], dt, out);
+    inspect_slopes(dof, figures.smallest_inertia[i], dt, out);
   }
   return std::move(out.findings);
 }

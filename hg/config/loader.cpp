@@ -494,7 +494,7 @@ std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path&
     for (const model::UrdfJoint& joint : parts.joints) {
       if (joint.type == model::UrdfJointType::kFixed) continue;
       result.joint_names.push_back(joint.name);
-      result.are_slides.push_back(joint.type == model::UrdfJointType::kPrismatic);
+      result.joints.push_back(joint);
     }
     file.knows_names = true;
     return result;

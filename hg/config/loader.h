@@ -20,6 +20,7 @@
 #include "hg/config/schema.h"
 #include "hg/config/sources.h"
 #include "hg/model/chain_model.h"
+#include "hg/model/urdf.h"
 
 namespace hg::config {
 
@@ -166,7 +167,7 @@ struct UrdfText {
   std::string text;
   std::vector<std::string> link_names;
   std::vector<std::string> joint_names;  ///< of joints that move
-  std::vector<bool> are_slides;          ///< by joint: its positions are in m
+  std::vector<model::UrdfJoint> joints;  ///< those, in the same order
 };
 
 /// Reads a URDF. Empty, with a fault reported, if it cannot be read; an empty path was reported

@@ -42,20 +42,17 @@ std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, Tw
   const bool has_urdf = !draft.is_free_body || !draft.urdf.empty();
   const std::optional<UrdfText> urdf =
       has_urdf ? read_urdf(file, draft.urdf) : std::optional<UrdfText>();
-  std::vector<std::string> links;
-  if (urdf && !draft.is_free_body) links = urdf->link_names;
-  describe(loader, draft.part, links);
-  UrdfJointNames joints;
-  if (urdf && !draft.is_free_body) joints = {urdf->joint_names, urdf->are_slides};
-  describe_couplings(loader, draft.couplings, joints);
-  describe_loops(loader, draft.loops, links, joints.names);
+  UrdfParts parts;
+  if (urdf && !draft.is_free_body) parts = {urdf->link_names, urdf->joint_names, urdf->joints};
+  describe(loader, draft.part, parts.links);
+  describe_followers(loader, draft, parts);
   model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
                                  .gravity = draft.gravity,
                                  .floating_root = draft.floating_root};
   if (draft.is_free_body) return make_free_body(file, draft, options);
   if (!urdf || !draft.part.is_usable) return no_chain(file);
-  options.root_link = name_of(links, draft.part.root_link);
-  options.tip_link = name_of(links, draft.part.tip_link);
+  options.root_link = name_of(parts.links, draft.part.root_link);
+  options.tip_link = name_of(parts.links, draft.part.tip_link);
   const auto whole = [](const auto& item) { return is_whole(item); };
   std::ranges::copy_if(draft.couplings, std::back_inserter(options.couplings), whole);
   std::ranges::copy_if(draft.loops, std::back_inserter(options.loops), whole);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "hg/config/cam_schema.h"
 #include "hg/config/lock_schema.h"
-#include "hg/config/loop_schema.h"
 #include "hg/config/parameter_schema.h"
 #include "hg/config/schema.h"
 #include "hg/config/twin_draft.h"

@@ -370,7 +370,8 @@ class Coupler {
   void follow_curve(const Joint& joint, const UrdfMimic& mimic, Joint& leader) {
     if (joint.damping != 0.0 || joint.friction != 0.0) {
       fail(mimic, joint.name,
-           "damping and friction of a loop belong to the joint that leads it, " + leader.name);
+           "damping and friction of a joint on a curve belong to the joint that leads it, " +
+               leader.name);
     }
     leader.position = intersect(leader.position, mimic.curve->range());
     leader.velocity_max =

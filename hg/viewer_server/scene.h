@@ -32,7 +32,7 @@ struct SceneJoint {
   double tau_max = kInfinity;    ///< peak, Nm or N; infinite: unknown
 };
 
-/// A joint of a closed loop: its position over that of the joint that it follows.
+/// A joint that follows another one by a curve: its position over that of the other.
 struct SceneFollower {
   std::string joint, leader;   ///< names in the URDF
   Interval range;              ///< of the leader, rad or m
@@ -48,7 +48,7 @@ struct SceneChain {
   std::string live_text;                 ///< text of the URDF for live clients; empty: the same
   Pose T_B_root;                         ///< root link in B
   std::vector<SceneJoint> joints;        ///< in the order of the coordinates
-  std::vector<SceneFollower> followers;  ///< joints of closed loops, which have no coordinates
+  std::vector<SceneFollower> followers;  ///< joints on curves, which have no coordinates
 };
 
 /// Surroundings of the twin.

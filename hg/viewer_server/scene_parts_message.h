@@ -28,7 +28,7 @@ template <>
 inline constexpr Interface kInterface<SceneJoint> = {"SceneJoint", "a joint of a chain"};
 template <>
 inline constexpr Interface kInterface<SceneFollower> = {
-    "SceneFollower", "a joint of a closed loop: its position over that of the joint it follows"};
+    "SceneFollower", "a joint that follows another one by a curve: its position over the other's"};
 template <>
 inline constexpr Interface kInterface<SceneChain> = {"SceneChain", "a robot or a twin"};
 template <>
@@ -82,7 +82,7 @@ void fields(Archive& a, T& chain) {
   a("p_B_root_m", chain.T_B_root.p);
   a("quaternion_B_root", quaternion(chain.T_B_root.R));
   a("joints", chain.joints, "joints in the order of the coordinates");
-  a("followers", chain.followers, "joints of closed loops, which have no coordinates");
+  a("followers", chain.followers, "joints that follow by curves, which have no coordinates");
 }
 
 template <typename Archive, Is<SceneLimitMessage> T>

@@ -9,6 +9,7 @@
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/rendering/catalogue.h"
+#include "hg/controller/rendering/twin_elements.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/session.h"
 
@@ -35,17 +36,9 @@ constexpr double kReached = 0.02;    // share of a range within which an end cou
 // Only what moves the device is left of the twin. It coasts, so that the hand has hardly to pull.
 // `chain` is the twin at its start.
 void strip(rendering::TwinModel& twin, model::ChainData& chain) {
-  twin.locks.clear();
-  twin.conditional_limits.clear();
-  twin.w_ref.setZero();
+  rendering::leave_out_forces(twin);
   const Eigen::MatrixXd& M = chain.M();
-  for (int i = 0; i < std::ssize(twin.dofs); ++i) {
-    rendering::TwinDof& dof = twin.dofs[i];
-    dof.stiffness = dof.preload = dof.friction = dof.quadratic_damping = 0.0;
-    dof.damping = M(i, i) / kCoasting;
-    dof.closer = {};
-    dof.profile = {};
-  }
+  for (int i = 0; i < std::ssize(twin.dofs); ++i) twin.dofs[i].damping = M(i, i) / kCoasting;
 }
 
 // Duration of a minimum-jerk motion over `way` that joint `dof` and a hand can follow, s.

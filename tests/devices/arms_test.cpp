@@ -16,19 +16,29 @@ namespace {
 
 class ShippedArm : public testing::TestWithParam<const char*> {};
 
+void expect_whole(const std::string& file) {
+  SCOPED_TRACE(file);
+  const config::Scenario scenario = config::load_scenario(std::filesystem::path(file));
+  EXPECT_EQ(scenario::idealisation(scenario.device), "");
+  const Trace trace(scenario);
+  const ScenarioRun& run = trace.run();
+  EXPECT_EQ(run.missing(), std::vector<std::string>{});
+  EXPECT_TRUE(run.summary().limits_held());         // in truth, too
+  EXPECT_LT(run.summary().max_sync_error(), 2e-3);  // m, where a late arm meets a stop
+  EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
+  EXPECT_EQ(run.quality().unsolved, 0);
+}
+
 TEST_P(ShippedArm, OpensShutsAndMoves) {
   for (const char* name : {"open_cupboard", "open_drawer", "move_tool"}) {
-    const std::string file = std::string("models/arms/") + GetParam() + "/" + name + ".yaml";
-    SCOPED_TRACE(file);
-    const config::Scenario scenario = config::load_scenario(std::filesystem::path(file));
-    EXPECT_EQ(scenario::idealisation(scenario.device), "");
-    const Trace trace(scenario);
-    const ScenarioRun& run = trace.run();
-    EXPECT_EQ(run.missing(), std::vector<std::string>{});
-    EXPECT_TRUE(run.summary().limits_held());         // in truth, too
-    EXPECT_LT(run.summary().max_sync_error(), 2e-3);  // m, where a late arm meets a stop
-    EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
-    EXPECT_EQ(run.quality().unsolved, 0);
+    expect_whole(std::string("models/arms/") + GetParam() + "/" + name + ".yaml");
+  }
+}
+
+TEST(ShippedCam, IsTurnedByTheReferenceDeviceAndByArms) {
+  for (const char* file : {"models/scenarios/cam_press.yaml", "models/arms/fr3/turn_cam.yaml",
+                           "models/arms/ur5e/turn_cam.yaml", "models/arms/iiwa14/turn_cam.yaml"}) {
+    expect_whole(file);
   }
 }
 

@@ -57,8 +57,7 @@ Json twin_table() {
   DocWriter writer;
   describe_chain(writer, draft);
   describe(writer, draft.part, {});
-  describe_couplings(writer, draft.couplings, {});
-  describe_loops(writer, draft.loops, {}, {});
+  describe_followers(writer, draft, {});
   describe_joints(writer, draft);
   return writer.table();
 }

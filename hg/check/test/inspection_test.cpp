@@ -273,6 +273,29 @@ INSTANTIATE_TEST_SUITE_P(
              "<joint name=\"m4\""}),
     name_of);
 
+// The lever that drives a wheel by -5, which may turn at 8 rad/s.
+Findings flywheel_findings(const std::string& dq_max_rad_per_s) {
+  const std::string axis = "<origin xyz=\"0 0 -0.2\"/><axis xyz=\"0 0 1\"/>";
+  config::SourceReader reader(
+      {{"f.yaml",
+        "name: f\nurdf: f.urdf\ntip_link: handle\nend_effector: handle\njoints:\n  lever_joint: "
+        "{ddq_max_rad_per_s2: 6, dq_max_rad_per_s: " +
+            dq_max_rad_per_s + "}\n"},
+       {"f.urdf", replaced(text_of("models/examples/flywheel.urdf"), axis,
+                           axis + "<limit velocity=\"8\" effort=\"9\"/>")}});
+  return inspect(config::load_twin("f.yaml", reader), kDt);
+}
+
+TEST(Inspection, ALeaderThatIsTooFastForAJointThatFollowsIsFoundAtItsSpeed) {
+  const std::string item = "joints.lever_joint.dq_max_rad_per_s";
+  EXPECT_EQ(find(flywheel_findings("1.6"), item, "wheel_joint"), nullptr);
+  const Findings findings = flywheel_findings("1.7");
+  const Finding* finding = find(findings, item, "8.5, more than its 8");
+  ASSERT_NE(finding, nullptr) << all_of(findings);
+  EXPECT_EQ(finding->fix, "lower it to 1.6");
+  EXPECT_EQ(finding->place.line, 6);
+}
+
 TEST_P(BadTwin, IsFoundAtItsLineAndTheShippedOneIsNot) {
   const Case& expected = GetParam();
   check_case(expected, inspect(door(expected.change), kDt), "models/twins/door/twin.yaml",

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "hg/core/aggregate.h"
 #include "hg/core/fields.h"
 #include "hg/core/test/unit_words.h"
 #include "hg/messages/cdr_reader.h"
@@ -22,21 +23,6 @@
 
 namespace hg::messages {
 namespace {
-
-// Members of an aggregate: how many values of any type it can be made from.
-struct Anything {
-  template <typename T>
-  operator T() const;
-};
-
-template <typename T, typename... Values>
-consteval int member_count() {
-  if constexpr (requires { T{Values{}..., Anything{}}; }) {
-    return member_count<T, Values..., Anything>();
-  } else {
-    return sizeof...(Values);
-  }
-}
 
 // The fields of one struct.
 struct List {

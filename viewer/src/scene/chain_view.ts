@@ -78,7 +78,7 @@ export class ChainView {
     }
   }
 
-  // Joints of closed loops that this one leads.
+  // Joints that follow this one by curves.
   private pose_followers(leader: string, q: number): void {
     for (const follower of this.chain.followers) {
       if (follower.leader === leader)

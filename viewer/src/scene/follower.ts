@@ -1,8 +1,8 @@
-// Joints of closed loops, which follow others by a curve.
+// Joints that follow others by a curve.
 
 import type { SceneFollower } from "../messages";
 
-// Position of a joint of a closed loop where its leader is at q, between the values that are given.
+// Position of such a joint where its leader is at q, between the values that are given.
 export function position_of(follower: SceneFollower, q: number): number {
   const { begin, end, values } = follower;
   let share = (q - begin) / (end - begin);

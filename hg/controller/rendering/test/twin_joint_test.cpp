@@ -1,9 +1,12 @@
 // Joints of a twin over time: at their stops, with friction, with locks and latches, braked.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "hg/controller/rendering/test/playing.h"
+#include "hg/model/cam.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::rendering {
 namespace {
@@ -213,6 +216,38 @@ TEST(TwinJoint, BrakingStopsATwinWithASpring) {
     door.rendering.integrate(door.state);
   }
   EXPECT_LT(std::abs(door.state.twin.dq_a[0]), 1e-3);
+}
+
+// a crank that moves a ram by a cam, and a knob on it that turns freely
+TwinModel cam_press() {
+  const model::Cam cam =
+      model::make_cam({{0.0, 0.0}, {1.0, 0.02}, {2.0, 0.05}, {3.2, 0.05}, {4.5, 0.01}}, 2.0 * M_PI);
+  model::ChainOptions options = {.gravity = false, .tip_link = "handle"};
+  options.couplings = {{"ram_guide", "crank", 1.0, 0.0, cam.curve}};
+  return unlimited_twin(
+      model::ChainModel::from_urdf_file("models/twins/cam_press/cam_press.urdf", options),
+      "handle");
+}
+
+TEST(TwinJoint, ACrankOnACamThatNothingBrakesKeepsItsEnergyForTenSeconds) {
+  Playing press(cam_press());
+  press.state.twin.dq_a << 2.0, -2.0;
+  const auto energy = [&] {
+    model::ChainData chain(press.rendering.twin().chain);
+    chain.update(press.state.twin.q_a, press.state.twin.dq_a);
+    return 0.5 * press.state.twin.dq_a.dot(chain.M() * press.state.twin.dq_a);
+  };
+  const double first = energy();
+  double least = first, most = first, slowest = 2.0;
+  for (int i = 0; i < 10'000; ++i) {
+    press.step(Vector6::Zero());
+    least = std::min(least, energy());
+    most = std::max(most, energy());
+    slowest = std::min(slowest, press.dq(0));
+  }
+  EXPECT_GT(press.q(0), 3.0 * M_PI);
+  EXPECT_LT(slowest, 1.9);  // the ram takes its share
+  EXPECT_LT(most - least, 0.005 * first);
 }
 
 }  // namespace
