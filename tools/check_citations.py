@@ -4,7 +4,8 @@ A citation is a tag in brackets, with sections for the tags of the handbook: `[H
 `[HANDBOOK] 4.1-4.4`, `[C] 3 and 4`, also "handbook 10.3" in words. A number like 1.2 behind a tag
 of origin, `[A] 1.2`, is a section of the handbook, too. Tags have to stand in the tables of
 docs/reference/references.md, sections as headings in docs/handbook. Relative links of Markdown
-pages need their file and, behind #, their heading; docs/NAME.md in any text needs its page.
+pages and of their tables in docs/*.csv need their file and, behind #, their heading; docs/NAME.md in
+any text needs its page.
 
 Exits with 1 and one line per fault: file:line: what is cited, what was expected, what is nearest.
 """
@@ -18,7 +19,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCES = "docs/reference/references.md"
 HANDBOOK = "docs/handbook/"
-NOT_TEXT = (".gz", ".lock", ".png", ".skip", ".svg", ".csv", ".json")
+NOT_TEXT = (".gz", ".lock", ".png", ".skip", ".svg", ".json")
 SKIPPED = ("tests/fuzz/", "viewer/package-lock.json", "tools/check_citations.py")
 CODE = (".h", ".cpp", ".ts", ".rs", ".in")
 PAGES = {"C": "control_notes.md", "G": "geometry.md"}  # whose headings a tag cites, with its letter
@@ -44,7 +45,8 @@ def read_files():
     files = {}
     for name in sorted(set(listed.split("\0")) - {""}):
         path = ROOT / name
-        if name.startswith(SKIPPED) or name.endswith(NOT_TEXT) or not path.is_file():
+        is_data = name.endswith(NOT_TEXT) or (name.endswith(".csv") and not name.startswith("docs/"))
+        if name.startswith(SKIPPED) or is_data or not path.is_file():
             continue
         try:
             files[name] = path.read_text()
@@ -186,7 +188,7 @@ def main():
     checker = Checker(read_files())
     for name in checker.files:
         checker.check_citations(name)
-        if name.endswith(".md"):
+        if name.endswith((".md", ".csv")):
             checker.check_links(name)
     for fault in checker.faults:
         print(fault)

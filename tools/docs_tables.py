@@ -1,0 +1,25 @@
+"""Hook of MkDocs: a line that is only a link to a CSV file is followed by the table in that file.
+
+Cells are Markdown, their links are those of the page. In a view without this hook the link opens the file.
+"""
+
+import csv
+import pathlib
+import re
+
+LINK = re.compile(r"^\[[^\]]+\]\(([^()\s:]+\.csv)\)$", re.MULTILINE)
+
+
+def line(cells):
+    return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
+
+
+def table(file):
+    with file.open(newline="", encoding="utf-8") as stream:
+        head, *rows = csv.reader(stream)
+    return "\n".join([line(head), line(["---"] * len(head)), *map(line, rows)])
+
+
+def on_page_markdown(markdown, page, **_):
+    folder = pathlib.Path(page.file.abs_src_path or "").parent
+    return LINK.sub(lambda link: f"{link[0]}\n\n{table(folder / link[1])}\n", markdown)
