@@ -6,9 +6,10 @@ import math
 import numpy as np
 
 from .. import figures
-from . import pages, tables
+from . import pages
 from .runs import Run, condition_data, condition_text, label_of
 
+PAPER_ROWS = 12  # so many stand in the page of docs/, whose other tables are files beside it
 PATH_REACHED_M = 0.05  # a checkpoint counts
 SPRING_S = 0.5  # the spring of the hand stretches first
 
@@ -457,9 +458,10 @@ def parts(runs):
     before = "Walking through the door: " if kind == "walk_through" else ""
     titles = [f"{before}{title[0].lower()}{title[1:]}" if before else title
               for title in ("Events", "Beside the paper", "The run as a whole")]
+    files = [f"{kind}_{file}" if before else file for file in ("events", "paper", "run")]
     rows = (event_rows(runs), statement_rows(runs), figure_rows(runs))
-    return [{"title": title, "rows": table, "note": note} for title, table, note
-            in zip(titles, rows, ("", COMMENT.get(kind, ""), ""))]
+    return [{"title": title, "file": file, "rows": table, "note": note} for title, file, table, note
+            in zip(titles, files, rows, ("", COMMENT.get(kind, ""), ""))]
 
 
 def write(folder, run_folders, docs=None):
@@ -486,10 +488,12 @@ def write(folder, run_folders, docs=None):
         files="recording.mcap, events.json, results.json, signals.csv, figure.svg, figure.png; times "
         "of computation in timing.json"))
     if docs:
+        page = docs / f"{kind}.md"
+        table = pages.PageTables(page)
         text_of = {"Beside the paper": "The paper's column comes from a real machine, ours from a "
                    "simulated one.\n\n"}
-        pages.refresh(docs / f"{kind}.md", f"`{command}`; {note}.\n\n" + "\n".join(
-            f"### {part['title']}\n\n" + text_of.get(part["title"], "") + tables.markdown(part["rows"])
+        pages.refresh(page, f"`{command}`; {note}.\n\n" + "\n".join(
+            f"### {part['title']}\n\n" + text_of.get(part["title"], "") + table(part["rows"], part["file"], most=PAPER_ROWS if part["file"] == "paper" else 0)
             for part in sections), (folder / "figure.svg").read_text(encoding="utf-8"))
     if any(run.has_fault() for run in runs):
         return 3

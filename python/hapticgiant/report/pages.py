@@ -45,8 +45,8 @@ class PageTables:
         return f"[Table: {file.name}]({file.name})\n"
 
 
-def in_text(rows, _name, most=0):
-    """The form of PageTables for a report of its own, which has all tables in its text."""
+def in_text(rows, _name, most=8):
+    """As PageTables, for a report that has all tables in its text."""
     del most
     return tables.markdown(rows)
 
