@@ -120,7 +120,7 @@ def page(results, form=pages.in_text):
 
 
 def write(folder, docs=None):
-    """Writes report.txt and report.md beside results.json, and docs/fault_campaign.md with its tables."""
+    """Writes report.txt and report.md beside results.json, and docs/reports/fault_campaign.md with its tables."""
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     (folder / "report.txt").write_text(text(results), encoding="utf-8")
     (folder / "report.md").write_text(page(results), encoding="utf-8")
