@@ -4,7 +4,7 @@ In docs/**/*.md a block ```yaml NAME or ```hqp NAME is a file, ```yaml +NAME is 
 ```sh holds commands. Both are taken in the order of the document, in a folder of its own that
 starts as a copy of models/examples. Every command must end with exit code 0, or with N where its line ends with
 `# exit N`. Lines that a ```text block shows after a command are not compared. The tests that
-docs/concepts/threats_*.csv name must be there.
+docs/concepts/threats_*.csv name must be there, and the pages must not be too long.
 
     docs_test.py PROGRAM
 """
@@ -18,6 +18,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import docs_size  # noqa: E402
+
 BLOCK = re.compile(r"^```(sh|yaml|hqp)(?: +(\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -80,6 +83,7 @@ def main():
     faults += missing_tests(threats)
     if not threats:
         faults.append("docs/concepts: expected tables threats_*.csv, which name tests")
+    faults += docs_size.faults()
     for fault in faults:
         print(fault, file=sys.stderr)
     print(f"{total} commands ran, {len(faults)} were wrong")

@@ -9,7 +9,6 @@ from .. import figures
 from . import pages
 from .runs import Run, condition_data, condition_text, label_of
 
-PAPER_ROWS = 12  # so many stand in the page of docs/, whose other tables are files beside it
 PATH_REACHED_M = 0.05  # a checkpoint counts
 SPRING_S = 0.5  # the spring of the hand stretches first
 
@@ -493,7 +492,7 @@ def write(folder, run_folders, docs=None):
         text_of = {"Beside the paper": "The paper's column comes from a real machine, ours from a "
                    "simulated one.\n\n"}
         pages.refresh(page, f"`{command}`; {note}.\n\n" + "\n".join(
-            f"### {part['title']}\n\n" + text_of.get(part["title"], "") + table(part["rows"], part["file"], most=PAPER_ROWS if part["file"] == "paper" else 0)
+            f"### {part['title']}\n\n" + text_of.get(part["title"], "") + table(part["rows"], part["file"], most=8 if part["file"] == "paper" else 0)
             for part in sections), (folder / "figure.svg").read_text(encoding="utf-8"))
     if any(run.has_fault() for run in runs):
         return 3

@@ -104,9 +104,12 @@ def markdown(results, form=in_text):
     for table in results["tables"]:
         parts.append(f"\n## {table['title']}\n\n{table['note']}\n\n"
                      + form(rows_of(table), table["id"], most=0))
-    parts.append("\n## How it is measured, and what differs from the real protocol\n\n")
-    parts += [f"- {sentence}\n" for sentence in results.method()]
     return "".join(parts)
+
+
+def method_markdown(results):
+    return ("\n## How it is measured, and what differs from the real protocol\n\n"
+            + "".join(f"- {sentence}\n" for sentence in results.method()))
 
 
 def goals_markdown(results, form=in_text):
@@ -205,7 +208,7 @@ def write(folder, docs=None):
         save(folder / "goals.md", f"# Goals: {results['device']}\n\n{text}")
         save(folder / "goals_runs.csv", repetitions_csv(results))
     else:
-        text = markdown(results)
+        text = markdown(results) + method_markdown(results)
         save(folder / "report.txt", haptify_text(results))
         save(folder / "report.html", html(results))
         save(folder / "report.md", f"# Haptify: {results['device']}\n\n{text}")

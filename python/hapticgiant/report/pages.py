@@ -31,7 +31,7 @@ def draw(folder, paint):
 
 class PageTables:
     """Tables of a page of the documentation. Short ones stand in the page; longer ones become
-    PAGE_NAME.csv beside it, which the page links to and the site draws (tools/docs_tables.py)."""
+    PAGE_NAME.csv beside it, which the page links to and the site draws (tools/docs_files.py)."""
 
     def __init__(self, page):
         self.page = page
