@@ -68,8 +68,11 @@ class Results:
                 + (it["why"] or "The reason is not known.")
                 for it in self["table"] if it["values"] and it["met"] == "no"]
 
+    def method_rows(self):
+        return [[it["name"], it["note"]] for it in self["table"] if it["note"]] + [["", line] for line in METHOD]
+
     def method(self):
-        return [f"{it['name']}: {it['note']}." for it in self["table"] if it["note"]] + list(METHOD)
+        return [f"{about}: {how}." if about else how for about, how in self.method_rows()]
 
     def key_figures(self):
         return [(name, self.figures[key]) for key, name in KEY_FIGURES
@@ -104,12 +107,12 @@ def markdown(results, form=in_text):
     for table in results["tables"]:
         parts.append(f"\n## {table['title']}\n\n{table['note']}\n\n"
                      + form(rows_of(table), table["id"], most=0))
+    parts.append("\n## How it is measured, and what differs from the real protocol\n\n")
+    if form is in_text:
+        parts += [f"- {sentence}\n" for sentence in results.method()]
+    else:
+        parts.append(form([["about", "how"], *results.method_rows()], "method", most=0))
     return "".join(parts)
-
-
-def method_markdown(results):
-    return ("\n## How it is measured, and what differs from the real protocol\n\n"
-            + "".join(f"- {sentence}\n" for sentence in results.method()))
 
 
 def goals_markdown(results, form=in_text):
@@ -208,7 +211,7 @@ def write(folder, docs=None):
         save(folder / "goals.md", f"# Goals: {results['device']}\n\n{text}")
         save(folder / "goals_runs.csv", repetitions_csv(results))
     else:
-        text = markdown(results) + method_markdown(results)
+        text = markdown(results)
         save(folder / "report.txt", haptify_text(results))
         save(folder / "report.html", html(results))
         save(folder / "report.md", f"# Haptify: {results['device']}\n\n{text}")
