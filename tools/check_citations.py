@@ -10,6 +10,7 @@ any text needs its page.
 Exits with 1 and one line per fault: file:line: what is cited, what was expected, what is nearest.
 """
 
+import csv
 import difflib
 import pathlib
 import re
@@ -18,6 +19,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 REFERENCES = "docs/reference/references.md"
+SOURCES = "docs/reference/references_sources.csv"  # a table of that page
 HANDBOOK = "docs/handbook/"
 NOT_TEXT = (".gz", ".lock", ".png", ".skip", ".svg", ".json")
 SKIPPED = ("tests/fuzz/", "viewer/package-lock.json", "tools/check_citations.py")
@@ -85,9 +87,9 @@ def read_sections(files):
     return sections
 
 
-def read_tags(references):
-    """The tags in the first column of the tables."""
-    cells = re.findall(r"^\| *([^|]+?) *\|", references, re.MULTILINE)
+def read_tags(page, table):
+    """The tags in the first column of the tables of the page and of its CSV file."""
+    cells = re.findall(r"^\| *([^|]+?) *\|", page, re.MULTILINE) + [row[0] for row in csv.reader(table.splitlines())]
     return {tag for cell in cells for tag in re.findall(r"\[([A-Z]+\d*)\]", cell)}
 
 
@@ -119,7 +121,7 @@ class Checker:
     def __init__(self, files):
         self.files = files
         self.sections = read_sections(files)
-        self.tags = read_tags(files[REFERENCES])
+        self.tags = read_tags(files[REFERENCES], files[SOURCES])
         self.faults = []
         self.citations = 0
 
