@@ -106,13 +106,18 @@ def rows_of_kinds(results):
     return rows
 
 
+def outcomes_text(results):
+    count = collections.Counter(case["outcome"] for case in results["cases"])
+    return f"{count['noticed']} cases were noticed, {count['harmless']} were harmless."
+
+
 def page(results, form=pages.in_text):
     """docs/reports/fault_campaign.md; `form` writes its tables."""
     return (f"# Results of {len(results['cases'])} cases with injected faults\n\n"
-            "Written by `hapticgiant faults --markdown`; "
+            "Written by `hapticgiant faults`; "
             "[safety.md](../concepts/safety.md#injected-faults) explains the columns.\n"
-            f"Seed {results['seed']}; {', '.join(results['scenarios'])}: {verdict(results)}.\n\n"
-            f"{form(table_of(results), 'results', most=0)}\n"
+            f"Seed {results['seed']}; {', '.join(results['scenarios'])}: {verdict(results)}. "
+            f"{outcomes_text(results)}\n\n{form(table_of(results), 'results', most=0)}\n"
             + "".join(f"{line}.\n\n" for line in impossible(results)) +
             "## The faults\n\nFor `faults` of a scenario "
             "and the drawn sizes of this campaign; a torque of the force sensor is in Nm and gets "
