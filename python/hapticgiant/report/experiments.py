@@ -489,10 +489,11 @@ def write(folder, run_folders, docs=None):
     if docs:
         page = docs / f"{kind}.md"
         table = pages.PageTables(page)
-        text_of = {"Beside the paper": "The paper's column comes from a real machine, ours from a "
-                   "simulated one.\n\n"}
+        shown = {"paper": {"most": 8}}  # all other tables are files
+        text_of = {"paper": "The paper's column comes from a real machine, ours from a simulated one.\n\n"}
         pages.refresh(page, f"`{command}`; {note}.\n\n" + "\n".join(
-            f"### {part['title']}\n\n" + text_of.get(part["title"], "") + table(part["rows"], part["file"], most=8 if part["file"] == "paper" else 0)
+            f"### {part['title']}\n\n" + text_of.get(part["file"], "")
+            + table(part["rows"], part["file"], **shown.get(part["file"], {"most": 0}))
             for part in sections), (folder / "figure.svg").read_text(encoding="utf-8"))
     if any(run.has_fault() for run in runs):
         return 3
