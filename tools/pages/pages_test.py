@@ -3,9 +3,16 @@
 Usage: pages_test.py   (from anywhere)
 """
 
+import pathlib
+import sys
+import tempfile
+import types
 import unittest
 
 import pages
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import docs_files  # noqa: E402
 
 RULE = {"number": 107, "name": "jump", "meaning": "It jumped.", "threshold": "monitor.jump_factor, 3 in a row",
         "warn_from": 1.0, "samples": 1, "seconds": 0.0, "reaction": "STO", "release": "it is back"}
@@ -50,6 +57,17 @@ class Pages(unittest.TestCase):
                                   "fields": [["p", "Vec3", "in m"], ["is_held", "boolean", ""]]}])
         self.assertTrue(text.endswith("\n// where it is\nexport interface Hand {\n  p: Vec3; // in m\n"
                                       "  is_held: boolean;\n}\n"))
+
+
+class Site(unittest.TestCase):
+    def test_a_line_that_is_a_link_to_a_table_is_followed_by_it(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "t.csv").write_text('a,b\n1,"x | y, z"\n')
+            page = types.SimpleNamespace(file=types.SimpleNamespace(abs_src_path=str(folder / "page.md")))
+            text = docs_files.on_page_markdown("See [it](t.csv).\n\n[Table: t.csv](t.csv)\n", page)
+        self.assertEqual(text, "See [it](t.csv).\n\n[Table: t.csv](t.csv)\n\n"
+                               "| a | b |\n| --- | --- |\n| 1 | x \\| y, z |\n\n")
 
 
 if __name__ == "__main__":
