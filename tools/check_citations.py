@@ -4,18 +4,21 @@ A citation is a tag in brackets, with sections for the tags of the handbook: `[H
 `[HANDBOOK] 4.1-4.4`, `[C] 3 and 4`, also "handbook 10.3" in words. A number like 1.2 behind a tag
 of origin, `[A] 1.2`, is a section of the handbook, too. Tags have to stand in the tables of
 docs/reference/references.md, sections as headings in docs/handbook. Relative links of Markdown
-pages need their file and, behind #, their heading; docs/NAME.md in any text needs its page.
+pages and of their tables in docs/*.csv need their file and, behind #, their heading; docs/NAME.md in
+any text needs its page.
 
 Exits with 1 and one line per fault: file:line: what is cited, what was expected, what is nearest.
 """
 
+import csv
 import difflib
 import re
 import sys
 
-from tracked_files import ROOT, read_texts
+from tracked_files import NOT_TEXT, ROOT, read_texts
 
 REFERENCES = "docs/reference/references.md"
+SOURCES = "docs/reference/references_sources.csv"  # a table of that page
 HANDBOOK = "docs/handbook/"
 SKIPPED = ("tests/fuzz/", "viewer/package-lock.json", "tools/check_citations.py")
 CODE = (".h", ".cpp", ".ts", ".rs", ".in")
@@ -65,9 +68,9 @@ def read_sections(files):
     return sections
 
 
-def read_tags(references):
-    """The tags in the first column of the tables."""
-    cells = re.findall(r"^\| *([^|]+?) *\|", references, re.MULTILINE)
+def read_tags(page, table):
+    """The tags in the first column of the tables of the page and of its CSV file."""
+    cells = re.findall(r"^\| *([^|]+?) *\|", page, re.MULTILINE) + [row[0] for row in csv.reader(table.splitlines())]
     return {tag for cell in cells for tag in re.findall(r"\[([A-Z]+\d*)\]", cell)}
 
 
@@ -99,7 +102,7 @@ class Checker:
     def __init__(self, files):
         self.files = files
         self.sections = read_sections(files)
-        self.tags = read_tags(files[REFERENCES])
+        self.tags = read_tags(files[REFERENCES], files[SOURCES])
         self.faults = []
         self.citations = 0
 
@@ -165,10 +168,12 @@ class Checker:
 
 
 def main():
-    checker = Checker(read_texts(SKIPPED))
+    files = read_texts(SKIPPED, tuple(set(NOT_TEXT) - {".csv"}))
+    checker = Checker({name: text for name, text in files.items()
+                       if not name.endswith(".csv") or name.startswith("docs/")})
     for name in checker.files:
         checker.check_citations(name)
-        if name.endswith(".md"):
+        if name.endswith((".md", ".csv")):
             checker.check_links(name)
     for fault in checker.faults:
         print(fault)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What would this feel like on my arm: Haptify and the shipped scenarios on every arm of models/arms, beside the HapticGiant.
 
-Usage: compare_arms.py PROGRAM PAGE [FOLDER]   (minutes; refreshes the tables of PAGE; the results stay in FOLDER, build/arms)
+Usage: compare_arms.py PROGRAM PAGE [FOLDER]   (minutes; refreshes the tables of PAGE and the CSV files beside it; the results stay in FOLDER, build/arms)
 """
 
 import json
@@ -11,12 +11,13 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tools/pages"))
-from pages import replace_marked  # noqa: E402
+from pages import as_csv, replace_marked  # noqa: E402
 
 REFERENCE = "models/haptic_giant/device.yaml"
 FIGURES = ("workspace_volume", "free_space_extra", "free_space_vibration", "latency", "force_bandwidth", "felt_mass_20",
            "stiffness_accuracy", "stiffness_peak_force", "z_width", "smallest_inertia", "spring_frequency")
-SCENARIOS = {"open_cupboard": "cupboard", "open_drawer": "drawer", "move_tool": "tool"}
+SHOWN = ("free_space_extra", "latency", "felt_mass_20", "stiffness_peak_force")  # in the page itself
+SCENARIOS = ("open_cupboard", "open_drawer", "move_tool")
 
 
 def call(*arguments):
@@ -36,53 +37,51 @@ def play(program, scenario, folder):
     return json.loads(summary.read_text())
 
 
-def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "| --- |" + " --- |" * (len(head) - 1)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows]) + "\n"
+def markdown(rows):
+    lines = ["| " + " | ".join(row) + " |" for row in rows]
+    return "\n".join([lines[0], "| --- |" + " --- |" * (len(rows[0]) - 1), *lines[1:]]) + "\n"
 
 
-def haptify_table(figures):
-    rows = []
+def haptify_rows(figures, keys):
     found = {name: {entry["id"]: entry for entry in data["table"] + data["beyond"]} for name, data in figures.items()}
-    for key in FIGURES:
+    rows = [["", "unit", *figures]]
+    for key in keys:
         first = next(iter(found.values()))[key]
         rows.append([first["name"], first["unit"], *(entries[key]["measured"].strip() for entries in found.values())])
-    return table(["", "unit", *figures], rows)
+    return rows
 
 
 def is_played(summary):
     return not summary["missing_events"] and summary["fault"]["code"] == 0
 
 
-def scenario_table(name, runs):
+def scenario_rows(name, runs):
     rows = []
     for arm, summaries in runs.items():
         summary = summaries[name]
         reality = summary["reality"]
         excess = max((limit["worst_violation"] for limit in reality["limits"].values()), default=0.0)
-        rows.append([arm, "yes" if is_played(summary) else "no", f"{summary['force']['mean_N']:.1f}",
+        rows.append([name, arm, "yes" if is_played(summary) else "no", f"{summary['force']['mean_N']:.1f}",
                      f"{reality['vibration_above_5_Hz_m_per_s2']:.2f}", f"{1e3 * reality['max_handle_to_twin_m']:.1f}",
                      f"{1e3 * excess:.1f}", summary["plant"]])
-    return table(["arm", "opens and shuts", "mean force N", "vibration m/s^2", "handle off the twin mm",
-                  "beyond a limit, mm or mrad", "drives"], rows)
+    return rows
 
 
-def failures_list(figures):
-    lines = []
-    for name, data in figures.items():
-        for text in [*data["impossible"], *data["failures"]]:
-            lines.append(f"- {name}: {text.strip()}")
-    return "\n".join(lines) + "\n"
+def failure_rows(figures):
+    return [["arm", "what it could not do"]] + [[name, text.strip()] for name, data in figures.items()
+                                                for text in [*data["impossible"], *data["failures"]]]
 
 
 def refresh(page, figures, runs):
-    parts = {"haptify": haptify_table(figures), "failures": failures_list(figures)}
-    for scenario, word in SCENARIOS.items():
-        parts[word] = scenario_table(scenario, runs)
-    text = page.read_text()
-    for mark, part in parts.items():
-        text = replace_marked(text, mark, part)
-    page.write_text(text)
+    """The short table of the page, and the files beside it."""
+    scenarios = [["scenario", "arm", "opens and shuts", "mean force N", "vibration m/s^2", "handle off the twin mm",
+                  "beyond a limit, mm or mrad", "drives"]]
+    for scenario in SCENARIOS:
+        scenarios += scenario_rows(scenario, runs)
+    files = {"haptify": haptify_rows(figures, FIGURES), "failures": failure_rows(figures), "scenarios": scenarios}
+    for name, rows in files.items():
+        page.with_name(f"{page.stem}_{name}.csv").write_text(as_csv(rows))
+    page.write_text(replace_marked(page.read_text(), "haptify", markdown(haptify_rows(figures, SHOWN))))
 
 
 def main():

@@ -3,7 +3,9 @@
 Usage: faults_report_test.py   (from anywhere; no compiled part)
 """
 
+import json
 import pathlib
+import tempfile
 import unittest
 
 from hapticgiant.report import faults, process_faults, tables
@@ -72,6 +74,17 @@ class Faults(unittest.TestCase):
         self.assertIn("Seed 3; Door, Walk: 0 of 1", page)
         self.assertIn("\n| link_encoder_jump | jumps | +- 0.02 .. 0.5 rad |\n", page)
         self.assertIn("\n| motor_dead | no torque | - |\n", page)
+
+    def test_the_page_of_the_documents_links_to_its_tables(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "results.json").write_text(json.dumps(results(case())))
+            faults.write(folder, docs=folder)
+            page = (folder / "fault_campaign.md").read_text()
+            self.assertIn("\n[Table: fault_campaign_kinds.csv](fault_campaign_kinds.csv)\n", page)
+            self.assertIn("\nmotor_dead,no torque,-\n", (folder / "fault_campaign_kinds.csv").read_text())
+            self.assertIn("\nmotor_dead,1,1,0,0,", (folder / "fault_campaign_results.csv").read_text())
+            self.assertIn("\n| motor_dead | no torque | - |\n", (folder / "report.md").read_text())
 
 
 class ProcessFaults(unittest.TestCase):

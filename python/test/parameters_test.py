@@ -1,12 +1,13 @@
 """Python has the table of the parameters of a twin that may change while it runs."""
 
+import csv
 import math
 import pathlib
 import unittest
 
 import hapticgiant as hg
 
-PAGE = pathlib.Path(__file__).parents[2] / "docs" / "reference" / "configuration.md"
+TABLE = pathlib.Path(__file__).parents[2] / "docs" / "reference" / "configuration_twin.csv"
 
 
 class TwinParameters(unittest.TestCase):
@@ -16,13 +17,14 @@ class TwinParameters(unittest.TestCase):
     def test_there_is_one_for_each_that_can_be_changed(self):
         self.assertEqual(set(self.table), set(hg.Parameter) - {hg.Parameter.NONE})
 
-    def test_keys_and_texts_are_those_of_the_reference_page(self):
-        page = PAGE.read_text()
+    def test_keys_and_texts_are_those_of_the_reference_table(self):
+        with TABLE.open(newline="") as file:
+            text = "\n".join(" ".join(row) for row in csv.reader(file))
         for facts in self.table.values():
             with self.subTest(facts.parameter.name):
-                self.assertIn(facts.key, page)
-                self.assertIn(facts.help, page)
-                self.assertIn(facts.length_key, page)
+                self.assertIn(facts.key, text)
+                self.assertIn(facts.help, text)
+                self.assertIn(facts.length_key, text)
                 self.assertTrue(facts.label)
 
     def test_units_are_those_of_the_keys(self):

@@ -4,11 +4,12 @@ In docs/**/*.md a block ```yaml NAME or ```hqp NAME is a file, ```yaml +NAME is 
 ```sh holds commands. Both are taken in the order of the document, in a folder of its own that
 starts as a copy of models/examples. Every command must end with exit code 0, or with N where its line ends with
 `# exit N`. Lines that a ```text block shows after a command are not compared. The tests that
-docs/concepts/threats.md names must be there.
+docs/concepts/threats_*.csv name must be there, and the pages must not be too long.
 
     docs_test.py PROGRAM
 """
 
+import csv
 import pathlib
 import re
 import shutil
@@ -17,6 +18,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import docs_size  # noqa: E402
+
 BLOCK = re.compile(r"^```(sh|yaml|hqp)(?: +(\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -51,17 +55,19 @@ def run_document(document, program, folder):
     return count, faults
 
 
-def missing_tests(document):
-    """What the document calls a test and is none: `Suite.Case` of GoogleTest, or a file."""
+def missing_tests(tables):
+    """What the last column of these tables calls a test and is none: `Suite.Case` of GoogleTest, or a file."""
     sources = "".join(path.read_text() for folder in ("apps", "hg", "tests")
                       for path in (ROOT / folder).rglob("*_test.cpp"))
-    for line in document.read_text().splitlines():
-        for name in re.findall(r"`([^`]+)`", line.split("|")[-2] if line.startswith("|") else ""):
+    for table in tables:
+        with table.open(newline="") as file:
+            cells = [row[-1] for row in csv.reader(file)][1:]
+        for name in re.findall(r"`([^`]+)`", " ".join(cells)):
             suite, _, case = name.partition(".")
             is_there = (ROOT / name).is_file() if "/" in name else re.search(
                 rf"TEST(_F|_P)?\({suite},\s+{case}\)", sources)
             if not is_there:
-                yield f"{document.name}: there is no test {name}"
+                yield f"{table.name}: there is no test {name}"
 
 
 def main():
@@ -73,7 +79,11 @@ def main():
             count, found = run_document(document, program, pathlib.Path(folder))
         total += count
         faults += found
-    faults += missing_tests(ROOT / "docs" / "concepts" / "threats.md")
+    threats = sorted((ROOT / "docs" / "concepts").glob("threats_*.csv"))
+    faults += missing_tests(threats)
+    if not threats:
+        faults.append("docs/concepts: expected tables threats_*.csv, which name tests")
+    faults += docs_size.faults()
     for fault in faults:
         print(fault, file=sys.stderr)
     print(f"{total} commands ran, {len(faults)} were wrong")

@@ -269,5 +269,5 @@ class Wire:
 
 
 def undocumented(text, words):
-    """Which of the words a page does not have as code."""
+    """Which of the words a text does not have as code."""
     return [word for word in words if not re.search(rf"`{re.escape(word)}\b", text)]

@@ -58,7 +58,8 @@ def check(holds, what):
 def check_pages():
     text = pathlib.Path("docs/start/packages.md").read_text()
     for example in [*EXAMPLES.glob("*.cpp"), *DRIVER.glob("*.cpp"), *DRIVER.glob("*.h")]:
-        check(example.read_text() in text, f"docs/start/packages.md shows another {example.name}")
+        shown = example.relative_to(pathlib.Path().resolve())
+        check(f"\n[{shown}](../../{shown})\n" in text, f"docs/start/packages.md does not show {shown}")
 
 
 def check_libraries(prefix, tree):

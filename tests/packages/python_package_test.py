@@ -68,8 +68,9 @@ def main():
     text = (ROOT / "docs" / "start" / "packages.md").read_text()
     for name, expected in EXAMPLES.items():
         example = ROOT / "examples" / "python" / name
-        if example.read_text() not in text:
-            sys.exit(f"docs/start/packages.md shows another {name}")
+        shown = example.relative_to(ROOT)
+        if f"\n[{shown}](../../{shown})\n" not in text:
+            sys.exit(f"docs/start/packages.md does not show {shown}")
         output = run(sys.executable, example, env=environment)
         if not re.search(expected, output):
             sys.exit(f"{name} printed\n{output}\nexpected {expected}")

@@ -1,20 +1,19 @@
-"""Writes what is generated from the code: reference pages, tables in pages, types of messages.
+"""Writes what is generated from the code: tables of pages as CSV beside them, types of messages.
 
     pages.py PROGRAM [--check]     PROGRAM: hg_pages, which prints what the code says as JSON
 
 With --check it writes nothing, prints what would change, and exits with 1 if anything would.
 """
 
+import csv
 import difflib
+import io
 import json
 import pathlib
 import subprocess
 import sys
 
-import jinja2
-
-HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 MESSAGES_HEAD = """\
 // Generated from the lists of fields in hg/viewer_server/ and hg/signals/; do not edit. Units
 // stand in the names or in the comments; B is the base frame (z up), H the handle. A number
@@ -25,13 +24,10 @@ export type Quaternion = [number, number, number, number]; // x y z w
 """
 
 
-def line(cells):
-    return "|" + "".join(f" {cell} |" for cell in cells) + "\n"
-
-
-def table(head, rows, rule="---"):
-    rules = [rule] + ["---"] * (len(head) - 1)
-    return line(head).replace("|  |", "| |") + line(rules) + "".join(map(line, rows))
+def as_csv(rows):
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
 
 
 def replace_marked(page, name, text):
@@ -43,27 +39,27 @@ def replace_marked(page, name, text):
     return f"{before}{mark}\n{text}\n{end}{after}"
 
 
-def configuration_page(facts):
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE),
-                                     keep_trailing_newline=True)
-    return environment.get_template("configuration.md.jinja").render(
-        facts, table=lambda rows: table(["key", "default", "allowed", "meaning"], rows))
+def configuration_rows(rows):
+    return [["key", "default", "allowed", "meaning"], *rows]
 
 
-def datagram_tables(facts):
-    sections = []
-    for message in facts:
-        size = f" (type {message['type']}, {message['bytes']} bytes)" if "type" in message else ""
-        sections.append(f"### {message['title']}{size}\n\n"
-                        + table(["offset", "type", "field", "unit", ""], message["rows"], rule="---:"))
-    return "\n".join(sections)
+def message_list(facts):
+    """A sentence on the messages and their sizes."""
+    return "".join(f"- {message['title']}: type {message['type']}, {message['bytes']} bytes\n"
+                   for message in facts if "type" in message)
 
 
-def transitions_table(facts):
+def datagram_rows(facts):
+    """Head and rows of all messages, one under the other."""
+    return [["message", "offset", "type", "field", "unit", ""]] + [
+        [message["title"].lower(), *row] for message in facts for row in message["rows"]]
+
+
+def transition_rows(facts):
     def cell(text):
         return text if text in ("refused", "-") else f"**{text}**"
-    return table(["event", *facts["states"]],
-                 [[event, *map(cell, cells)] for event, *cells in facts["transitions"]])
+    return [["event", *facts["states"]]] + [
+        [event, *map(cell, cells)] for event, *cells in facts["transitions"]]
 
 
 def is_key(text):
@@ -90,22 +86,11 @@ def debounce(rule):
     return "at once" if rule["samples"] == 1 else f"{rule['samples']} samples"
 
 
-def rules_table(rules):
-    return table(["number", "rule", "threshold", "warning from", "for", "reaction"],
-                 [[rule["number"], rule["name"], threshold(rule["threshold"]),
-                   f"{100.0 * rule['warn_from']:g} %" if rule["warn_from"] < 1.0 else "-",
-                   debounce(rule), rule["reaction"]] for rule in rules])
-
-
-def stops_list(rules):
-    return "".join(f"- **{rule['number']} {rule['name']}.** {rule['meaning']} Released: "
-                   f"{rule['release']}.\n" for rule in rules)
-
-
-def safety_page(page, facts):
-    page = replace_marked(page, "transitions", transitions_table(facts))
-    page = replace_marked(page, "rules", rules_table(facts["rules"]))
-    return replace_marked(page, "stops", stops_list(facts["rules"]))
+def rule_rows(rules):
+    return [["number", "rule", "threshold", "warning from", "for", "reaction", "meaning", "released"]] + [
+        [rule["number"], rule["name"], threshold(rule["threshold"]),
+         f"{100.0 * rule['warn_from']:g} %" if rule["warn_from"] < 1.0 else "-",
+         debounce(rule), rule["reaction"], rule['meaning'], rule["release"]] for rule in rules]
 
 
 def typescript(facts):
@@ -118,35 +103,42 @@ def typescript(facts):
     return text
 
 
-# what a file should be, from its committed text and the facts
-PAGES = {
-    "docs/reference/configuration.md":
-        lambda _, facts: configuration_page(facts["configuration"]),
-    "docs/reference/device_protocol.md":
-        lambda page, facts: replace_marked(page, "messages", datagram_tables(facts["datagrams"])),
-    "docs/concepts/safety.md": lambda page, facts: safety_page(page, facts["safety"]),
-    "viewer/src/messages.ts": lambda _, facts: typescript(facts["messages"]),
-}
+KINDS = ("device", "tool", "simulation", "twin", "script", "channels_base", "channels_cylindrical",
+         "channels", "scenario", "machine")
+
+
+def files_of(facts, read):
+    """Name -> text of each generated file; `read` gives the text that a page has."""
+    reference, concepts = "docs/reference", "docs/concepts"
+    protocol = f"{reference}/device_protocol.md"
+    files = {f"{reference}/configuration_{kind}.csv": as_csv(configuration_rows(facts["configuration"][kind]))
+             for kind in KINDS}
+    files[f"{reference}/device_protocol_messages.csv"] = as_csv(datagram_rows(facts["datagrams"]))
+    files[protocol] = replace_marked(read(protocol), "messages", message_list(facts["datagrams"]))
+    files[f"{concepts}/safety_transitions.csv"] = as_csv(transition_rows(facts["safety"]))
+    files[f"{concepts}/safety_rules.csv"] = as_csv(rule_rows(facts["safety"]["rules"]))
+    files["viewer/src/messages.ts"] = typescript(facts["messages"])
+    return files
+
+
+def read_file(name):
+    file = ROOT / name
+    return file.read_text(encoding="utf-8") if file.exists() else ""
 
 
 def main(program, is_check):
     facts = json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
     check_thresholds(facts["safety"]["rules"], facts["configuration"]["device"])
-    changed = 0
-    for name, text_of in PAGES.items():
-        file = ROOT / name
-        committed = file.read_text(encoding="utf-8")
-        text = text_of(committed, facts)
-        if text == committed:
-            continue
-        changed += 1
+    files = files_of(facts, read_file)
+    changed = [name for name, text in files.items() if read_file(name) != text]
+    for name in changed:
         if is_check:
             sys.stdout.writelines(difflib.unified_diff(
-                committed.splitlines(True), text.splitlines(True), name, "generated"))
+                read_file(name).splitlines(True), files[name].splitlines(True), name, "generated"))
         else:
-            file.write_text(text, encoding="utf-8")
-    print(f"pages: {changed} of {len(PAGES)} {'out of date' if is_check else 'written'}")
-    return int(is_check and changed > 0)
+            (ROOT / name).write_text(files[name], encoding="utf-8")
+    print(f"pages: {len(changed)} of {len(files)} {'out of date' if is_check else 'written'}")
+    return int(is_check and bool(changed))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from .. import figures
-from . import pages, tables
+from . import pages
 from .runs import Run, condition_data, condition_text, label_of
 
 PATH_REACHED_M = 0.05  # a checkpoint counts
@@ -456,9 +456,10 @@ def parts(runs):
     before = "Walking through the door: " if kind == "walk_through" else ""
     titles = [f"{before}{title[0].lower()}{title[1:]}" if before else title
               for title in ("Events", "Beside the paper", "The run as a whole")]
+    files = [f"{kind}_{file}" if before else file for file in ("events", "paper", "run")]
     rows = (event_rows(runs), statement_rows(runs), figure_rows(runs))
-    return [{"title": title, "rows": table, "note": note} for title, table, note
-            in zip(titles, rows, ("", COMMENT.get(kind, ""), ""))]
+    return [{"title": title, "file": file, "rows": table, "note": note} for title, file, table, note
+            in zip(titles, files, rows, ("", COMMENT.get(kind, ""), ""))]
 
 
 def write(folder, run_folders, docs=None):
@@ -485,10 +486,13 @@ def write(folder, run_folders, docs=None):
         files="recording.mcap, events.json, results.json, signals.csv, figure.svg, figure.png; times "
         "of computation in timing.json"))
     if docs:
-        text_of = {"Beside the paper": "The paper's column comes from a real machine, ours from a "
-                   "simulated one.\n\n"}
-        pages.refresh(docs / f"{kind}.md", f"`{command}`; {note}.\n\n" + "\n".join(
-            f"### {part['title']}\n\n" + text_of.get(part["title"], "") + tables.markdown(part["rows"])
+        page = docs / f"{kind}.md"
+        table = pages.PageTables(page)
+        shown = {"paper": {"most": 8}}  # all other tables are files
+        text_of = {"paper": "The paper's column comes from a real machine, ours from a simulated one.\n\n"}
+        pages.refresh(page, f"`{command}`; {note}.\n\n" + "\n".join(
+            f"### {part['title']}\n\n" + text_of.get(part["file"], "")
+            + table(part["rows"], part["file"], **shown.get(part["file"], {"most": 0}))
             for part in sections), (folder / "figure.svg").read_text(encoding="utf-8"))
     if any(run.has_fault() for run in runs):
         return 3

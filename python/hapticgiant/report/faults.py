@@ -4,7 +4,7 @@ import collections
 import json
 import statistics
 
-from . import tables
+from . import pages, tables
 
 HEAD = ["fault", "cases", "noticed", "harmless", "unnoticed", "noticed ms", "at rest ms", "stop",
         "N", "outside", "way %", "J", "most often"]
@@ -96,32 +96,39 @@ def impossible(results):
     return [f"not possible, {why}: {', '.join(names)}" for why, names in reasons.items()]
 
 
-def list_of_kinds(results):
+def rows_of_kinds(results):
     rows = [["fault", "what goes wrong", "magnitude"]]
     for kind in results["kinds"]:
         sign = "+- " if kind["has_sign"] else ""
         rows.append([kind["name"], kind["what"],
                      f"{sign}{kind['least']:g} .. {kind['most']:g} {kind['unit']}"
                      if kind["unit"] else "-"])
-    return tables.markdown(rows)
+    return rows
 
 
-def page(results):
-    """docs/reports/fault_campaign.md"""
+def outcomes_text(results):
+    count = collections.Counter(case["outcome"] for case in results["cases"])
+    return f"{count['noticed']} cases were noticed, {count['harmless']} were harmless."
+
+
+def page(results, form=pages.in_text):
+    """docs/reports/fault_campaign.md; `form` writes its tables."""
     return (f"# Results of {len(results['cases'])} cases with injected faults\n\n"
-            "Written by `hapticgiant faults --markdown`; "
+            "Written by `hapticgiant faults`; "
             "[safety.md](../concepts/safety.md#injected-faults) explains the columns.\n"
-            f"Seed {results['seed']}; {', '.join(results['scenarios'])}: {verdict(results)}.\n\n"
-            f"{tables.markdown(table_of(results))}\n"
+            f"Seed {results['seed']}; {', '.join(results['scenarios'])}: {verdict(results)}. "
+            f"{outcomes_text(results)}\n\n{form(table_of(results), 'results', most=0)}\n"
             + "".join(f"{line}.\n\n" for line in impossible(results)) +
             "## The faults\n\nFor `faults` of a scenario "
             "and the drawn sizes of this campaign; a torque of the force sensor is in Nm and gets "
-            f"a\ntenth.\n\n{list_of_kinds(results)}")
+            f"a\ntenth.\n\n{form(rows_of_kinds(results), 'kinds', most=0)}")
 
 
 def write(folder, docs=None):
-    """Writes report.txt and report.md beside results.json."""
-    del docs
+    """Writes report.txt and report.md beside results.json, and docs/reports/fault_campaign.md with its tables."""
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     (folder / "report.txt").write_text(text(results), encoding="utf-8")
     (folder / "report.md").write_text(page(results), encoding="utf-8")
+    if docs:
+        file = docs / "fault_campaign.md"
+        pages.save(file, page(results, pages.PageTables(file)))

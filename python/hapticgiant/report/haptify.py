@@ -4,7 +4,7 @@ import json
 import math
 
 from . import benchmark, goals, pictures, tables
-from .pages import refresh, render, save
+from .pages import PageTables, in_text, refresh, render, save
 
 METHOD = (
     "Instruments: Haptify has a force plate, motion capture and an instrumented handle; here the "
@@ -68,8 +68,11 @@ class Results:
                 + (it["why"] or "The reason is not known.")
                 for it in self["table"] if it["values"] and it["met"] == "no"]
 
+    def method_rows(self):
+        return [[it["name"], it["note"]] for it in self["table"] if it["note"]] + [["", line] for line in METHOD]
+
     def method(self):
-        return [f"{it['name']}: {it['note']}." for it in self["table"] if it["note"]] + list(METHOD)
+        return [f"{about}: {how}." if about else how for about, how in self.method_rows()]
 
     def key_figures(self):
         return [(name, self.figures[key]) for key, name in KEY_FIGURES
@@ -93,24 +96,28 @@ def failures(results):
             + "".join(f"Not possible: {what}.\n\n" for what in results["impossible"]))
 
 
-def markdown(results):
-    """Without a title."""
+def markdown(results, form=in_text):
+    """Without a title; `form` writes tables."""
     parts = [f"{results.command_line()}\n\n**{results['real_and_simulated']}**\n\n",
              failures(results), tables.markdown(results.main_rows()),
              "\nMean and half width of the 95 % confidence interval.\n",
              "\n## Goals that are missed\n\n",
              "".join(f"- {sentence}\n" for sentence in results.missed()) or "None.\n",
-             "\n## Beyond the paper\n\n", tables.markdown(results.beyond_rows())]
+             "\n## Beyond the paper\n\n", form(results.beyond_rows(), "beyond", most=0)]
     for table in results["tables"]:
-        parts.append(f"\n## {table['title']}\n\n{table['note']}\n\n{tables.markdown(rows_of(table))}")
+        parts.append(f"\n## {table['title']}\n\n{table['note']}\n\n"
+                     + form(rows_of(table), table["id"], most=0))
     parts.append("\n## How it is measured, and what differs from the real protocol\n\n")
-    parts += [f"- {sentence}\n" for sentence in results.method()]
+    if form is in_text:
+        parts += [f"- {sentence}\n" for sentence in results.method()]
+    else:
+        parts.append(form([["about", "how"], *results.method_rows()], "method", most=0))
     return "".join(parts)
 
 
-def goals_markdown(results):
+def goals_markdown(results, form=in_text):
     return (f"{results.command_line()}\n\n{failures(results)}"
-            + tables.markdown(rows_of(results["tables"][0])))
+            + form(rows_of(results["tables"][0]), "figures"))
 
 
 def latex(results):
@@ -214,4 +221,6 @@ def write(folder, docs=None):
     for table in results["tables"]:
         save(folder / f"{table['id']}.csv", tables.as_csv(rows_of(table)))
     if docs:
-        refresh(docs / f"{name}.md", text)
+        page = docs / f"{name}.md"
+        write_text = goals_markdown if name == "goals" else markdown
+        refresh(page, write_text(results, PageTables(page)))

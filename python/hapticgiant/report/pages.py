@@ -5,6 +5,7 @@ import pathlib
 import jinja2
 
 from .. import figures
+from . import tables
 
 HERE = pathlib.Path(__file__).resolve().parent
 BEGIN, END = "<!-- figures: begin -->\n", "<!-- figures: end -->"
@@ -26,6 +27,28 @@ def draw(folder, paint):
     figures.save(folder, paint)
     svg = (folder / "figure.svg").read_text(encoding="utf-8")
     return svg[svg.index("<svg"):]
+
+
+class PageTables:
+    """Tables of a page of the documentation. Short ones stand in the page; longer ones become
+    PAGE_NAME.csv beside it, which the page links to and the site draws (tools/docs_files.py)."""
+
+    def __init__(self, page):
+        self.page = page
+
+    def __call__(self, rows, name, most=8):
+        """Markdown of a table of at most `most` rows without the head, otherwise a link to its file."""
+        if len(rows) - 1 <= most:
+            return tables.markdown(rows)
+        file = self.page.with_name(f"{self.page.stem}_{name}.csv")
+        save(file, tables.as_csv(rows))
+        return f"[Table: {file.name}]({file.name})\n"
+
+
+def in_text(rows, _name, most=8):
+    """As PageTables, for a report that has all tables in its text."""
+    del most
+    return tables.markdown(rows)
 
 
 def refresh(page, text, svg=None):

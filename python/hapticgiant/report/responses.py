@@ -152,8 +152,8 @@ def add_springs(it):
     it.tables.append(table(
         "springs", "Springs of a hinge",
         f"A hinge of {settings['inertia']:g} kg m^2 and {settings['damping']:g} Nms/rad, "
-        f"{settings['radius']:g} m from the handle, that is not held, is let go beside the rest "
-        f"of its spring: the first {settings['swings']} swings of the true handle beside those of "
-        "the hinge alone. A damping ratio below 0 grows.",
+        f"{settings['radius']:g} m from the handle, is released beside the rest of its spring "
+        f"without a hand: the first {settings['swings']} swings of the true handle beside those of "
+        "the ideal hinge. A damping ratio below 0 grows.",
         ["Nm/rad", "let go at mm", "first swing mm", "ideal Hz", "Hz", "ratio",
          "ideal damping ratio", "damping ratio"], rows))

@@ -93,7 +93,8 @@ def contact(folder, results, docs):
     if docs:
         with matplotlib.rc_context(SETTINGS):
             svg = pictures.to_svg(contact_figure(results), "contact")
-        pages.refresh(docs / "contact.md", f"{tables.markdown(rows)}\nW{seeds}. {verdict}", svg)
+        page = docs / "contact.md"
+        pages.refresh(page, f"{pages.PageTables(page)(rows, 'cases')}\nW{seeds}. {verdict}", svg)
     return 0
 
 

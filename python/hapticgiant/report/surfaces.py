@@ -132,16 +132,15 @@ def add_impacts(it):
     rebound, rest = (BEYOND[key].goal[1] for key in ("impact_rebound", "impact_rest"))
     it.tables.append(table(
         "impacts", "Impacts on a wall",
-        "A hand that aims behind an upright wall runs into it with a body; the wall says no "
-        "damping. Speed just before it; deepest point of the handle in the first contact; a, with "
-        "which the motors can brake it there against the mean force of the hand, and v^2 / (2 a); "
-        "what the 20 ms of their torques cost, v 10 ms; what the wall alone gives, the "
-        "person's largest force over K and v sqrt(m / K) / e; depth over v^2 / (2 a), and over "
-        f"what it may be, {settings['deepest']:g} v^2 / (2 a) and these two. Largest speed away "
-        f"from the wall over that of the impact, at most {rebound:g}; when it is slower than "
-        f"{1e3 * settings['rest_speed']:g} mm/s for good, at most {rest:g} s; what the wall gives "
-        "back of the energy that the device took with it, at most 100 %; largest forces of wall "
-        "and person.",
+        "A hand that aims behind an upright wall without given damping runs into it with a body. "
+        "The columns are the speed before the impact; the deepest point of the handle in the first "
+        "contact; the deceleration a that the motors can give there against the mean force of the "
+        "hand, and v^2 / (2 a); the onset, v 10 ms, of their torques in 20 ms; the deflection of the "
+        "wall's spring, from the person's largest force over K and v sqrt(m / K) / e; the depth over "
+        f"v^2 / (2 a), and over its bound, {settings['deepest']:g} v^2 / (2 a) and these two; the "
+        f"rebound, at most {rebound:g} of the speed; the time until it stays below "
+        f"{1e3 * settings['rest_speed']:g} mm/s, at most {rest:g} s; the share of its energy that "
+        "the wall gives back, at most 100 %; and the largest forces of wall and person.",
         ["hand", "kg", "N/m", "m/s", "deepest mm", "a m/s^2", "v^2/(2a) mm", "onset mm",
          "spring mm", "over v^2/(2a)", "over allowed", "rebound", "rest s", "energy back %",
          "wall N", "person N", "missed"], [impact_row(run) for run in runs]))

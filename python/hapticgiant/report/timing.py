@@ -76,7 +76,8 @@ def write(folder, docs=None):
                                                        for name, value in machine.items()]}]))
     if docs:
         cut = "" if results["duration_s"] is None else f" --duration {results['duration_s']:g}"
-        pages.refresh(docs / "timing.md", f"`hapticgiant experiment timing{cut}`, {machine['date']}, "
-                      f"{machine['cpu']}. {HOW}\n\n{tables.markdown(rows)}",
+        page = docs / "timing.md"
+        pages.refresh(page, f"`hapticgiant experiment timing{cut}`, {machine['date']}, "
+                      f"{machine['cpu']}. {HOW}\n\n{pages.PageTables(page)(rows, 'times')}",
                       (folder / "figure.svg").read_text(encoding="utf-8"))
     return 0
