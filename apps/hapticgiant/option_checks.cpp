@@ -18,6 +18,10 @@ OptionCheck number_that(const std::string& rule, const std::function<bool(double
   };
 }
 
+OptionCheck number_that(const scenario::NumberRule& rule) {
+  return number_that(rule.words, rule.holds);
+}
+
 OptionCheck at_least(int least) {
   return number_that(fmt::format("at least {}", least), [=](double v) { return v >= least; });
 }

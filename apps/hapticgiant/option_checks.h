@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "hg/scenario/run/plan_options.h"
+
 namespace CLI {
 class App;
 }
@@ -15,6 +17,9 @@ using OptionCheck = std::function<std::string(const std::string&)>;
 
 /// Check that `holds` is true for a number; `rule` completes "must be ...".
 OptionCheck number_that(const std::string& rule, const std::function<bool(double)>& holds);
+
+/// The same by a rule of the library.
+OptionCheck number_that(const scenario::NumberRule& rule);
 
 OptionCheck at_least(int least);
 
