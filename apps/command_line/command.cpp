@@ -139,6 +139,14 @@ void Command::take_all_words() const {
 void Command::allow_extras() const { self_->allow_extras(); }
 std::string Command::name() const { return self_->get_name(); }
 std::vector<std::string> Command::remaining() const { return self_->remaining(); }
+std::vector<std::string> Command::given_options() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : std::as_const(*self_).get_options()) {
+    if (option->count() > 0) names.push_back(option->get_name());
+  }
+  return names;
+}
+
 bool Command::is_parsed() const { return self_->parsed(); }
 bool Command::has_subcommand() const { return !self_->get_subcommands().empty(); }
 

@@ -85,6 +85,8 @@ class Command {
   void allow_extras() const;
   std::string name() const;
   std::vector<std::string> remaining() const;
+  /// Names of the options that the command line gives to it.
+  std::vector<std::string> given_options() const;
   bool is_parsed() const;
   bool has_subcommand() const;
 

@@ -11,6 +11,12 @@ namespace hg::apps {
 /// Check that `holds` is true for a number; `rule` completes "must be ...".
 OptionCheck number_that(const std::string& rule, const std::function<bool(double)>& holds);
 
+/// The same by a rule that has `words` and `holds`, as scenario::NumberRule.
+template <typename Rule>
+OptionCheck number_that(const Rule& rule) {
+  return number_that(rule.words, rule.holds);
+}
+
 OptionCheck at_least(int least);
 
 /// Check for a number within [least, most].

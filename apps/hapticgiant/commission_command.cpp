@@ -16,8 +16,7 @@
 #include "hg/commission/simulated_crew.h"
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
-#include "hg/scenario/remote/ethercat_setup.h"
-#include "hg/scenario/remote/franka_setup.h"
+#include "hg/scenario/remote/transports.h"
 #include "hg/start_test/machine_memory.h"
 #include "hg/start_test/memory.h"
 
@@ -57,19 +56,17 @@ void print_result(const std::vector<commission::Item>& items, bool has_passed,
 }  // namespace
 
 int commission(const CommissionArguments& options) {
-  if (scenario::is_franka(options.machine.device_address)) {
-    throw SetupError("commission: a Franka is commissioned by its maker, see Desk");
-  }
+  refuse_command(options.machine, "commission", &scenario::Transport::commission_refusal);
   config::Scenario scenario = make_machine_scenario(options.machine);
   const std::atomic<bool>& interrupted = watch_interruption();
   Machine machine = connect_machine(options.machine, scenario, "commission");
   const std::string file =
-      start_test::commission_file(options.machine.recordings, scenario.device,
-                                  machine.is_simulated ? "" : options.machine.device_address);
+      start_test::commission_file(options.machine.folder, scenario.device,
+                                  machine.is_simulated ? "" : options.machine.machine.address);
   check_writable(file);
   const auto keep = [&](const std::vector<commission::Item>& items) {
     write_output(file, start_test::to_json({.device = scenario.device.name,
-                                            .address = options.machine.device_address,
+                                            .address = options.machine.machine.address,
                                             .version = kVersion,
                                             .files_sha256 = start_test::sha256_of(scenario.device),
                                             .ended = std::time(nullptr),
@@ -83,17 +80,17 @@ int commission(const CommissionArguments& options) {
   // what a device says of itself is not enough to move it without a person
   const bool is_alone =
       machine.remote == nullptr ||
-      (machine.is_simulated && (options.machine.is_fast || options.has_simulated_person));
+      (machine.is_simulated && (options.machine.timing.is_fast || options.has_simulated_person));
   const std::unique_ptr<commission::Crew> crew = make_crew(is_alone, interrupted);
   const BackgroundOutput output(interrupted);
   print_title(scenario.device.name, is_alone);
   commission::Rig rig(scenario.device, *machine.device, *crew);
-  if (machine.remote != nullptr && !options.machine.is_fast) {
-    runtime::become_real_time({.priority = options.machine.priority});
+  if (machine.remote != nullptr && !options.machine.timing.is_fast) {
+    runtime::become_real_time({.priority = options.machine.timing.priority});
   }
-  commission::Options how = {.falls_silent =
-                                 machine.remote != nullptr && !options.machine.is_fast &&
-                                 !scenario::is_ethercat(options.machine.device_address)};
+  commission::Options how = {
+      .falls_silent = machine.remote != nullptr && !options.machine.timing.is_fast &&
+                      scenario::transport_of(options.machine.machine.address).tests_silence};
   if (machine.remote != nullptr) how.filled_in = [&] { return machine.remote->counts().held; };
   const std::vector<commission::Item> items = commission::run(rig, how);
   if (machine.remote != nullptr) machine.remote->close(FaultCode::kNone);

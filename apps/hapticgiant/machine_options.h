@@ -3,11 +3,13 @@
 
 #include <memory>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/device/connected_device.h"
 #include "hg/scenario/options.h"
+#include "hg/scenario/remote/transports.h"
+#include "hg/scenario/run/run_plan.h"
 
 namespace hg::apps {
 
@@ -15,19 +17,20 @@ class Command;
 
 struct MachineOptions {
   scenario::ScenarioOptions world{.scenario = "free_space"};
-  /// HOST:PORT of a remote device, or ethercat://INTERFACE; empty = simulated here
-  std::string device_address;
-  std::string machine;   ///< machine.yaml of a bus; empty = the one beside the device file
-  std::string key_file;  ///< file of the key shared with the device; empty = none
-  bool is_fast = false;  ///< lock-step with a remote device
-  int priority = 80;     ///< SCHED_FIFO priority, with a remote device in real time; 0 = ordinary
-  /// Items of the doctor that may be bad on a computer that drives a machine
-  std::vector<std::string> despite;
-  std::string recordings = "recordings";  ///< folder for the result
+  scenario::MachineAddress machine;
+  scenario::RunTiming timing;         ///< real time or lock-step, and the priority
+  std::string folder = "recordings";  ///< folder for the result
 };
 
 /// Adds these options to a subcommand.
 void add_machine_options(Command command, MachineOptions& options);
+
+/// Text of an option that gives an address. `is_test`: only of devices that can be tested.
+std::string address_help(bool is_test);
+
+/// Throws SetupError if the device is reached by a transport that refuses `command`.
+void refuse_command(const MachineOptions& options, const std::string& command,
+                    std::string_view scenario::Transport::*refusal);
 
 /// The scenario whose device it is. Creates the folder of the results. Throws SetupError.
 config::Scenario make_machine_scenario(const MachineOptions& options);

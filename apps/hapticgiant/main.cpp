@@ -1,5 +1,5 @@
-/// The program `hapticgiant`: what is needed beside a machine or its simulation, and the names of all
-/// other commands, which are programs of their own.
+/// The program `hapticgiant`: what is needed beside a machine or its simulation, and the names of
+/// all other commands, which are programs of their own.
 
 #include "apps/hapticgiant/bridge_command.h"
 #include "apps/hapticgiant/bus_command.h"

@@ -5,16 +5,12 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <system_error>
 
 #include "apps/command_line/output.h"
-#include "hg/config/shipped_files.h"
+#include "hg/page/built_page.h"
 
 namespace hg::apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 bool has_display() {
   const auto is_set = [](const char* name) {
@@ -40,16 +36,10 @@ void open_browser(const std::string& url) {
 
 }  // namespace
 
-std::string page_folder() { return (config::installation_root() / "viewer" / "dist").string(); }
-
 std::string find_page() {
-  const fs::path page = page_folder();
-  std::error_code error;
-  if (fs::is_regular_file(page / "index.html", error)) return page.string();
-  print_out(
-      "page        not built, running without it; with node 18 or newer:\n"
-      "            cd viewer && npm ci && npm run build\n");
-  return {};
+  std::string page = page::built_page();
+  if (page.empty()) print_out("page        {}\n", page::kNoPage);
+  return page;
 }
 
 void present_page(const std::string& url, const std::string& address, bool opens_browser) {

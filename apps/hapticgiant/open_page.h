@@ -1,12 +1,9 @@
-/// The built page, and how it is presented on a terminal.
+/// How a page is presented on a terminal.
 #pragma once
 
 #include <string>
 
 namespace hg::apps {
-
-/// Folder of the built page, whether it is there or not.
-std::string page_folder();
 
 /// Path of the built page; empty when it is not built, after printing how to get it.
 std::string find_page();

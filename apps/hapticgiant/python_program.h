@@ -34,8 +34,8 @@ std::vector<std::string> python_program(const std::string& part);
 /// HAPTICGIANT_PAGE, the folder of the page.
 std::vector<std::string> python_program_that_runs_us(const std::string& part);
 
-/// Replaces this process by that program with these arguments; HAPTICGIANT_PROGRAM names hapticgiant.
-/// Does not return; throws SetupError where the interpreter cannot be started.
+/// Replaces this process by that program with these arguments; HAPTICGIANT_PROGRAM names
+/// hapticgiant. Does not return; throws SetupError where the interpreter cannot be started.
 [[noreturn]] void become_python_program(const std::string& part,
                                         const std::vector<std::string>& arguments);
 

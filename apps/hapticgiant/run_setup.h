@@ -1,24 +1,20 @@
-/// Scenario and recording of a run from the arguments of a command.
+/// Recordings of commands that play a scenario.
 #pragma once
 
-#include "apps/hapticgiant/run_command.h"
+#include <string>
+
 #include "hg/config/simulation/scenario.h"
 #include "hg/recording/recorder.h"
-#include "hg/scenario/names.h"
+#include "hg/scenario/options.h"
 #include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::apps {
 
 using scenario::recorded_scenario;
 
-/// Message when a recording is wanted but not available.
-inline constexpr char kNoRecording[] = "recording   off (the program was built without Rust)\n";
-
-/// Loads the scenario for a controller. With a remote device, simulation-only options are refused.
-/// Throws SetupError.
-config::Scenario make_scenario(const RunArguments& arguments);
-
+/// What a recording of `scenario`, loaded with `options`, in `folder` says about its run.
 recording::RecordingInfo recording_info(const config::Scenario& scenario,
-                                        const RunArguments& arguments);
+                                        const scenario::ScenarioOptions& options,
+                                        const std::string& folder);
 
 }  // namespace hg::apps

@@ -9,6 +9,7 @@
 #include "apps/command_line/option_checks.h"
 #include "hg/config/law_names.h"
 #include "hg/config/simulation/script_schema.h"
+#include "hg/scenario/run/plan_options.h"
 
 namespace hg::apps {
 
@@ -34,10 +35,9 @@ void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
   command
       .add_option("--seed", world.seed,
                   "seed of noise and tremor: the same seed gives the same run")
-      .check(whole_number(0.0));
+      .check(number_that(scenario::kSeedRule));
   command.add_option("--step", world.step_s, "largest step of the simulated machine, s")
-      .check(number_that("from 1e-5 to 2e-3",
-                         [](double value) { return value >= 1e-5 && value <= 2e-3; }));
+      .check(number_that(scenario::kStepRule));
   command
       .add_option("--set", world.changes,
                   "another value for a key of scenario, device, simulation, twin or script, as "
@@ -45,8 +45,7 @@ void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
       .allow_extra_args(false);
   command.add_option("--user", world.user, "file or name of a script, mouse or none");
   command.add_option("--rate-hz", world.rate_Hz, "control rate, 100..20000; default: the device's")
-      .check(number_that("from 100 to 20000",
-                         [](double value) { return value >= 100.0 && value <= 20000.0; }));
+      .check(number_that(scenario::kRateRule));
 }
 
 void add_law_option(Command command, std::string& law, std::vector<std::string> more) {

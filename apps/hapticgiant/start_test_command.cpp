@@ -15,7 +15,6 @@
 #include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 #include "hg/runtime/control_thread.h"
-#include "hg/scenario/remote/franka_setup.h"
 #include "hg/start_test/device_station.h"
 #include "hg/start_test/machine_memory.h"
 #include "hg/start_test/memory.h"
@@ -23,21 +22,19 @@
 namespace hg::apps {
 
 int start_test(const MachineOptions& arguments) {
-  if (scenario::is_franka(arguments.device_address)) {
-    throw SetupError("start-test: a Franka tests its brakes and stop inputs itself, see Desk");
-  }
+  refuse_command(arguments, "start-test", &scenario::Transport::start_test_refusal);
   config::Scenario scenario = make_machine_scenario(arguments);
   Machine machine = connect_machine(arguments, scenario, "start-test");
   device::ConnectedDevice* const remote = machine.remote;
   const bool is_simulated = machine.is_simulated;
   const std::string file = start_test::start_test_file(
-      arguments.recordings, scenario.device, is_simulated ? "" : arguments.device_address);
+      arguments.folder, scenario.device, is_simulated ? "" : arguments.machine.address);
   check_writable(file);
 
   const auto keep = [&](const std::vector<start_test::Item>& items) {
     const start_test::StartTestResult result = {
         .device = scenario.device.name,
-        .address = arguments.device_address,
+        .address = arguments.machine.address,
         .version = kVersion,
         .files_sha256 = start_test::sha256_of(scenario.device),
         .ended = std::time(nullptr),
@@ -58,8 +55,8 @@ int start_test(const MachineOptions& arguments) {
   print_out(fmt::format("HapticGiant {}  start test of {}{}\n", kVersion, scenario.device.name,
                         is_simulated ? ", simulated, with a simulated operator" : ""));
   print_out("stop        Ctrl-C\n");
-  if (remote != nullptr && !arguments.is_fast) {
-    runtime::become_real_time({.priority = arguments.priority});
+  if (remote != nullptr && !arguments.timing.is_fast) {
+    runtime::become_real_time({.priority = arguments.timing.priority});
   }
   const std::vector<start_test::Item> items =
       start_test::run(start_test::setup_of(scenario.device, is_simulated), station);

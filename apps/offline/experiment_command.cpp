@@ -17,7 +17,6 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/report.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/campaign.h"
@@ -92,10 +91,10 @@ config::Scenario walk_scenario(const ExperimentArguments& arguments) {
   return walk_scenario(arguments.device, arguments.simulation, arguments.twin);
 }
 
-config::Scenario scripted_scenario(const RunArguments& run) {
-  config::Scenario scenario = make_scenario(run);
+config::Scenario scripted_scenario(const scenario::ScenarioOptions& world) {
+  config::Scenario scenario = scenario::load(world);
   if (scenario::planned_duration_s(scenario) == 0.0) {
-    throw SetupError(run.world.scenario + ": no script plays it, so that it has no end");
+    throw SetupError(world.scenario + ": no script plays it, so that it has no end");
   }
   return scenario;
 }
@@ -122,10 +121,9 @@ std::vector<NamedScenario> scripted_scenarios(std::vector<std::string> given,
   if (given.empty()) given = shipped;
   std::vector<NamedScenario> all;
   for (const std::string& scenario : given) {
-    RunArguments run;
-    run.world = world;
-    run.world.scenario = scenario;
-    all.push_back({name_of(scenario), scripted_scenario(run)});
+    scenario::ScenarioOptions named = world;
+    named.scenario = scenario;
+    all.push_back({name_of(scenario), scripted_scenario(named)});
   }
   return all;
 }

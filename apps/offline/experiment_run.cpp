@@ -23,6 +23,7 @@
 #include "hg/recording/recorder.h"
 #include "hg/runtime/runtime.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/recorded/run_recording.h"
 #include "hg/scenario/run.h"
 #include "hg/simulator/simulated_device.h"
 
@@ -37,12 +38,12 @@ constexpr std::chrono::milliseconds kIdle(2);
 
 // The recorder of an experiment, whose file says nothing of the wall clock.
 std::unique_ptr<recording::Recorder> make_recorder(const config::Scenario& scenario,
-                                                   const RunArguments& arguments) {
+                                                   const ExperimentRun& arguments) {
   if (!recording::recording_available()) {
-    print_out(kNoRecording);
+    print_out("recording   {}\n", scenario::kNoRecording);
     return nullptr;
   }
-  recording::RecordingInfo info = recording_info(scenario, arguments);
+  recording::RecordingInfo info = recording_info(scenario, arguments.world, arguments.folder);
   info.start = {};
   info.is_reproducible = true;
   return std::make_unique<recording::Recorder>(info);
@@ -161,7 +162,7 @@ void show_progress(std::string_view name, double done_s, double total_s) {
 }
 
 runtime::RuntimeOptions runtime_options(const config::Scenario& scenario,
-                                        const RunArguments& arguments) {
+                                        const ExperimentRun& arguments) {
   runtime::RuntimeOptions options = scenario::run_options(scenario);
   options.is_fast = true;
   options.duration_s = arguments.duration_s.value_or(options.duration_s);
@@ -171,10 +172,10 @@ runtime::RuntimeOptions runtime_options(const config::Scenario& scenario,
 
 }  // namespace
 
-void play_experiment(const PaperExperiment& experiment, const RunArguments& arguments,
+void play_experiment(const PaperExperiment& experiment, const ExperimentRun& arguments,
                      const std::string& command) {
-  const fs::path folder = arguments.recordings;
-  const config::Scenario scenario = make_scenario(arguments);
+  const fs::path folder = arguments.folder;
+  const config::Scenario scenario = scenario::load(arguments.world);
   const runtime::RuntimeOptions options = runtime_options(scenario, arguments);
   controller::Cycle cycle = scenario::make_cycle(scenario);
   FilmedDevice device(scenario);

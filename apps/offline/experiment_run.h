@@ -1,11 +1,12 @@
 /// One experiment on the full simulator: device with all its errors, scripted person, recording.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
-#include "apps/hapticgiant/run_command.h"
 #include "hg/config/simulation/scenario.h"
+#include "hg/scenario/options.h"
 
 namespace hg::apps {
 
@@ -20,11 +21,18 @@ struct PaperExperiment {
   std::string_view also = {};
 };
 
-/// Plays an experiment as fast as possible into the folder `arguments.recordings`: recording.mcap,
+/// How an experiment is played.
+struct ExperimentRun {
+  scenario::ScenarioOptions world;
+  std::optional<double> duration_s;  ///< duration, s; unset = until the script has played
+  std::string folder;                ///< of the results
+};
+
+/// Plays an experiment as fast as possible into its folder: recording.mcap,
 /// where recordings are available, run.json, signals.npy, and summary and computing times in
 /// timing.json. The same arguments write the same bytes, but for timing.json. `command` repeats the
 /// run. Throws SetupError.
-void play_experiment(const PaperExperiment& experiment, const RunArguments& arguments,
+void play_experiment(const PaperExperiment& experiment, const ExperimentRun& arguments,
                      const std::string& command);
 
 }  // namespace hg::apps

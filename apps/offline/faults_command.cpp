@@ -106,10 +106,7 @@ int faults(FaultsArguments arguments) {
   std::vector<recording::RecordingInfo> recordings;
   if (recording::recording_available()) {
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
-      RunArguments run;
-      run.world = options[i];
-      run.recordings = scratch.path();
-      recordings.push_back(recording_info(scenarios[i], run));
+      recordings.push_back(recording_info(scenarios[i], options[i], scratch.path()));
     }
   }
   if (!is_part) {

@@ -45,17 +45,16 @@ int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& a
   std::vector<fs::path> runs;
   for (const std::string& law : arguments.law == "both" ? std::vector<std::string>{"gauss", "paper"}
                                                         : std::vector{arguments.law}) {
-    RunArguments run;
+    ExperimentRun run;
     run.world.seed = arguments.seed;
     run.world.law = law;
     run.duration_s = arguments.duration_s;
-    run.is_fast = true;
     const auto play = [&](const PaperExperiment& played) {
       const fs::path folder = folder_of(played.name);
       runs.push_back(arguments.law == "both" ? folder / law : folder);
       run.world.scenario = played.scenario;
-      run.recordings = runs.back().string();
-      make_folder(run.recordings);
+      run.folder = runs.back().string();
+      make_folder(run.folder);
       play_experiment(played, run, command_of(arguments, experiment.name));
     };
     play(experiment);

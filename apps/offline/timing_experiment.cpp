@@ -9,7 +9,6 @@
 
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/paper_experiment_command.h"
 #include "bench/bench_results.h"
@@ -28,15 +27,15 @@ constexpr int kPasses = 2;
 
 // Computing times of one law at one rate.
 Json measure(const PaperExperimentArguments& arguments, const std::string& law, double rate_Hz) {
-  RunArguments run;
-  run.world.scenario = "free_space";  // of the Cartesian experiment
-  run.world.seed = arguments.seed;
-  run.world.rate_Hz = rate_Hz;
-  run.world.law = law;
-  run.world.device = arguments.device;
-  run.world.twin = arguments.twin;
+  scenario::ScenarioOptions world;
+  world.scenario = "free_space";  // of the Cartesian experiment
+  world.seed = arguments.seed;
+  world.rate_Hz = rate_Hz;
+  world.law = law;
+  world.device = arguments.device;
+  world.twin = arguments.twin;
   const bool is_own = arguments.device.empty() && arguments.twin.empty();
-  config::Scenario scenario = is_own ? make_scenario(run) : experiments::moved_scenario(run.world);
+  config::Scenario scenario = is_own ? scenario::load(world) : experiments::moved_scenario(world);
   if (arguments.duration_s) scenario.duration_s = *arguments.duration_s;
   if (isatty(STDERR_FILENO) != 0) draw_error(fmt::format("law {}, {:.0f} Hz ...", law, rate_Hz));
   const bench::CycleTimes times =

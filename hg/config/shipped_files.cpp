@@ -1,5 +1,6 @@
 #include "hg/config/shipped_files.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -67,9 +68,21 @@ fs::path find_shipped(const std::string& name, std::string_view kind, bool has_f
                                fmt::join(shipped, ", ")));
 }
 
+// The folder of an installed Python package that holds this code; empty: this is a program.
+fs::path package_root() {
+  static constexpr char kHere = 0;
+  Dl_info library{};
+  if (dladdr(&kHere, &library) == 0 || library.dli_fname == nullptr) return {};
+  const fs::path file = library.dli_fname;
+  std::error_code error;
+  const fs::path share = file.parent_path() / "share" / "hapticgiant";
+  return file.extension() == ".so" && fs::is_directory(share, error) ? share : fs::path();
+}
+
 }  // namespace
 
 fs::path installation_root() {
+  if (const fs::path package = package_root(); !package.empty()) return package;
   std::error_code error;
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (error) return {};

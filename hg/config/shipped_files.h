@@ -12,8 +12,8 @@
 namespace hg::config {
 
 /// The folder of this program's viewer/, python/, .venv/ and models/: the sources of the build that
-/// contains the program, or share/hapticgiant of the prefix whose bin/ contains it. Empty if
-/// neither.
+/// contains the program, share/hapticgiant of the prefix whose bin/ contains it, or that of the
+/// Python package whose extension this is. Empty if none of them.
 std::filesystem::path installation_root();
 
 /// The folder that holds models/: the working directory, or the installation. Throws SetupError

@@ -38,6 +38,7 @@ from hapticgiant._core import (
     start_posture,
     twin_parameters,
 )
+from hapticgiant.play import Outcome, RunInterrupted, play
 from hapticgiant.recording import Recording, read_recording
 from hapticgiant.scenario import MODELS, load_scenario, run
 
@@ -57,12 +58,14 @@ __all__ = [
     "Mode",
     "ModeRequest",
     "OperatorFrame",
+    "Outcome",
     "Parameter",
     "ParameterChange",
     "Person",
     "Pose",
     "Recording",
     "Refusal",
+    "RunInterrupted",
     "Scenario",
     "SensorFrame",
     "Session",
@@ -78,6 +81,7 @@ __all__ = [
     "load_scenario",
     "model",
     "next_request",
+    "play",
     "read_recording",
     "run",
     "start_posture",

@@ -25,7 +25,7 @@ EXAMPLES = {
 # libraries that notebooks need without importing them
 NEEDS = {"1_first_run.py": "import pandas", "2_forces_at_a_limit.py": "import xarray"}
 # the extension with its stubs and models, and figures, pages and their templates by the extra packages
-TESTS_OF_AN_INSTALLATION = ["enums_test", "hqp_test", "limits_test", "model_test",
+TESTS_OF_AN_INSTALLATION = ["enums_test", "hqp_test", "limits_test", "model_test", "play_test",
                             "parameters_test", "run_test", "studies_test"]
 
 
@@ -54,6 +54,7 @@ def prepare(tree, program):
     shutil.rmtree(recordings, ignore_errors=True)
     run(program, "run", "door", "--fast", "--recordings", recordings)
     environment = {**os.environ, "PYTHONPATH": str(work / "site"),
+                   "HAPTICGIANT_PROGRAM": str(program.resolve()),
                    "HG_RECORDING": str(recordings / "latest.mcap")}
     environment.pop("LD_LIBRARY_PATH", None)
     return environment

@@ -16,7 +16,6 @@
 #include <thread>
 
 #include "apps/hapticgiant/commission_command.h"
-#include "apps/hapticgiant/prepared_run.h"
 #include "apps/hapticgiant/run_command.h"
 #include "apps/hapticgiant/start_test_command.h"
 #include "hg/core/error.h"
@@ -28,6 +27,7 @@
 #include "hg/scenario/options.h"
 #include "hg/scenario/remote/ethercat_setup.h"
 #include "hg/scenario/remote/remote_setup.h"
+#include "hg/scenario/run/prepared_run.h"
 #include "hg/simulator/simulated_device.h"
 #include "hg/start_test/machine_memory.h"
 #include "hg/start_test/memory.h"
@@ -95,32 +95,33 @@ class MachineTest : public ::testing::Test {
   MachineTest() {
     folder_ = std::filesystem::temp_directory_path() / ("machine_test_" + std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
-    arguments_.world.scenario = "free_space";
-    arguments_.duration_s = 1.0;
-    arguments_.is_fast = true;
-    arguments_.has_viewer = arguments_.has_recording = false;
-    arguments_.recordings = folder_.string();
+    plan_.world.scenario = "free_space";
+    plan_.timing.duration_s = 1.0;
+    plan_.timing.is_fast = true;
+    plan_.page.is_served = plan_.records.has_recording = false;
+    plan_.records.folder = folder_.string();
   }
   ~MachineTest() override { std::filesystem::remove_all(folder_); }
 
   void keep_result(const config::DeviceConfig& device, bool has_passed = true) {
     start_test::StartTestResult result = {.device = device.name,
-                                          .address = arguments_.device_address,
+                                          .address = plan_.machine.address,
                                           .version = "test",
                                           .files_sha256 = start_test::sha256_of(device),
                                           .ended = std::time(nullptr),
                                           .has_passed = has_passed};
-    write_whole_file(
-        start_test::start_test_file(folder_.string(), device, arguments_.device_address),
-        to_json(result));
+    write_whole_file(start_test::start_test_file(folder_.string(), device, plan_.machine.address),
+                     to_json(result));
   }
   std::filesystem::path posture_file() const {
-    return start_test::file_of(folder_.string(), "posture", "HapticGiant",
-                               arguments_.device_address);
+    return start_test::file_of(folder_.string(), "posture", "HapticGiant", plan_.machine.address);
+  }
+  scenario::PreparedRun prepare() const {
+    return {plan_.world, plan_.machine, plan_.timing, plan_.records};
   }
   std::string refusal() const {
     try {
-      const apps::PreparedRun run(arguments_);
+      const scenario::PreparedRun run = prepare();
       return {};
     } catch (const SetupError& error) {
       return error.what();
@@ -128,7 +129,7 @@ class MachineTest : public ::testing::Test {
   }
 
   std::filesystem::path folder_;
-  apps::RunArguments arguments_;
+  scenario::RunPlan plan_;
 };
 
 void expect_part(const std::string& text, const std::string& part) {
@@ -136,9 +137,9 @@ void expect_part(const std::string& text, const std::string& part) {
 }
 
 TEST_F(MachineTest, RunsOnlyWithAStartTestThatCounts) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   const Machine machine(scenario);
-  arguments_.device_address = machine.address();
+  plan_.machine.address = machine.address();
   expect_part(refusal(), "no start test of HapticGiant that counts: there is none");
   expect_part(refusal(), "--without-start-test");
   keep_result(scenario.device, false);
@@ -152,15 +153,15 @@ TEST_F(MachineTest, RunsOnlyWithAStartTestThatCounts) {
 }
 
 TEST_F(MachineTest, RunsWithoutAStartTestWhereTheFileAllowsIt) {
-  const Machine machine(scenario::load(arguments_.world));
-  arguments_.device_address = machine.address();
-  arguments_.without_start_test = true;
-  const apps::PreparedRun run(arguments_);
-  EXPECT_EQ(run.start_test, "BRAKES AND STOP INPUTS ARE NOT TESTED: there is none");
+  const Machine machine(scenario::load(plan_.world));
+  plan_.machine.address = machine.address();
+  plan_.machine.without_start_test = true;
+  const scenario::PreparedRun run = prepare();
+  EXPECT_EQ(run.connection->start_test, "BRAKES AND STOP INPUTS ARE NOT TESTED: there is none");
 }
 
 TEST_F(MachineTest, AMachineTakesNoInjectedFaults) {
-  config::Scenario scenario = scenario::load(arguments_.world);
+  config::Scenario scenario = scenario::load(plan_.world);
   const Machine machine(scenario), demo(scenario, true);
   for (const char* const name : {"motor_dead", "brake_weak", "cycles_late", "solver_hurried"}) {
     scenario.faults = {{.kind = faults::find_kind(name), .magnitude = 1.0}};
@@ -177,18 +178,18 @@ TEST_F(MachineTest, AMachineTakesNoInjectedFaults) {
 }
 
 TEST_F(MachineTest, ASimulationNeedsNoStartTest) {
-  const Machine machine(scenario::load(arguments_.world), true);
-  arguments_.device_address = machine.address();
-  const apps::PreparedRun run(arguments_);
-  EXPECT_EQ(run.machine, nullptr);
-  EXPECT_EQ(run.start_test, "");
+  const Machine machine(scenario::load(plan_.world), true);
+  plan_.machine.address = machine.address();
+  const scenario::PreparedRun run = prepare();
+  EXPECT_EQ(run.machine(), nullptr);
+  EXPECT_EQ(run.connection->start_test, "");
 }
 
 TEST_F(MachineTest, AGantryThatWasHomedThirtyCentimetresOffIsRefusedByName) {
-  Machine machine(scenario::load(arguments_.world));
-  arguments_.device_address = machine.address();
-  arguments_.without_start_test = true;
-  EXPECT_EQ(apps::run(arguments_), 1);  // too short for its events
+  Machine machine(scenario::load(plan_.world));
+  plan_.machine.address = machine.address();
+  plan_.machine.without_start_test = true;
+  EXPECT_EQ(apps::run({.plan = plan_}), 1);  // too short for its events
   ASSERT_TRUE(std::filesystem::exists(posture_file()));
   EXPECT_EQ(refusal(), "");
 
@@ -197,28 +198,28 @@ TEST_F(MachineTest, AGantryThatWasHomedThirtyCentimetresOffIsRefusedByName) {
   expect_part(why, "HapticGiant stands elsewhere than the last run has left it:\n  ppu1: ");
   expect_part(why, "--posture-confirmed ppu1");
   EXPECT_EQ(why.find("ppu2: "), std::string::npos) << why;
-  arguments_.confirmed_joints = {"ppu2"};
+  plan_.machine.confirmed_joints = {"ppu2"};
   expect_part(refusal(), "ppu1: ");
-  arguments_.confirmed_joints = {"ppu1"};
+  plan_.machine.confirmed_joints = {"ppu1"};
   EXPECT_EQ(refusal(), "");
-  arguments_.confirmed_joints = {"missing"};
+  plan_.machine.confirmed_joints = {"missing"};
   expect_part(refusal(), "HapticGiant has no joint 'missing'");
 
-  arguments_.confirmed_joints.clear();
+  plan_.machine.confirmed_joints.clear();
   std::ofstream(posture_file()) << "{";
   expect_part(refusal(), "expected the posture that a run has kept");
 }
 
 TEST_F(MachineTest, AfterABrakeThatDidNotHoldTheStartTestCountsNoMore) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   Machine machine(scenario);
-  arguments_.device_address = machine.address();
+  plan_.machine.address = machine.address();
   keep_result(scenario.device);
-  EXPECT_EQ(apps::run(arguments_), 1);
+  EXPECT_EQ(apps::run({.plan = plan_}), 1);
   EXPECT_EQ(refusal(), "") << "brakes that hold";
   machine.falling.store(0.3);
   testing::internal::CaptureStdout();
-  EXPECT_EQ(apps::run(arguments_), 1);
+  EXPECT_EQ(apps::run({.plan = plan_}), 1);
   const std::string said = testing::internal::GetCapturedStdout();
   expect_part(said, "m5 MOVES WITH ITS BRAKE CLOSED");
   expect_part(said, "start test   counts no more");
@@ -226,14 +227,14 @@ TEST_F(MachineTest, AfterABrakeThatDidNotHoldTheStartTestCountsNoMore) {
 }
 
 TEST_F(MachineTest, AFileThatCannotBeReadIsNotTakenForNone) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   const Machine machine(scenario);
-  arguments_.device_address = machine.address();
+  plan_.machine.address = machine.address();
   const std::filesystem::path result =
       start_test::start_test_file(folder_.string(), scenario.device, machine.address());
   ASSERT_EQ(mkfifo(result.c_str(), 0600), 0);  // without a writer
   expect_part(refusal(), "expected a file, got a named pipe");
-  arguments_.without_start_test = true;
+  plan_.machine.without_start_test = true;
   EXPECT_EQ(refusal(), "");
   ASSERT_EQ(mkfifo(posture_file().c_str(), 0600), 0);
   expect_part(refusal(), "expected a file, got a named pipe");
@@ -246,14 +247,14 @@ TEST_F(MachineTest, AFileThatCannotBeReadIsNotTakenForNone) {
 }
 
 TEST_F(MachineTest, AStartTestOfAnotherMachineOfTheSameNameDoesNotCount) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   const Machine machine(scenario), other(scenario);
-  arguments_.device_address = other.address();
+  plan_.machine.address = other.address();
   keep_result(scenario.device);
   EXPECT_EQ(refusal(), "");
   const std::string kept =
       start_test::start_test_file(folder_.string(), scenario.device, other.address());
-  arguments_.device_address = machine.address();
+  plan_.machine.address = machine.address();
   expect_part(refusal(), "there is none");
   std::filesystem::rename(
       kept, start_test::start_test_file(folder_.string(), scenario.device, machine.address()));
@@ -261,15 +262,15 @@ TEST_F(MachineTest, AStartTestOfAnotherMachineOfTheSameNameDoesNotCount) {
 }
 
 TEST_F(MachineTest, ADemoLeavesTheResultOfAMachine) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   Machine machine(scenario), demo(scenario, true);
-  arguments_.device_address = machine.address();
+  plan_.machine.address = machine.address();
   keep_result(scenario.device);
   for (const std::string& address : {std::string(), demo.address()}) {
     apps::MachineOptions arguments;
-    arguments.device_address = address;
-    arguments.is_fast = true;
-    arguments.recordings = folder_.string();
+    arguments.machine.address = address;
+    arguments.timing.is_fast = true;
+    arguments.folder = folder_.string();
     EXPECT_EQ(apps::start_test(arguments), 0);
     EXPECT_TRUE(std::filesystem::remove(folder_ / "start_test_HapticGiant_simulated.json"));
   }
@@ -278,13 +279,13 @@ TEST_F(MachineTest, ADemoLeavesTheResultOfAMachine) {
 }
 
 TEST_F(MachineTest, ASimulationIsCommissionedHereAndBehindAWire) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   Machine machine(scenario, true);
   for (const std::string& address : {std::string(), machine.address()}) {
     apps::CommissionArguments options;
-    options.machine.device_address = address;
-    options.machine.is_fast = true;
-    options.machine.recordings = folder_.string();
+    options.machine.machine.address = address;
+    options.machine.timing.is_fast = true;
+    options.machine.folder = folder_.string();
     EXPECT_EQ(apps::commission(options), 0);
     EXPECT_TRUE(std::filesystem::remove(folder_ / "commission_HapticGiant_simulated.json"));
   }
@@ -292,12 +293,12 @@ TEST_F(MachineTest, ASimulationIsCommissionedHereAndBehindAWire) {
 
 // The tests have no terminal.
 TEST_F(MachineTest, AMachineIsCommissionedOnlyAtATerminal) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   Machine machine(scenario);
   apps::CommissionArguments options;
-  options.machine.device_address = machine.address();
-  options.machine.is_fast = true;
-  options.machine.recordings = folder_.string();
+  options.machine.machine.address = machine.address();
+  options.machine.timing.is_fast = true;
+  options.machine.folder = folder_.string();
   const int terminal = dup(STDIN_FILENO), none = open("/dev/null", O_RDONLY | O_CLOEXEC);
   dup2(none, STDIN_FILENO);
   expect_part(message_of([&] { apps::commission(options); }),
@@ -308,33 +309,33 @@ TEST_F(MachineTest, AMachineIsCommissionedOnlyAtATerminal) {
 }
 
 TEST_F(MachineTest, AComputerThatIsNotReadyIsOverruledByNameOnly) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   const Machine machine(scenario, false, false);
-  arguments_.device_address = machine.address();
-  arguments_.despite = {"latenes"};
+  plan_.machine.address = machine.address();
+  plan_.machine.despite = {"latenes"};
   const std::string words = "no item of the doctor is 'latenes', did you mean 'lateness'?";
   for (const bool is_fast : {false, true}) {  // in lock-step nothing else is asked of the computer
-    arguments_.is_fast = is_fast;
+    plan_.timing.is_fast = is_fast;
     expect_part(refusal(), words);
   }
   apps::MachineOptions options;
-  options.world = arguments_.world;
-  options.recordings = folder_.string();
-  options.despite = arguments_.despite;
+  options.world = plan_.world;
+  options.folder = folder_.string();
+  options.machine.despite = plan_.machine.despite;
   expect_part(message_of([&] { apps::start_test(options); }), words);
   expect_part(message_of([&] { apps::commission({.machine = options}); }), words);
 }
 
 TEST_F(MachineTest, AnotherFileOfTheBusIsAnotherMachine) {
   const auto hash_with = [&](const std::filesystem::path& file) {
-    config::Scenario scenario = scenario::load(arguments_.world);
+    config::Scenario scenario = scenario::load(plan_.world);
     scenario::ethercat_config("ethercat://nowhere", file, scenario, true);
     return start_test::sha256_of(scenario.device);
   };
   const std::filesystem::path shipped = "models/haptic_giant/machine.yaml";
   const std::string before = hash_with({});
   EXPECT_EQ(hash_with(shipped), before);
-  EXPECT_NE(start_test::sha256_of(scenario::load(arguments_.world).device), before);
+  EXPECT_NE(start_test::sha256_of(scenario::load(plan_.world).device), before);
   const std::filesystem::path changed = folder_ / "machine.yaml";
   std::string text = read_file(shipped);
   const std::string scale = "scale: 0.09";
@@ -344,9 +345,9 @@ TEST_F(MachineTest, AnotherFileOfTheBusIsAnotherMachine) {
 }
 
 TEST_F(MachineTest, AServerBusyWithTheSessionBeforeIsTriedAgain) {
-  const config::Scenario scenario = scenario::load(arguments_.world);
+  const config::Scenario scenario = scenario::load(plan_.world);
   const Machine machine(scenario);
-  arguments_.device_address = machine.address();
+  plan_.machine.address = machine.address();
   auto before = scenario::connect_device(machine.address(), {}, scenario, "test", true);
   SensorFrame sensors;
   before->read(sensors);  // it has the device

@@ -14,6 +14,9 @@
 
 namespace hg::scenario {
 
+/// Message where a recording is wanted and not available.
+inline constexpr char kNoRecording[] = "off (the program was built without Rust)";
+
 /// What is written of a run; set-up data.
 struct RecordingPlan {
   recording::RecordingInfo info;

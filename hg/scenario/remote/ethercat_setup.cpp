@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -109,9 +110,30 @@ void check_times(const std::filesystem::path& file, const ethercat::Machine& mac
                                file.generic_string(), 1.0 / rate_Hz, machine.answer_s));
 }
 
+Contact reach(const LinkRequest& request, config::Scenario& scenario) {
+  const ethercat::EthercatConfig config =
+      ethercat_config(request.address, request.machine_file, scenario, request.is_fast);
+  const bool is_simulated = config.machine.moves_with_frames;
+  return {.is_simulated = is_simulated, .needs_start_test = !is_simulated, .open = [config] {
+            return std::make_unique<ethercat::EthercatDevice>(config);
+          }};
+}
+
+std::string note_on(const device::ConnectedDevice& /*device*/) {
+  return "the machine file says that the segment is a simulation: no start test is required";
+}
+
 }  // namespace
 
-bool is_ethercat(const std::string& address) { return address.starts_with(kScheme); }
+const Transport kEthercatTransport = {
+    .scheme = kScheme,
+    .help = "ethercat://INTERFACE of a machine on a bus (docs/reference/ethercat.md)",
+    .key_refusal = "a bus has no key",
+    .simulation_refusal =
+        "the segment is a simulation, whose stop button the bus does not reach; leave "
+        "--device-address out",
+    .reach = &reach,
+    .note = &note_on};
 
 ethercat::EthercatConfig ethercat_config(const std::string& address,
                                          const std::filesystem::path& file,
@@ -125,11 +147,7 @@ ethercat::EthercatConfig ethercat_config(const std::string& address,
   if (result.interface_name.empty()) {
     throw SetupError("--device-address: expected ethercat://INTERFACE, got '" + address + "'");
   }
-  if (!scenario.faults.empty()) {
-    throw SetupError("faults: the device at " + address +
-                     " is a machine, only a simulated one takes injected faults, got " +
-                     std::string(scenario.faults.front().kind->name));
-  }
+  refuse_faults(scenario, address);
   std::vector<std::string> joints;
   for (int i = 0; i < device.model.n_p + device.model.n_m; ++i) {
     joints.push_back(device.model.chain.joints()[i].name);

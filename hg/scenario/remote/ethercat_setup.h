@@ -6,11 +6,12 @@
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/device/ethercat/ethercat_device.h"
+#include "hg/scenario/remote/transports.h"
 
 namespace hg::scenario {
 
-/// Whether an address of --device-address names a bus: ethercat://INTERFACE.
-bool is_ethercat(const std::string& address);
+/// A machine on a bus: ethercat://INTERFACE.
+extern const Transport kEthercatTransport;
 
 /// Set-up data of the machine of a scenario. `file` is its machine.yaml; empty: the one beside the
 /// device file. From then on this file is one of those that describe the device (sources of device

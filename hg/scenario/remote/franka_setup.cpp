@@ -69,9 +69,37 @@ franka::LoadRequest load_of(const model::Tool& tool) {
   return load;
 }
 
+Contact reach(const LinkRequest& request, config::Scenario& scenario) {
+  return {
+      .open = [address = request.address, &scenario] { return connect_franka(address, scenario); }};
+}
+
+std::string note_on(const device::ConnectedDevice& device) {
+  std::string note = "a Franka tests its brakes and stops itself: no start test is required";
+  if (!static_cast<const franka::FrankaDevice&>(device).has_checked_signs()) {
+    note +=
+        "; the weight of the tool does not appear in its estimate: push lightly first, and see "
+        "that the arm yields that way";
+  }
+  return note;
+}
+
+void move_to(device::ConnectedDevice& device, const VectorM& q_m) {
+  static_cast<franka::FrankaDevice&>(device).move_to(q_m);
+}
+
 }  // namespace
 
-bool is_franka(const std::string& address) { return address.starts_with(kScheme); }
+const Transport kFrankaTransport = {
+    .scheme = kScheme,
+    .help = "franka://HOST of a Franka FR3 (docs/start/franka.md)",
+    .key_refusal = "a Franka's protocol has no key",
+    .fast_refusal = "a Franka keeps its own time, leave it out",
+    .start_test_refusal = "a Franka tests its brakes and stop inputs itself, see Desk",
+    .commission_refusal = "a Franka is commissioned by its maker, see Desk",
+    .reach = &reach,
+    .note = &note_on,
+    .move_to = &move_to};
 
 franka::FrankaConfig franka_config(const std::string& address, const config::Scenario& scenario) {
   const config::DeviceConfig& device = scenario.device;
@@ -79,11 +107,7 @@ franka::FrankaConfig franka_config(const std::string& address, const config::Sce
   result.address = address_of(address);
   result.interface = interface_of(address);
   check_device(device);
-  if (!scenario.faults.empty()) {
-    throw SetupError("faults: the device at " + address +
-                     " is a machine, only a simulated one takes injected faults, got " +
-                     std::string(scenario.faults.front().kind->name));
-  }
+  refuse_faults(scenario, address);
   const model::Tool& tool = *device.chain_options.tool;
   result.load = load_of(tool);
   result.flange = tool.link;

@@ -6,12 +6,13 @@
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/device/franka/franka_device.h"
+#include "hg/scenario/remote/transports.h"
 
 namespace hg::scenario {
 
-/// Whether an address of --device-address names a Franka: franka://HOST or franka://HOST:PORT, with
-/// /speeds behind it where the robot is led by speeds instead of torques.
-bool is_franka(const std::string& address);
+/// A Franka: franka://HOST or franka://HOST:PORT, with /speeds behind it where the robot is led by
+/// speeds instead of torques.
+extern const Transport kFrankaTransport;
 
 /// Set-up data of the Franka of a scenario. Throws SetupError where the scenario's device is none:
 /// other joints or rate, torques of its own, a payload that the robot subtracts itself, no tool.

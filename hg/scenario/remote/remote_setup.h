@@ -6,8 +6,12 @@
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/device/udp/remote_device.h"
+#include "hg/scenario/remote/transports.h"
 
 namespace hg::scenario {
+
+/// A device behind the device protocol, HOST:PORT (docs/reference/device_protocol.md).
+extern const Transport kUdpTransport;
 
 /// Description of the scenario's device, required or offered.
 udp::Description describe(const config::Scenario& scenario, bool is_lock_step);
