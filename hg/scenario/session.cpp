@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "hg/config/simulation/scenario.h"
 #include "hg/scenario/assembly.h"
 
 namespace hg::scenario {
@@ -17,6 +18,8 @@ runtime::SessionPlan plan_of(const config::Scenario& scenario) {
 
 Session::Session(const config::Scenario& scenario)
     : Session(scenario, make_simulated_device(scenario)) {}
+
+Session::Session(const std::filesystem::path& file) : Session(config::load_scenario(file)) {}
 
 Session::Session(const config::Scenario& scenario, std::unique_ptr<device::Device> device)
     : SessionParts{make_cycle(scenario), std::move(device)},

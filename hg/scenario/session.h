@@ -1,17 +1,21 @@
 /// A scenario as a session: its cycle, its simulated device, and an operator who arms and runs it.
 ///
-///     scenario::Session door(config::load_scenario(file));
+///     scenario::Session door(file);
 ///     while (door.advance()) look(door.record());
 ///
 /// Deterministic: cycle k is the same in every session of the same scenario.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 
-#include "hg/config/simulation/scenario.h"
 #include "hg/controller/cycle.h"
 #include "hg/device/device.h"
 #include "hg/runtime/session.h"
+
+namespace hg::config {
+struct Scenario;
+}
 
 namespace hg::scenario {
 
@@ -26,6 +30,8 @@ class Session final : private SessionParts, public runtime::Session {
  public:
   /// On the simulated device of the scenario. Throws SetupError.
   explicit Session(const config::Scenario& scenario);
+  /// The same of a scenario file.
+  explicit Session(const std::filesystem::path& file);
   /// On another device with the same joints. Throws SetupError.
   Session(const config::Scenario& scenario, std::unique_ptr<device::Device> device);
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "hg/config/simulation/scenario.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/session.h"

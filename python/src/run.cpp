@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
 #include "hg/recording/column_facts.h"
 #include "hg/recording/columns.h"

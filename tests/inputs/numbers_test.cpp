@@ -15,6 +15,7 @@
 #include "hg/check/device_inspection.h"
 #include "hg/check/scenario_inspection.h"
 #include "hg/check/twin_inspection.h"
+#include "hg/config/simulation/scenario.h"
 #include "hg/core/error.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/session.h"
