@@ -39,7 +39,7 @@ class FullDisk(TemporaryFolder):
     def is_reported(self, why, code, out, err, reported):
         self.assertEqual(code, NOT_WRITTEN, out + err)
         reported_at, = (n for n, line in enumerate(out.splitlines())
-                    if "has ended early, the run continues: " + why in line)
+                        if "has ended early, the run continues: " + why in line)
         self.assertTrue(any(" unlocked " in line for line in out.splitlines()[reported_at:]), out)
         self.assertIn(f"{reported['unrecorded_samples']} samples of the recording: {why}", out)
         self.assertIn("recording ended early: " + why, err)
