@@ -62,5 +62,5 @@ program, a page for the browser, models, a simulated machine and reports.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${wheel_prefix}/lib)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-scipy, python3-matplotlib, python3-jinja2, python3-yaml")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-aiohttp")  # pages of user studies
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-aiohttp, python3-statsmodels")  # of user studies
 include(CPack)

@@ -22,6 +22,7 @@ if not __package__:
     sys.modules["hapticgiant"] = _package
 
 NEEDED = {"yaml": "pyyaml", "numpy": "numpy", "scipy": "scipy"}
+FOR_MIXED = {"statsmodels": "statsmodels"}
 NEEDED_BY = {"report": {"matplotlib": "matplotlib", "jinja2": "jinja2"}, "run": {"aiohttp": "aiohttp"}}
 
 
@@ -257,6 +258,7 @@ def run(arguments):
     from hapticgiant.study.folder import Folder
     from hapticgiant.sweep.campaign import explained
     from hapticgiant.sweep.program import find_program
+    from hapticgiant.sweep.reader import StudyError
 
     if arguments.command == "forget":
         folder = Folder.as_it_was(arguments.study, arguments.out)
@@ -284,6 +286,8 @@ def run(arguments):
     if arguments.command == "report":
         from hapticgiant.study import report
 
+        if any(test.test == "mixed" for test in study.tests) and missing(FOR_MIXED):
+            raise StudyError(f"test 'mixed': {sys.executable} needs statsmodels: pip install statsmodels")
         for file in report.write(folder):
             print(f"  written    {file}")
         return 0
