@@ -34,7 +34,8 @@ endif()
 install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
   POST_INCLUDE_REGEXES "/cmeel[.]prefix/" POST_EXCLUDE_REGEXES "."
   LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)
-install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/command_line.py
+install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/as_folder.py
+  ${PROJECT_SOURCE_DIR}/python/hapticgiant/command_line.py
   ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
   DESTINATION ${share}/python/hapticgiant COMPONENT debian)
 foreach(part report sweep study imus design)

@@ -10,7 +10,7 @@ import pathlib
 import re
 
 from hapticgiant.study import expressions, order, questionnaires
-from hapticgiant.sweep.reader import Placed, Reader, StudyError, arguments_of, nearest, value_of
+from hapticgiant.sweep.reader import Placed, Reader, InputError, arguments_of, nearest, value_of
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 LABEL = re.compile(r"[A-Za-z][A-Za-z0-9]*")  # in names of files, where _ separates
@@ -150,7 +150,7 @@ class Study(Placed):
 
 
 def load_study(file: str | os.PathLike) -> Study:
-    """The study of a file. Raises StudyError with place, rule and nearest name."""
+    """The study of a file. Raises InputError with place, rule and nearest name."""
     return _Reader(file).study()
 
 

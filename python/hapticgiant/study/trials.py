@@ -16,7 +16,7 @@ import numpy as np
 from hapticgiant.study import expressions
 from hapticgiant.study.description import Study
 from hapticgiant.sweep.program import SUMMARY, Outcome, Program
-from hapticgiant.sweep.reader import StudyError, nearest
+from hapticgiant.sweep.reader import InputError, nearest
 
 RUNNING = 3  # of the column `mode`
 ALWAYS = ("mode",)
@@ -69,19 +69,19 @@ def known_columns(program: Program) -> dict[str, bool]:
 
 
 def require_columns(study: Study, known: dict[str, bool]) -> None:
-    """Raises StudyError for a measure of a column that no recording has. How long a column is depends on the device:
+    """Raises InputError for a measure of a column that no recording has. How long a column is depends on the device:
     an index beyond its end is found by a trial."""
     for name, measure in study.measures.items():
         for column in expressions.names_of(expressions.parse(measure.expression)):
             whole, bracket, index = column.partition("[")
             place = f"{study.place(f'measures.{name}')}: measures.{name}: "
             if whole not in known:
-                raise StudyError(f"{place}no column is called '{column}', did you mean '{nearest(whole, known)}'?")
+                raise InputError(f"{place}no column is called '{column}', did you mean '{nearest(whole, known)}'?")
             if known[whole] != bool(bracket):
-                raise StudyError(f"{place}'{column}': " + (f"take one of its values, as '{whole}[0]'" if known[whole]
+                raise InputError(f"{place}'{column}': " + (f"take one of its values, as '{whole}[0]'" if known[whole]
                                                            else f"'{whole}' is one value, without an index"))
             if bracket and "." not in index and int(index.rstrip("]")) >= LENGTHS.get(whole, math.inf):
-                raise StudyError(f"{place}'{column}': '{whole}' has the indices 0 to {LENGTHS[whole] - 1}")
+                raise InputError(f"{place}'{column}': '{whole}' has the indices 0 to {LENGTHS[whole] - 1}")
 
 
 def measure(study: Study, program: Program, outcome: Outcome, folder: pathlib.Path) -> Measured:
