@@ -6,7 +6,7 @@ Usage: faults_report_test.py   (from anywhere; no compiled part)
 import pathlib
 import unittest
 
-from hapticgiant.report import faults, process_faults, tables
+from hapticgiant.report import faults, tables
 
 
 def case(outcome="noticed", **more):
@@ -72,23 +72,6 @@ class Faults(unittest.TestCase):
         self.assertIn("Seed 3; Door, Walk: 0 of 1", page)
         self.assertIn("\n| link_encoder_jump | jumps | +- 0.02 .. 0.5 rad |\n", page)
         self.assertIn("\n| motor_dead | no torque | - |\n", page)
-
-
-class ProcessFaults(unittest.TestCase):
-    def test_what_failed_and_what_did_not_run_are_told_apart(self):
-        killed = {"fault": "killed", "what": "kill -9", "scenario": "walk", "passed": True,
-                  "has_run": True, "at_rest_after_s": 0.2, "travel_share": 0.05, "energy_J": 0.1,
-                  "exit_code": -1, "periods": 5000, "recorded": 4900}
-        text = process_faults.text({"cases": [
-            killed, {**killed, "passed": False, "at_rest_after_s": None},
-            {**killed, "passed": False, "has_run": False}]})
-        lines = text.splitlines()
-        self.assertEqual(lines[1].split(), ["killed", "walk", "200", "5", "0.1", "-", "5000",
-                                            "4900", "kill", "-9"])
-        self.assertTrue(lines[2].endswith("kill -9  BAD"))
-        self.assertIn("never", lines[2])
-        self.assertTrue(lines[3].endswith("BAD: it did not run"))
-        self.assertIn("2 of 3 cases", text)
 
 
 class Columns(unittest.TestCase):
