@@ -37,6 +37,7 @@ install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
 install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/as_folder.py
   ${PROJECT_SOURCE_DIR}/python/hapticgiant/command_line.py
   ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
+  ${PROJECT_SOURCE_DIR}/python/hapticgiant/samples.py
   DESTINATION ${share}/python/hapticgiant COMPONENT debian)
 foreach(part report sweep study imus design)
   list(APPEND python_parts ${PROJECT_SOURCE_DIR}/python/hapticgiant/${part})

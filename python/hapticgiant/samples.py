@@ -171,15 +171,18 @@ class _Rows:
                               axis=1)
 
     def columns(self) -> dict[str, np.ndarray]:
-        """(rows), or (rows, widest); shorter rows end with NaN or 0."""
+        """(rows), or (rows, widest); shorter rows end with NaN or 0. Without the columns that are empty in every row."""
         names = dict.fromkeys(name for block in self._blocks for name in block)
-        return {name: self._column(name, [block.get(name) for block in self._blocks]) for name in names}
+        found = {name: self._column(name, [block.get(name) for block in self._blocks]) for name in names}
+        return {name: rows for name, rows in found.items() if rows is not None}
 
     def _column(self, name, blocks):
         filled = [block for block in blocks if block is not None and block.shape[1]]
-        width = max((block.shape[1] for block in filled), default=1)
+        if not filled:
+            return None
+        width = max(block.shape[1] for block in filled)
         dtype = self.schema.types[name].newbyteorder("=")
-        if filled and len(filled) == len(blocks) and all(block.shape[1] == width for block in filled):
+        if len(filled) == len(blocks) and all(block.shape[1] == width for block in filled):
             rows = np.concatenate(blocks).astype(dtype)
         else:
             rows = np.full((self.count, width), np.nan if dtype.kind == "f" else 0, dtype)
@@ -210,7 +213,7 @@ class Samples:
     """What a recording holds."""
 
     columns: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
-    """By name: (rows), or (rows, entries)."""
+    """By name: (rows), or (rows, entries). Columns without any entry are left out."""
     count: int = 0
     """Rows."""
     events: list[Event] = dataclasses.field(default_factory=list)

@@ -474,12 +474,10 @@ class Run(unittest.TestCase):
         for bad in ({"missing_events": ["opened"]}, {"limits_held": False}, {"shaking": {"duration_s": 0.4}}):
             self.assertEqual(exit_code_of(good | bad, 0), 1, bad)
 
-    def test_a_franka_has_no_way_of_its_own_to_the_start(self):
-        from hapticgiant.study.conductor import MOVE, Hand
-
-        self.assertTrue(Hand("device", ("--device-address", "10.0.0.2:4810", MOVE)).has_way)
-        self.assertFalse(Hand("device", ("--device-address", "franka://10.0.0.2", MOVE)).has_way)
-        self.assertFalse(Hand("device", ("--device-address", "10.0.0.2:4810")).has_way)
+    def test_the_request_of_a_trial_has_the_options_of_the_study(self):
+        study = load(STUDY.replace("{scenario: door}", "{scenario: door, duration_s: 3, rate_Hz: 500, hand: stiff}"))
+        self.assertEqual(study.request("heavy"), {"scenario": "door", "duration": 3, "rate_hz": 500, "hand": "stiff",
+                                                  "set": ["twin.mass_scale=2"]})
 
     def test_a_form_that_is_not_whole_has_a_problem(self):
         from hapticgiant.study import questionnaires

@@ -20,7 +20,8 @@ if not __package__:
 
 NEEDED = {"yaml": "pyyaml", "numpy": "numpy", "scipy": "scipy"}
 FOR_MIXED = {"statsmodels": "statsmodels"}
-NEEDED_BY = {"report": {"matplotlib": "matplotlib", "jinja2": "jinja2"}, "run": {"aiohttp": "aiohttp"}}
+NEEDED_BY = {"report": {"matplotlib": "matplotlib", "jinja2": "jinja2"}, "run": {"aiohttp": "aiohttp", "mcap": "mcap"},
+             "simulate": {"mcap": "mcap"}, "check": {"mcap": "mcap"}}
 
 
 def parser():
@@ -95,22 +96,22 @@ def port(text):
 
 def hand_of(arguments):
     """Who moves the handle, from the options of `study run`."""
-    from hapticgiant.study.conductor import MOVE, Hand
+    from hapticgiant.study.conductor import Hand
     from hapticgiant.sweep.reader import InputError
 
-    options = []
-    for name in ("device_address", "machine", "key_file", "posture_confirmed", "despite"):
-        if (value := getattr(arguments, name)) is not None:
-            options += [f"--{name.replace('_', '-')}", value]
-    options += ["--without-start-test"] if arguments.without_start_test else []
+    given = {name: value for name in ("machine", "key_file", "posture_confirmed", "despite", "without_start_test",
+                                      "without_move_to_start") if (value := getattr(arguments, name))}
     if arguments.device_address is None:
-        if options or arguments.without_move_to_start:
-            options.append("--without-move-to-start")
-            raise InputError(f"{options[0]}: needs --device-address")
+        if given:
+            raise InputError(f"--{next(iter(given)).replace('_', '-')}: needs --device-address")
         return Hand("script" if arguments.rehearse else "mouse")
     if arguments.rehearse:
         raise InputError("--rehearse: is with the simulated device, leave out --device-address")
-    return Hand("device", (*options, *(() if arguments.without_move_to_start else (MOVE,))))
+    for name in ("posture_confirmed", "despite"):
+        if name in given:
+            given[name] = given[name].split(",")
+    moves = not given.pop("without_move_to_start", False)
+    return Hand("device", {"device_address": arguments.device_address, "move_to_start": moves, **given})
 
 
 def serve(study, arguments):

@@ -10,7 +10,7 @@ import pathlib
 import re
 
 from hapticgiant.study import expressions, order, questionnaires
-from hapticgiant.sweep.reader import Placed, Reader, InputError, arguments_of, nearest, value_of
+from hapticgiant.sweep.reader import Placed, Reader, InputError, arguments_of, nearest, request_of, value_of
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 LABEL = re.compile(r"[A-Za-z][A-Za-z0-9]*")  # in names of files, where _ separates
@@ -143,6 +143,10 @@ class Study(Placed):
         """The words after `hapticgiant run` for a trial."""
         options = {**self.fixed, **self.conditions[condition].options, **(hand or {})}
         return arguments_of(options, self.file.parent)
+
+    def request(self, condition: str) -> dict:
+        """The request of a trial with a person: docs/reference/run_protocol.md."""
+        return request_of({**self.fixed, **self.conditions[condition].options}, self.file.parent)
 
     def digest(self) -> str:
         """Differs where anything of the study differs."""

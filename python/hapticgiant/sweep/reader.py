@@ -55,6 +55,26 @@ def arguments_of(options: dict[str, str], folder: pathlib.Path) -> list[str]:
     return words
 
 
+NUMBERS = ("seed", "rate_Hz", "step_s", "duration_s")  # options
+
+
+def request_of(options: dict[str, str], folder: pathlib.Path) -> dict:
+    """The same as a request of `hapticgiant run --request`: docs/reference/run_protocol.md."""
+    request = {"scenario": _file_beside(folder, options.get("scenario", "door"))}
+    for key, value in options.items():
+        if key in NUMBERS:
+            request[_key_of(key)] = value_of(value)
+        elif key in OPTIONS:
+            request[_key_of(key)] = _file_beside(folder, value) if key in FILES else value
+        else:
+            request.setdefault("set", []).append(f"{key}={value}")
+    return request
+
+
+def _key_of(option):
+    return OPTIONS[option].removeprefix("--").replace("-", "_") or option
+
+
 @functools.cache
 def _file_beside(folder, name):
     beside = folder / name
