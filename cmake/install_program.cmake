@@ -35,8 +35,10 @@ endif()
 install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
   POST_INCLUDE_REGEXES "/cmeel[.]prefix/" POST_EXCLUDE_REGEXES "."
   LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)
-install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/command_line.py
+install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/as_folder.py
+  ${PROJECT_SOURCE_DIR}/python/hapticgiant/command_line.py
   ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
+  ${PROJECT_SOURCE_DIR}/python/hapticgiant/samples.py
   DESTINATION ${share}/python/hapticgiant COMPONENT debian)
 foreach(part report sweep study imus design)
   list(APPEND python_parts ${PROJECT_SOURCE_DIR}/python/hapticgiant/${part})
@@ -63,5 +65,5 @@ program, a page for the browser, models, a simulated machine and reports.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${wheel_prefix}/lib)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-scipy, python3-matplotlib, python3-jinja2, python3-yaml")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-aiohttp")  # pages of user studies
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-aiohttp, python3-statsmodels")  # of user studies
 include(CPack)

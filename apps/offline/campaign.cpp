@@ -55,14 +55,14 @@ std::map<std::size_t, json> results_in(const fs::path& folder) {
   return results;
 }
 
-// A folder may have a study of another kind, written by hand.
-void refuse_other_study(const fs::path& file) {
+// A folder may have a sweep of another kind, written by hand.
+void refuse_other_sweep(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return;
   std::ifstream text(file);
-  const json study = json::parse(text, nullptr, false);
-  if (study.is_object() && study.contains("command") && study.contains("parts")) return;
-  throw SetupError(file.string() + ": is another study; --sweep needs a folder of its own");
+  const json sweep = json::parse(text, nullptr, false);
+  if (sweep.is_object() && sweep.contains("command") && sweep.contains("parts")) return;
+  throw SetupError(file.string() + ": is another sweep; --sweep needs a folder of its own");
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ void refuse_other_study(const fs::path& file) {
 void add_campaign_options(Command command, CampaignOptions& options) {
   command.add_option("--sweep", options.folder,
                      "keep the runs in this folder: the same command continues, and `hapticgiant "
-                     "sweep FOLDER/study.yaml` plays them elsewhere (docs/start/sweep.md)");
+                     "sweep FOLDER/sweep.yaml` plays them elsewhere (docs/start/sweep.md)");
   command.add_option("--part", options.part,
                      "I/N: play each N-th run from the I-th on, and print the results as JSON");
 }
@@ -99,8 +99,8 @@ bool play_campaign(const Campaign& campaign, const CampaignOptions& options) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
-  const fs::path study = folder / "study.yaml";
-  refuse_other_study(study);
+  const fs::path sweep = folder / "sweep.yaml";
+  refuse_other_sweep(sweep);
   json files = json::array();
   for (const config::Scenario& it : campaign.scenarios) {
     files.push_back(scenario::hash_of(it.sources));
@@ -109,15 +109,15 @@ bool play_campaign(const Campaign& campaign, const CampaignOptions& options) {
                      {"command", campaign.command},
                      {"parts", campaign.parts},
                      {"files", files}};
-  write_output(study.string(), text.dump(1) + "\n");
+  write_output(sweep.string(), text.dump(1) + "\n");
   std::vector<std::string> words = python_program_that_runs_us("sweep");
-  words.insert(words.end(), {"--quiet", study.string()});
+  words.insert(words.end(), {"--quiet", sweep.string()});
   const Ended ended = run_program(words);
   if (ended.code != 0) {
     throw SetupError(
         fmt::format("{}: not all runs have a result\n{}", campaign.command.front(), ended.said));
   }
-  experiments::Runs runs(results_in(fs::path(study).replace_extension(".sweep")));
+  experiments::Runs runs(results_in(fs::path(sweep).replace_extension(".sweep")));
   campaign.play(runs);
   return false;
 }

@@ -19,7 +19,6 @@
 #include "hg/core/open_file.h"
 #include "hg/core/scratch_folder.h"
 #include "hg/experiments/moved_scenario.h"
-#include "hg/experiments/process_faults.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/options.h"
 
@@ -33,13 +32,6 @@ void report(const FaultsArguments& arguments, const nlohmann::ordered_json& json
   print_out(report_text(scratch.path(), json, "report.txt"));
   if (arguments.markdown.empty()) return;
   write_output(arguments.markdown, read_file(std::filesystem::path(scratch.path()) / "report.md"));
-}
-
-int process_faults(const FaultsArguments& arguments) {
-  const std::vector<experiments::ProcessCase> cases = experiments::play_process_faults(
-      "/proc/self/exe", arguments.scenarios, arguments.repetitions, arguments.campaign.seed);
-  report(arguments, to_json(cases));
-  return std::ranges::all_of(cases, &experiments::ProcessCase::is_good) ? 0 : 1;
 }
 
 // The scenarios with their options.
@@ -100,7 +92,6 @@ int faults(FaultsArguments arguments) {
   check_writable(arguments.markdown, kMarkdown);
   const bool is_part = !arguments.played.part.empty();
   if (arguments.json.empty() && !is_part) check_report_program();  // before minutes of runs
-  if (arguments.plays_processes) return process_faults(arguments);
   if (!is_part) check_sweep_program();
   const ScratchFolder scratch;
   std::vector<recording::RecordingInfo> recordings;
@@ -136,25 +127,16 @@ void add_faults(Command app, int& exit_code) {
   command.add_option("--seed", arguments->campaign.seed, "of scenarios, times and sizes")
       .check(whole_number(0.0));
   command.add_option("--scenario", arguments->scenarios, "scenarios with a script");
-  const Option device = command.add_option(
+  command.add_option(
       "--device", arguments->device,
       "device.yaml instead of the scenarios'; without --scenario a hand moves it through its "
       "workspace");
-  const Option twin =
-      command.add_option("--twin", arguments->twin,
-                         "twin.yaml, or the name of a shipped one, that is moved; without "
-                         "--scenario joint by joint");
-  const Option processes = command.add_flag(
-      "--processes", arguments->plays_processes,
-      "faults of the controller's process (terminal, disk, memory, ...) instead, in real time");
-  command.add_option("--repetitions", arguments->repetitions, "of the faults of processes")
-      .check(whole_number(1.0, 1e6))
-      .needs(processes);
-  processes.excludes(device).excludes(twin);
+  command.add_option("--twin", arguments->twin,
+                     "twin.yaml, or the name of a shipped one, that is moved; without "
+                     "--scenario joint by joint");
   add_campaign_options(command, arguments->played);
   command.add_option("--json", arguments->json, "write all cases as JSON to this file");
-  command.add_option("--markdown", arguments->markdown, "write the table as a page to this file")
-      .excludes(processes);
+  command.add_option("--markdown", arguments->markdown, "write the table as a page to this file");
   command.callback([arguments, &exit_code] { exit_code = faults(*arguments); });
 }
 

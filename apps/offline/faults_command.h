@@ -18,10 +18,8 @@ struct FaultsArguments {
   std::string device, twin;  ///< files that replace those of the scenarios; empty = their own
   experiments::CampaignConfig campaign;
   CampaignOptions played;
-  bool plays_processes = false;  ///< plays faults of the controller's process instead, in real time
-  int repetitions = 1;           ///< repetitions of the process faults
-  std::string json;              ///< file for all cases; empty = none
-  std::string markdown;          ///< file for the table as a page; empty = none
+  std::string json;      ///< file for all cases; empty = none
+  std::string markdown;  ///< file for the table as a page; empty = none
 };
 
 /// Prints a table. Returns the exit code: 1 when a fault was unnoticed or went beyond the bounds;

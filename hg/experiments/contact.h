@@ -71,7 +71,7 @@ ContactRun hit(const config::Scenario& scenario, const ContactConfig& config,
 ContactMeasures measure_contact(const config::Scenario& scenario, const ContactConfig& config,
                                 const Progress& progress);
 
-/// Results for python/hapticgiant/report/studies.py, with the permissible values.
+/// Results for python/hapticgiant/report/series.py, with the permissible values.
 nlohmann::ordered_json to_json(const ContactMeasures& report);
 
 }  // namespace hg::experiments

@@ -198,6 +198,17 @@ faults::Injection draw(const faults::Kind& kind, const config::Scenario& scenari
   return drawn;
 }
 
+// The drives stand still; a person who pulls may still bend the springs behind them.
+bool stands_still(const Truth& truth) {
+  constexpr double kStandstill = 0.02;  // rad/s and m/s
+  const double gantry = truth.dq_p.size() > 0 ? truth.dq_p.lpNorm<Eigen::Infinity>() : 0.0;
+  // of a joint whose brake is closed the motor stands, and the hand swings its link on the spring;
+  // one that is controlled holds its link, and its motor shakes a little with the sensors' noise
+  VectorM speed = truth.dq_m.cwiseAbs();
+  if (truth.dtheta_m.size() > 0) speed = speed.cwiseMin(truth.dtheta_m.cwiseAbs());
+  return speed.maxCoeff() < kStandstill && gantry < kStandstill;
+}
+
 constexpr std::size_t kPhases = 4;
 constexpr double kStartingWatch = 2.0;  // s longer: the device is to be armed and to run
 constexpr double kFirst = 0.1;  // s: what is wrong from the first sample on is no fault that begins
@@ -376,16 +387,6 @@ std::string why_impossible(const faults::Kind& kind, const SensorFrame& sensors,
     default:
       return "";
   }
-}
-
-bool stands_still(const Truth& truth) {
-  constexpr double kStandstill = 0.02;  // rad/s and m/s
-  const double gantry = truth.dq_p.size() > 0 ? truth.dq_p.lpNorm<Eigen::Infinity>() : 0.0;
-  // of a joint whose brake is closed the motor stands, and the hand swings its link on the spring;
-  // one that is controlled holds its link, and its motor shakes a little with the sensors' noise
-  VectorM speed = truth.dq_m.cwiseAbs();
-  if (truth.dtheta_m.size() > 0) speed = speed.cwiseMin(truth.dtheta_m.cwiseAbs());
-  return speed.maxCoeff() < kStandstill && gantry < kStandstill;
 }
 
 Interval fault_times(const config::Scenario& scenario) {

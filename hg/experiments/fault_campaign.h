@@ -85,9 +85,6 @@ struct Campaign {
 std::string why_impossible(const faults::Kind& kind, const SensorFrame& sensors,
                            const CommandFrame& command);
 
-/// Whether the drives stand still; a person who pulls may still bend the springs behind them.
-bool stands_still(const Truth& truth);
-
 /// Range of times at which faults begin: the hand has settled, and the script continues for a
 /// while. Empty (lb > ub) if the script is too short or missing.
 Interval fault_times(const config::Scenario& scenario);

@@ -68,7 +68,7 @@ std::vector<InertialRun> measure_inertial(const std::vector<config::Scenario>& s
                                           const std::vector<std::string>& names, int seeds,
                                           const Progress& progress);
 
-/// Results for python/hapticgiant/report/studies.py.
+/// Results for python/hapticgiant/report/series.py.
 nlohmann::ordered_json to_json(const std::vector<InertialRun>& runs);
 
 }  // namespace hg::experiments

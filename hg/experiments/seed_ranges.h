@@ -50,7 +50,7 @@ std::vector<SeededRun> play_seeds(const std::vector<Trial>& trials, std::uint64_
 /// Whether no run ended in a fault or left a limit.
 bool have_all_held(const std::vector<SeededRun>& runs);
 
-/// Results for python/hapticgiant/report/studies.py.
+/// Results for python/hapticgiant/report/series.py.
 nlohmann::ordered_json to_json(const std::vector<Trial>& trials,
                                const std::vector<SeededRun>& runs);
 

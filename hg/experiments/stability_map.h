@@ -93,7 +93,7 @@ std::size_t rows_of(const StabilityConfig& config);
 StabilityMap make_stability_map(const config::Scenario& scenario, const StabilityConfig& config,
                                 Runs& runs);
 
-/// Results for python/hapticgiant/report/studies.py.
+/// Results for python/hapticgiant/report/series.py.
 nlohmann::ordered_json to_json(const StabilityMap& map);
 
 }  // namespace hg::experiments

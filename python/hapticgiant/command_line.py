@@ -1,11 +1,16 @@
-"""Command lines of the subcommands that are Python's: a word that does not exist is reported with the nearest one, as
-`hapticgiant` does for its own.
+"""Command lines of the subcommands that are Python's: a word that does not exist is an error with the nearest one, as
+in `hapticgiant`; how they end.
 """
 
 from __future__ import annotations
 
 import argparse
 import difflib
+import os
+import sys
+
+BAD_INPUT = 2  # exit code
+INTERRUPTED = 130  # exit code after Ctrl-C
 
 
 def nearest(name: str, names) -> str:
@@ -35,3 +40,28 @@ class Parser(argparse.ArgumentParser):
             self.wrong(value, "subcommand", action.choices)
         raise argparse.ArgumentError(action, f"expected {' or '.join(map(str, action.choices))}, got '{value}', did you "
                                              f"mean '{nearest(str(value), action.choices)}'?")
+
+
+def whole_number(least: int):
+    """For argparse: the type of whole numbers from this one on."""
+    def whole(text):
+        if not (text.isdigit() and int(text) >= least):
+            raise argparse.ArgumentTypeError(f"expected a whole number from {least} on, got '{text}'")
+        return int(text)
+    return whole
+
+
+def exit_code_of(name: str, call, bad_input: tuple[type[Exception], ...]) -> int:
+    """The exit code that call() returns, of the subcommand of this name. Errors of the types bad_input, and of files, are
+    printed and give 2; a reader of the output that has closed it is no error."""
+    try:
+        return call()
+    except bad_input as error:
+        print(error, file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return BAD_INPUT

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import array
 import fnmatch
 import os
 import typing
@@ -10,24 +9,12 @@ import warnings
 
 import numpy as np
 
-from hapticgiant import _core
+from hapticgiant import _core, samples
+from hapticgiant.samples import Event
 
 if typing.TYPE_CHECKING:
     import pandas
     import xarray
-
-_MAGIC = b"\x89MCAP0\r\n"
-_MOST_BYTES = 1 << 30  # of a record; a damaged length is larger
-_CHUNK_HEAD = 1 + 8 + 3 * 8 + 4 + 4 + 8  # bytes of a chunk besides its data and compression's name
-_SAMPLES, _EVENTS = "/hapticgiant/sample", "/hapticgiant/events"
-
-
-class Event(typing.NamedTuple):
-    """Noteworthy moment of a run."""
-
-    time_s: float
-    name: str
-    text: str
 
 
 class ColumnFacts(typing.NamedTuple):
@@ -132,136 +119,6 @@ class Recording(dict):
         return xarray.Dataset(variables, coordinates, attrs=self.metadata)
 
 
-class _Column:
-    """The numbers of one field, row after row."""
-
-    def __init__(self, like: np.ndarray):
-        self.like = like  # type and number of dimensions
-        self.values = array.array("B" if like.dtype == bool else like.dtype.char)
-        self.ends = []
-
-    def to_numpy(self) -> np.ndarray:
-        """(rows), or (rows, widest); shorter rows end with NaN or 0."""
-        counts = np.diff(self.ends, prepend=0)
-        width = max(1, counts.max(initial=0))
-        filler = np.nan if self.like.dtype.kind == "f" else 0
-        rows = np.full((len(counts), width), filler, self.like.dtype)
-        rows[np.arange(width) < counts[:, None]] = self.values
-        return rows if self.like.ndim == 2 else rows[:, 0]
-
-
-def _append(message, path, columns):
-    """Appends every number of a message; the items of a list of messages share their columns."""
-    for name in message.__slots__:
-        value = getattr(message, name)
-        here = path + name
-        items = value if isinstance(value, list) else [value]
-        if items and hasattr(items[0], "__slots__"):
-            for item in items:
-                _append(item, "" if here == "record" else here + ".", columns)
-        elif here in columns:
-            columns[here].values.extend(items)
-
-
-class _Loss:
-    """A chunk that is damaged, with what its index says that it held."""
-
-    def __init__(self, place):
-        self.place, self.times = place, []
-
-    def text(self, start_ns):
-        if not self.times:
-            return f"chunk at byte {self.place} is damaged and left out"
-        first, last = (1e-9 * (end(self.times) - start_ns) for end in (min, max))
-        return (f"chunk at byte {self.place} is damaged: {len(self.times)} samples from {first:.3f} "
-                f"to {last:.3f} s are lost")
-
-
-def _is_complete(stream) -> bool:
-    """Whether the file ends as one that was completed."""
-    stream.seek(0, os.SEEK_END)
-    stream.seek(max(0, stream.tell() - len(_MAGIC)))
-    return stream.read() == _MAGIC
-
-
-class _Reader:
-    """Takes the records of a file, one by one."""
-
-    def __init__(self):
-        self.columns = {name: _Column(like) for name, like in _core.empty_columns().items()}
-        self.count = 0
-        self.events, self.metadata, self.configuration = [], {}, {}
-        self.losses = []
-
-    def read(self, stream):
-        """Everything in a recording; of one that a crash cut short, what is there.
-
-        A chunk whose bytes have changed is left out. Raises any exception for other damage.
-        """
-        try:
-            from mcap import records
-            from mcap.exceptions import EndOfFile
-            from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
-            from mcap_ros2.decoder import DecoderFactory
-        except ImportError as error:
-            raise ImportError("read_recording needs: pip install hapticgiant[recording]") from error
-        factory = DecoderFactory()
-        schemas, takers = {}, {}
-        loss = None  # of the chunk before
-
-        def take_content(record):
-            if isinstance(record, records.Message):
-                if record.channel_id in takers:
-                    decode, take = takers[record.channel_id]
-                    take(decode(record.data))
-            elif isinstance(record, records.Schema):
-                schemas[record.id] = record
-            elif isinstance(record, records.Channel):
-                take = {_SAMPLES: self.take_sample, _EVENTS: self.take_event}.get(record.topic)
-                if take and record.id not in takers:
-                    schema = schemas[record.schema_id]
-                    takers[record.id] = factory.decoder_for(record.message_encoding, schema), take
-
-        try:
-            for record in StreamReader(stream, emit_chunks=True, validate_crcs=True,
-                                       record_size_limit=_MOST_BYTES).records:
-                if isinstance(record, records.Chunk):
-                    loss = None
-                    try:
-                        content = breakup_chunk(record, validate_crc=True)
-                    except Exception:  # of the codec, the checksum or what it holds
-                        loss = _Loss(stream.tell() - _CHUNK_HEAD - len(record.compression)
-                                     - len(record.data))
-                        self.losses.append(loss)
-                        continue
-                    for item in content:
-                        take_content(item)
-                elif isinstance(record, records.MessageIndex):
-                    if loss and takers.get(record.channel_id, (None, None))[1] == self.take_sample:
-                        loss.times += [time for time, _ in record.records]
-                elif isinstance(record, records.Metadata):
-                    self.metadata[record.name] = list(record.metadata.items())
-                elif isinstance(record, records.Attachment):
-                    self.configuration[record.name] = record.data.decode(errors="replace")
-                else:
-                    take_content(record)
-        except CRCValidationError:
-            if not self.losses:  # which explain it
-                raise
-        except EndOfFile:
-            if _is_complete(stream):
-                raise
-
-    def take_sample(self, sample):
-        _append(sample, "", self.columns)
-        for column in self.columns.values():
-            column.ends.append(len(column.values))
-        self.count += 1
-
-    def take_event(self, event):
-        self.events.append(Event(event.time_s, event.name, event.text))
-
-
 def read_recording(file: str | os.PathLike) -> Recording:
     """Every cycle of an MCAP recording: the same columns, shapes and types as run().
 
@@ -270,23 +127,25 @@ def read_recording(file: str | os.PathLike) -> Recording:
     SetupError where the file is not a recording or damaged outside of chunks; `hapticgiant export`
     reads more of such files.
     """
-    reader = _Reader()
     try:
-        with open(file, "rb") as stream:
-            reader.read(stream)
-    except ImportError:
-        raise
-    except Exception as error:  # damaged bytes give errors of any kind
-        why = str(error) or type(error).__name__
-        raise _core.SetupError(f"{os.fspath(file)}: cannot be read as a recording: {why}") from error
-    start_ns = int(dict(reader.metadata.get("run", ())).get("start_ns", 0))
-    losses = [loss.text(start_ns) for loss in reader.losses]
-    for loss in losses:
+        found = samples.read(file)
+    except (ValueError, OSError) as error:
+        text = str(error) if isinstance(error, ValueError) else f"{os.fspath(file)}: cannot be read as a recording: {error}"
+        raise _core.SetupError(text) from error
+    for loss in found.losses:
         warnings.warn(f"{os.fspath(file)}: {loss}", stacklevel=2)
-    if reader.count == 0 and losses:
-        raise _core.SetupError(f"{os.fspath(file)}: what describes its samples is damaged")
-    if reader.count == 0:
-        raise _core.SetupError(f"{os.fspath(file)}: no messages on {_SAMPLES}, so not a recording")
-    return Recording({name: column.to_numpy() for name, column in reader.columns.items()},
-                     run=reader.metadata.get("run", ()), limits=reader.metadata.get("limits", ()),
-                     events=reader.events, configuration=reader.configuration, losses=losses)
+    columns = {name: _as(like, found.columns.get(name), found.count) for name, like in _core.empty_columns().items()}
+    return Recording(columns, run=found.metadata.get("run", ()), limits=found.metadata.get("limits", ()),
+                     events=found.events, configuration=found.configuration, losses=found.losses)
+
+
+def _as(like, values, count):
+    """The rows of a column with type and dimensions of another; None: NaN or 0."""
+    if values is None:
+        filler = np.nan if like.dtype.kind == "f" else 0
+        return np.full((count, 1) if like.ndim == 2 else count, filler, like.dtype)
+    if values.ndim < like.ndim:
+        values = values[:, None]
+    elif values.ndim > like.ndim:
+        values = values[:, 0]
+    return values.astype(like.dtype, copy=False)

@@ -199,7 +199,10 @@ void bind_parts(nb::module_& module) {
             self.joints.check(command);
             self.device->write(command);
           },
-          nb::arg("command"), "Advances by one period.");
+          nb::arg("command"), "Advances by one period.")
+      .def_prop_ro(
+          "truth", [](const OwnDevice& self) { return *self.device->truth(); },
+          "copy of the true state at the last write()");
   module.def("next_request", &runtime::next_request, nb::arg("record"), nb::arg("is_held"),
              nb::arg("is_stopping") = false, "Request of an operator who only wants to run.");
 }

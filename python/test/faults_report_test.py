@@ -8,7 +8,7 @@ import pathlib
 import tempfile
 import unittest
 
-from hapticgiant.report import faults, process_faults, tables
+from hapticgiant.report import faults, tables
 
 
 def case(outcome="noticed", **more):
@@ -85,23 +85,6 @@ class Faults(unittest.TestCase):
             self.assertIn("\nmotor_dead,no torque,-\n", (folder / "fault_campaign_kinds.csv").read_text())
             self.assertIn("\nmotor_dead,1,1,0,0,", (folder / "fault_campaign_results.csv").read_text())
             self.assertIn("\n| motor_dead | no torque | - |\n", (folder / "report.md").read_text())
-
-
-class ProcessFaults(unittest.TestCase):
-    def test_what_failed_and_what_did_not_run_are_distinguished(self):
-        killed = {"fault": "killed", "what": "kill -9", "scenario": "walk", "passed": True,
-                  "has_run": True, "at_rest_after_s": 0.2, "travel_share": 0.05, "energy_J": 0.1,
-                  "exit_code": -1, "periods": 5000, "recorded": 4900}
-        text = process_faults.text({"cases": [
-            killed, {**killed, "passed": False, "at_rest_after_s": None},
-            {**killed, "passed": False, "has_run": False}]})
-        lines = text.splitlines()
-        self.assertEqual(lines[1].split(), ["killed", "walk", "200", "5", "0.1", "-", "5000",
-                                            "4900", "kill", "-9"])
-        self.assertTrue(lines[2].endswith("kill -9  BAD"))
-        self.assertIn("never", lines[2])
-        self.assertTrue(lines[3].endswith("BAD: it did not run"))
-        self.assertIn("2 of 3 cases", text)
 
 
 class Columns(unittest.TestCase):

@@ -16,7 +16,7 @@ import unittest
 from program import PROGRAM, TemporaryFolder, run
 
 SWEEP = pathlib.Path("python/hapticgiant/sweep").resolve()
-STUDY = """\
+TABLE = """\
 fixed: {scenario: door, duration_s: 0.6}
 parameters:
   seed: {from: 1, to: 2, count: 2}
@@ -29,9 +29,9 @@ RUNS = 4
 class Sweep(TemporaryFolder):
     def setUp(self):
         super().setUp()
-        self.study = self.folder / "study.yaml"
-        self.study.write_text(STUDY)
-        self.out = self.folder / "study.sweep"
+        self.file = self.folder / "sweep.yaml"
+        self.file.write_text(TABLE)
+        self.out = self.folder / "sweep.sweep"
 
     def sweep(self, *words, code=0):
         """Standard output and standard error of a sweep that ends with this code."""
@@ -47,8 +47,8 @@ class Sweep(TemporaryFolder):
         return next((out or self.out).glob("results.*")).read_bytes()
 
     def test_plays_each_run_once_and_keeps_a_line_of_each(self):
-        out, _ = self.sweep(self.study, "--jobs", 2)
-        self.assertIn(f"{RUNS} runs of 'study'", out)
+        out, _ = self.sweep(self.file, "--jobs", 2)
+        self.assertIn(f"{RUNS} runs of 'sweep'", out)
         records = {record["run"]: record for record in self.manifest()}
         self.assertEqual(sorted(records), list(range(1, RUNS + 1)))
         self.assertEqual(records[4]["parameters"],
@@ -56,32 +56,32 @@ class Sweep(TemporaryFolder):
         self.assertEqual(records[4]["seed"], 2)
         self.assertEqual(len({record["state_hash"] for record in records.values()}), RUNS)
         before = self.table()
-        out, _ = self.sweep(self.study)
+        out, _ = self.sweep(self.file)
         self.assertIn(f"{RUNS} of them from before", out)
         self.assertEqual(len(self.manifest()), RUNS)
         self.assertEqual(self.table(), before)
 
     def test_the_command_of_a_run_gives_its_hash(self):
-        self.sweep(self.study)
-        command, _ = self.sweep("show", self.study, "--run", 4)
+        self.sweep(self.file)
+        command, _ = self.sweep("show", self.file, "--run", 4)
         summary = self.folder / "summary.json"
         subprocess.run([*command.split(), "--summary", summary], capture_output=True, check=False)
         record = next(record for record in self.manifest() if record["run"] == 4)
         self.assertEqual(json.loads(summary.read_text())["state_hash"], record["state_hash"])
 
     def test_shards_and_one_worker_give_the_table_of_the_whole(self):
-        self.sweep(self.study, "--jobs", 2)
+        self.sweep(self.file, "--jobs", 2)
         other = self.folder / "other"
-        self.sweep(self.study, "--out", other, "--jobs", 1, "--shard", "2/2")
-        self.sweep("merge", self.study, "--out", other, code=1)
+        self.sweep(self.file, "--out", other, "--jobs", 1, "--shard", "2/2")
+        self.sweep("merge", self.file, "--out", other, code=1)
         self.assertNotEqual(self.table(other), self.table())
-        self.sweep(self.study, "--out", other, "--jobs", 1, "--shard", "1/2")
-        self.sweep("merge", self.study, "--out", other)
+        self.sweep(self.file, "--out", other, "--jobs", 1, "--shard", "1/2")
+        self.sweep("merge", self.file, "--out", other)
         self.assertEqual(self.table(other), self.table())
 
     def test_a_killed_sweep_continues(self):
-        self.study.write_text(STUDY.replace("to: 2, count: 2", "to: 6, count: 6"))
-        process = subprocess.Popen([PROGRAM, "sweep", self.study, "--jobs", "1"])
+        self.file.write_text(TABLE.replace("to: 2, count: 2", "to: 6, count: 6"))
+        process = subprocess.Popen([PROGRAM, "sweep", self.file, "--jobs", "1"])
         deadline = time.monotonic() + 60
         lines = self.out / "manifest.jsonl"
         while not (lines.exists() and lines.stat().st_size > 0) and time.monotonic() < deadline:
@@ -93,10 +93,10 @@ class Sweep(TemporaryFolder):
         self.assertLess(played, 12)
         with open(lines, "a") as file:
             file.write('{"run": 12, "half of a li')
-        out, _ = self.sweep(self.study)
+        out, _ = self.sweep(self.file)
         self.assertIn(f"{played} of them from before", out)
         self.assertEqual(sorted(record["run"] for record in self.manifest()), list(range(1, 13)))
-        self.sweep(self.study, "--out", self.folder / "whole")
+        self.sweep(self.file, "--out", self.folder / "whole")
         self.assertEqual(self.table(self.folder / "whole"), self.table())
 
     def test_wrong_keys_are_refused_before_the_first_run(self):
@@ -114,47 +114,47 @@ class Sweep(TemporaryFolder):
                 ("count: 2", "3:26", "seed: unknown key, did you mean 'count'?")):
             right = {"seed: {": "seeds: {", "twin.joints": "twim.joints", "hinge": "hing",
                      "damping": "dampin", "4.5": "x", "force.*": "forc.*", "count: 2": "cout: 2"}
-            self.study.write_text(STUDY.replace(wrong, right[wrong]))
-            _, err = self.sweep(self.study, code=2)
+            self.file.write_text(TABLE.replace(wrong, right[wrong]))
+            _, err = self.sweep(self.file, code=2)
             with self.subTest(wrong, said=err):
                 self.assertIn(message.split(": ")[-1], err)
-                self.assertIn(f"{self.study}:{place}" if place else str(self.study), err)
+                self.assertIn(f"{self.file}:{place}" if place else str(self.file), err)
         self.assertFalse(self.out.exists())
 
     def test_an_option_that_the_program_refuses_is_named_with_its_place(self):
-        self.study.write_text(STUDY + "rows: [{hand: stif}]\n")
-        _, err = self.sweep(self.study, code=2)
-        self.assertIn(f"{self.study}:6:9: --hand", err)
+        self.file.write_text(TABLE + "rows: [{hand: stif}]\n")
+        _, err = self.sweep(self.file, code=2)
+        self.assertIn(f"{self.file}:6:9: --hand", err)
 
-    def test_another_study_is_refused_until_again(self):
-        self.sweep(self.study)
-        self.study.write_text(STUDY.replace("4.5", "5"))
-        _, err = self.sweep(self.study, code=2)
-        self.assertIn("holds runs of another study", err)
-        self.sweep("merge", self.study, code=2)
-        out, _ = self.sweep(self.study, "--again")
+    def test_another_sweep_is_refused_until_again(self):
+        self.sweep(self.file)
+        self.file.write_text(TABLE.replace("4.5", "5"))
+        _, err = self.sweep(self.file, code=2)
+        self.assertIn("holds runs of another sweep", err)
+        self.sweep("merge", self.file, code=2)
+        out, _ = self.sweep(self.file, "--again")
         self.assertNotIn("from before", out)
 
     def test_another_program_and_another_file_are_distinguished(self):
-        self.sweep(self.study)
-        header = self.out / "study.json"
+        self.sweep(self.file)
+        header = self.out / "sweep.json"
         right = json.loads(header.read_text())
         for key, message in (("program", "runs of another program"),
                              ("files", "a scenario, device, twin, simulation or script has changed")):
             header.write_text(json.dumps({**right, key: "0"}))
-            _, err = self.sweep(self.study, code=2)
+            _, err = self.sweep(self.file, code=2)
             self.assertIn(message, err)
 
     def test_check_finds_a_run_that_is_not_the_same_again(self):
-        self.sweep(self.study)
-        out, _ = self.sweep("check", self.study, "--count", 2)
+        self.sweep(self.file)
+        out, _ = self.sweep("check", self.file, "--count", 2)
         self.assertIn("2 runs played again: 2 the same, 0 not", out)
         file = self.out / "manifest.jsonl"
         records = self.manifest()
         true = records[1]["state_hash"]
         records[1]["state_hash"] = "0" * 16
         file.write_text("".join(json.dumps(record) + "\n" for record in records))
-        out, _ = self.sweep("check", self.study, "--all", code=1)
+        out, _ = self.sweep("check", self.file, "--all", code=1)
         self.assertIn(f"run {records[1]['run']}: state_hash {'0' * 16}, now {true}", out)
 
     def test_samples_fill_their_ranges_and_are_the_same_again(self):
@@ -163,9 +163,9 @@ class Sweep(TemporaryFolder):
                 "  simulation.factors.friction: {from: 0.8, to: 1.2}\n"
                 "samples: {method: METHOD, count: 8, seed: 3}\n")
         for method in ("sobol", "latin_hypercube"):
-            self.study.write_text(text.replace("METHOD", method))
-            commands, _ = self.sweep("show", self.study)
-            self.assertEqual(commands, self.sweep("show", self.study)[0])
+            self.file.write_text(text.replace("METHOD", method))
+            commands, _ = self.sweep("show", self.file)
+            self.assertEqual(commands, self.sweep("show", self.file)[0])
             scales = sorted(float(line.split("mass_scale=")[1].split()[0])
                             for line in commands.splitlines())
             self.assertEqual(len(scales), 8)
@@ -173,62 +173,62 @@ class Sweep(TemporaryFolder):
                 self.assertTrue(0.5 * 4 ** (i / 8) <= scale <= 0.5 * 4 ** ((i + 1) / 8), scales)
 
     def test_lines_that_are_damaged_are_played_again(self):
-        self.sweep(self.study)
+        self.sweep(self.file)
         before = self.table()
         file = self.out / "manifest.jsonl"
         lines = file.read_bytes().splitlines(keepends=True)
         lines[1] = lines[1][:40] + b"\n"  # cut in its middle
         lines[2] = b"\0\xff\0\n"  # what a power cut leaves
         file.write_bytes(b"".join(lines))
-        out, err = self.sweep(self.study)
+        out, err = self.sweep(self.file)
         self.assertIn("manifest.jsonl:2: is damaged", err)
         self.assertIn("manifest.jsonl:3: is damaged", err)
         self.assertIn("2 of them from before", out)
         self.assertEqual(self.table(), before)
 
     def test_a_folder_whose_header_is_lost_or_damaged_is_refused_until_again(self):
-        self.sweep(self.study)
-        header = self.out / "study.json"
+        self.sweep(self.file)
+        header = self.out / "sweep.json"
         for text in ("", "[]", '{"format": 1}', None):
             header.unlink() if text is None else header.write_text(text)
             for words in ([], ["merge"], ["check"]):
-                _, err = self.sweep(*words, self.study, code=2)
+                _, err = self.sweep(*words, self.file, code=2)
                 self.assertIn("--again", err)
                 self.assertEqual(len(err.splitlines()), 1, err)
-        self.sweep(self.study, "--again")
+        self.sweep(self.file, "--again")
 
     def test_again_deletes_no_file_of_others(self):
-        self.sweep(self.study)
+        self.sweep(self.file)
         mine = {"results.docx": "mine", "manifest_of_cargo.jsonl": "mine\n", "notes.txt": "mine"}
         for name, text in mine.items():
             (self.out / name).write_text(text)
-        self.sweep(self.study, "--again")
+        self.sweep(self.file, "--again")
         for name, text in mine.items():
             self.assertEqual((self.out / name).read_text(), text)
         other = self.folder / "other"
         other.mkdir()
-        for name in ("results.csv", "study.json", "manifest.jsonl"):
+        for name in ("results.csv", "sweep.json", "manifest.jsonl"):
             (other / name).write_text("mine\n")
             for words in ([], ["--again"]):
-                if name == "study.json" and not words:
+                if name == "sweep.json" and not words:
                     continue  # is refused as a damaged one
-                _, err = self.sweep(self.study, "--out", other, *words, code=2)
+                _, err = self.sweep(self.file, "--out", other, *words, code=2)
                 self.assertIn("take another --out", err)
             self.assertEqual((other / name).read_text(), "mine\n")
             (other / name).unlink()
 
     def test_an_option_is_no_value(self):
-        self.study.write_text('fixed:\n  scenario: "--help"\n')
-        _, err = self.sweep(self.study, code=2)
+        self.file.write_text('fixed:\n  scenario: "--help"\n')
+        _, err = self.sweep(self.file, code=2)
         self.assertIn(":2:13: scenario: expected a value, got the option '--help'", err)
 
     def test_a_second_sweep_in_the_folder_is_refused_and_forgets_nothing(self):
         slow = 'case "$*" in *0.6*) sleep 1;; esac'
-        first = self.start_with(slow, self.study, "--jobs", 1)
+        first = self.start_with(slow, self.file, "--jobs", 1)
         lines = self.out / "manifest.jsonl"
         self.wait_for(lines.exists)
         for words in ([], ["--again"]):
-            second = self.sweep_with("", self.study, *words)
+            second = self.sweep_with("", self.file, *words)
             self.assertEqual(second.returncode, 2)
             self.assertIn("another", second.stderr)
         out, err = first.communicate(timeout=120)
@@ -238,7 +238,7 @@ class Sweep(TemporaryFolder):
     def test_ctrl_c_ends_all_processes_and_the_sweep_continues(self):
         slow = (f'case "$*" in *0.6*) echo $$ >> {self.folder}/pids; '
                 f'[ -e {self.folder}/go ] || sleep 60;; esac')
-        process = self.start_with(slow, self.study, "--jobs", 2)
+        process = self.start_with(slow, self.file, "--jobs", 2)
         pids = self.folder / "pids"
         self.wait_for(lambda: pids.exists() and len(pids.read_text().split()) == 2)
         process.send_signal(signal.SIGINT)
@@ -250,7 +250,7 @@ class Sweep(TemporaryFolder):
         for pid in pids.read_text().split():
             self.assertFalse(pathlib.Path("/proc", pid).exists(), "still runs")
         (self.folder / "go").touch()
-        done = self.sweep_with(slow, self.study)
+        done = self.sweep_with(slow, self.file)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertEqual(len(self.manifest()), RUNS)
 
@@ -258,7 +258,7 @@ class Sweep(TemporaryFolder):
         code = ("import resource, sys, runpy; resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000));"
                 "import signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
                 f"sys.argv[0] = '{SWEEP}'; runpy.run_path('{SWEEP}', run_name='__main__')")
-        done = subprocess.run([sys.executable, "-B", "-c", code, self.study, "--jobs", "1"],
+        done = subprocess.run([sys.executable, "-B", "-c", code, self.file, "--jobs", "1"],
                               capture_output=True, text=True, timeout=120,
                               env={**os.environ, "HAPTICGIANT_PROGRAM": str(PROGRAM)})
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
@@ -266,31 +266,31 @@ class Sweep(TemporaryFolder):
         kept = (self.out / "manifest.jsonl").read_text().count("\n")
         self.assertGreater(kept, 0)
         self.assertLess(kept, RUNS)
-        out, _ = self.sweep(self.study)
+        out, _ = self.sweep(self.file)
         self.assertIn(f"{kept} of them from before", out)
         self.assertEqual(len(self.manifest()), RUNS)
 
     def test_numbers_that_are_none_and_names_that_are_not_ascii(self):
         for key, values in (("twin.mass_scale", "[1, nan, 2]"), ("twin.mass_scale", "[1, .inf]"),
                             ("duration_s", "[inf]"), ("twin.joints.tür.damping_Nms_per_rad", "[1]")):
-            self.study.write_text(f"fixed: {{scenario: door}}\nparameters:\n  {key}: {values}\n",
+            self.file.write_text(f"fixed: {{scenario: door}}\nparameters:\n  {key}: {values}\n",
                                   encoding="utf-8")
-            _, err = self.sweep(self.study, code=2)
+            _, err = self.sweep(self.file, code=2)
             with self.subTest(key, said=err):
-                self.assertIn(f"{self.study}:3:3: ", err)
+                self.assertIn(f"{self.file}:3:3: ", err)
         self.assertIn("tür", err)
         self.assertFalse(self.out.exists())
 
-    def test_a_study_of_a_command_that_is_wrong_is_refused(self):
+    def test_a_file_of_a_command_that_is_wrong_is_refused(self):
         for text, message in (("parts: 2", "1:8: parts: only beside 'command'"),
                               ("command: [faults]", "key 'parts' is missing"),
                               ("command: []\nparts: 2", "expected a list of words"),
                               ("command: [faults]\nparts: 2\nmeasures: [x]", "not beside 'command'")):
-            self.study.write_text(text)
-            _, err = self.sweep(self.study, code=2)
+            self.file.write_text(text)
+            _, err = self.sweep(self.file, code=2)
             self.assertIn(message, err)
-        self.study.write_text("command: [version]\nparts: 2\n")
-        out, _ = self.sweep(self.study, code=1)
+        self.file.write_text("command: [version]\nparts: 2\n")
+        out, _ = self.sweep(self.file, code=1)
         self.assertIn("2 without a result", out)
 
     def test_a_command_plays_its_parts_as_runs_and_continues(self):
@@ -304,14 +304,14 @@ class Sweep(TemporaryFolder):
         code, out, err = run(*words, "--sweep", folder)
         self.assertIn(code, (0, 1), out + err)
         self.assertEqual(json.loads(json_file.read_text()), whole)
-        out, _ = self.sweep(folder / "study.yaml")
+        out, _ = self.sweep(folder / "sweep.yaml")
         self.assertIn("2 runs of 'faults', 2 of them from before", out)
-        out, _ = self.sweep("check", folder / "study.yaml", "--count", 1)
+        out, _ = self.sweep("check", folder / "sweep.yaml", "--count", 1)
         self.assertIn("1 run played again: 1 the same", out)
         code, _, err = run("faults", "--cases", 15, "--scenario", "door", "--json", json_file,
                            "--sweep", folder)
         self.assertEqual(code, 2)
-        self.assertIn("another study", err)
+        self.assertIn("another sweep", err)
 
     def test_a_command_whose_runs_need_what_is_missing_says_so_in_a_line(self):
         bare = self.folder / "bare"
@@ -346,15 +346,15 @@ class Sweep(TemporaryFolder):
 
     def test_a_run_that_was_killed_is_played_again(self):
         once = f'case "$*" in *0.6*"--seed 2 "*) mkdir {self.folder}/once 2>/dev/null && kill -9 $$;; esac'
-        done = self.sweep_with(once, self.study, "--jobs", 2)
+        done = self.sweep_with(once, self.file, "--jobs", 2)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertTrue((self.folder / "once").exists())
-        self.sweep(self.study, "--out", self.folder / "whole")
+        self.sweep(self.file, "--out", self.folder / "whole")
         self.assertEqual(self.table(), self.table(self.folder / "whole"))
 
     def test_a_run_that_crashes_is_named_with_its_command_and_does_not_end_the_others(self):
         crash = 'case "$*" in *0.6*"--seed 2 "*) echo "out of order" >&2; exit 1;; esac'
-        done = self.sweep_with(crash, self.study, "--jobs", 2)
+        done = self.sweep_with(crash, self.file, "--jobs", 2)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertIn("2 without a result", done.stdout)
         self.assertRegex(done.stdout, r"run 3: \S+fake run door .*--seed 2 .*\n    out of order")

@@ -36,6 +36,7 @@ FOLDER = pathlib.Path(tempfile.mkdtemp())
 os.environ |= {"LSLAPICFG": str(FOLDER / "lsl.cfg"), "PYLSL_LIB": str(SITE / "pylsl" / "lib" / "liblsl.so")}
 
 import pylsl  # noqa: E402
+from hapticgiant import samples  # noqa: E402
 from hapticgiant.study import markers, planning  # noqa: E402
 
 # name, format, channels, source: then code that sends from `outlet` once a reader listens
@@ -278,13 +279,10 @@ class Files(Test):
         out = FOLDER / "run"
         run = subprocess.run([PROGRAM, "run", "door", "--lsl", "--no-viewer", "--priority", "0", "--duration", "3",
                               "--recordings", out], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-        subprocess.run([PROGRAM, "export", out / "latest.mcap", "--out", out / "t", "--columns", "mode"], check=True,
-                       capture_output=True)
-        clock = markers.lab_clock_of(out / "t.events.csv")
+        recorded = samples.read(out / "latest.mcap", ["mode"]).events
+        clock = markers.lab_clock_of(recorded)
         self.assertTrue(clock, run.stdout + run.stderr)
-        with open(out / "t.events.csv", newline="") as file:
-            events = {f"{row['name']}: {row['text']}" if row["text"] else row["name"]: float(row["time_s"])
-                      for row in csv.DictReader(file)}
+        events = {f"{event.name}: {event.text}" if event.text else event.name: event.time_s for event in recorded}
         rows = [row for row in csv.DictReader(markers.table(self.gather(collected, 1), clock).splitlines())]
         for row in rows:
             if not row["value"].startswith("lab clock"):  # of an earlier moment than its offset

@@ -26,7 +26,7 @@ EXAMPLES = {
 NEEDS = {"1_first_run.py": "import pandas", "2_forces_at_a_limit.py": "import xarray"}
 # the extension with its stubs and models, and figures, pages and their templates by the extra packages
 TESTS_OF_AN_INSTALLATION = ["enums_test", "hqp_test", "limits_test", "model_test", "play_test",
-                            "parameters_test", "run_test", "studies_test"]
+                            "parameters_test", "run_test", "series_test"]
 
 
 def run(*command, **options):

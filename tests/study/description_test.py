@@ -17,7 +17,7 @@ from unittest import mock
 import numpy as np
 import without_compiled_part  # noqa: F401
 from hapticgiant.study import description, expressions, folder, markers, order, people, planning, questionnaires, trials
-from hapticgiant.sweep.reader import StudyError
+from hapticgiant.sweep.reader import InputError
 
 STUDY = """\
 conditions:
@@ -157,7 +157,7 @@ class Scores(unittest.TestCase):
                 ("nasa_tlx, weighted: true", "nasa_tlx, wording: {mentale: {text: a}}", "did you mean 'mental'"),
                 ("kind: nasa_tlx, weighted: true", "wording: {a: {text: a}}, items: {a: {kind: text, text: a}}",
                  "'wording' is for nasa_tlx and sus")):
-            with self.assertRaisesRegex(StudyError, f"study.yaml:[78]:.*{message}"):
+            with self.assertRaisesRegex(InputError, f"study.yaml:[78]:.*{message}"):
                 load(STUDY.replace(old, new))
 
 
@@ -208,7 +208,7 @@ class Faults(unittest.TestCase):
                 ("  half:", "  tlx:", ":11:", "is the name of a questionnaire"),
                 ("measures:", "measure:", ":9:", "did you mean 'measures'")):
             self.assertIn(old, STUDY)
-            with self.assertRaises(StudyError) as caught:
+            with self.assertRaises(InputError) as caught:
                 load(STUDY.replace(old, new, 1))
             for message in ("study.yaml", *messages):
                 self.assertIn(message, str(caught.exception))
@@ -228,7 +228,7 @@ class Faults(unittest.TestCase):
                               ("{markers: [a, a]}", "'a' is given twice"),
                               ("{markers: [HapticGiantEvents]}", "is sent by HapticGiant itself: outlets: true"),
                               ("[all]", "lab_streaming: expected a map")):
-            with self.assertRaisesRegex(StudyError, rf"study.yaml:21:\d+: .*{message}"):
+            with self.assertRaisesRegex(InputError, rf"study.yaml:21:\d+: .*{message}"):
                 study(text)
 
     def test_markers_are_named_where_they_are_kept(self):
@@ -371,7 +371,7 @@ class Faults(unittest.TestCase):
             file = pathlib.Path(path) / "study.yaml"
             file.write_text("a: b")
             (pathlib.Path(path) / "study.study").mkdir()
-            with self.assertRaises(StudyError):
+            with self.assertRaises(InputError):
                 folder.Folder.as_it_was(file, None)
             file.write_text(STUDY)
             with self.assertRaisesRegex(folder.FolderError, "holds no study"):
@@ -438,7 +438,7 @@ class Faults(unittest.TestCase):
                                                   )), known)
         for column, message in (("robot.w_h[6]", "the indices 0 to 5"), ("robot.w_h", "as 'robot.w_h[0]'"),
                                 ("cycle[0]", "without an index"), ("robot.w_j[0]", "did you mean 'robot.w_h'")):
-            with self.assertRaisesRegex(StudyError, f":11:.*measures.half: .*{re.escape(message)}"):
+            with self.assertRaisesRegex(InputError, f":11:.*measures.half: .*{re.escape(message)}"):
                 trials.require_columns(load(STUDY.replace("robot.w_h[0]", column)), known)
 
     def test_too_few_people_for_ranks(self):
@@ -474,12 +474,10 @@ class Run(unittest.TestCase):
         for bad in ({"missing_events": ["opened"]}, {"limits_held": False}, {"shaking": {"duration_s": 0.4}}):
             self.assertEqual(exit_code_of(good | bad, 0), 1, bad)
 
-    def test_a_franka_has_no_way_of_its_own_to_the_start(self):
-        from hapticgiant.study.conductor import MOVE, Hand
-
-        self.assertTrue(Hand("device", ("--device-address", "10.0.0.2:4810", MOVE)).has_way)
-        self.assertFalse(Hand("device", ("--device-address", "franka://10.0.0.2", MOVE)).has_way)
-        self.assertFalse(Hand("device", ("--device-address", "10.0.0.2:4810")).has_way)
+    def test_the_request_of_a_trial_has_the_options_of_the_study(self):
+        study = load(STUDY.replace("{scenario: door}", "{scenario: door, duration_s: 3, rate_Hz: 500, hand: stiff}"))
+        self.assertEqual(study.request("heavy"), {"scenario": "door", "duration": 3, "rate_hz": 500, "hand": "stiff",
+                                                  "set": ["twin.mass_scale=2"]})
 
     def test_a_form_that_is_not_whole_has_a_problem(self):
         from hapticgiant.study import questionnaires

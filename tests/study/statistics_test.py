@@ -8,10 +8,12 @@ Analysis of Messy Data, 1992; the mixed model of Pinheiro and Bates, 2000), slee
 Journal of Sleep Research 12, 2003).
 """
 
+import itertools
 import unittest
 import warnings
 
 import numpy as np
+from scipy import stats
 
 import without_compiled_part  # noqa: F401
 from hapticgiant.study import inference
@@ -72,7 +74,7 @@ class Paired(unittest.TestCase):
 
     def test_signed_ranks_with_ties(self):
         """wilcox.test(group 2, group 1, paired = TRUE, exact = FALSE)"""
-        found = inference.wilcoxon(*SLEEP)
+        found = inference.wilcoxon(*SLEEP, is_exact=False)
         self.assertEqual(found.value, 45)
         self.assertAlmostEqual(found.p, 0.009090698, 9)
 
@@ -100,12 +102,40 @@ class Paired(unittest.TestCase):
                 self.assertAlmostEqual(found.value, wanted.value, 9)
                 self.assertAlmostEqual(found.p, wanted.p, 12)
 
+    def test_ties_are_exact_over_all_signs(self):
+        """Ties and zeros: the share of all 2^n signs of the ranks that are as far from the middle, and never below the
+        least p of the plan; five answers that all differ by the same step give 2 / 2^5."""
+        self.assertEqual(inference.wilcoxon([4] * 5, [5] * 5).p, 0.0625)
+        dice = np.random.default_rng(1)
+        for difference in ([1] * 4, [1] * 6, [1] * 7 + [-1], [1, 1, 1, 1, 2], [1, 1, 1, 1, 1, 0, 0],
+                           *(dice.integers(-3, 6, count) for count in range(2, 11) for _ in range(5))):
+            kept = np.array(difference, float)[np.array(difference) != 0]
+            ranks = stats.rankdata(abs(kept))
+            v, middle = ranks[kept > 0].sum(), ranks.sum() / 2
+            sums = [sum(itertools.compress(ranks, signs)) for signs in itertools.product((0, 1), repeat=len(kept))]
+            found = inference.wilcoxon(np.full(len(difference), 4.0), np.array(difference) + 4.0).p
+            self.assertAlmostEqual(found, np.mean([abs(each - middle) >= abs(v - middle) for each in sums]), 12)
+            self.assertGreaterEqual(found, inference.least_p("wilcoxon", [len(difference)]))
+
     def test_no_difference_at_all_is_no_error(self):
         self.assertEqual(inference.wilcoxon([1, 2, 3], [1, 2, 3]).p, 1)
         self.assertEqual(inference.paired_t([1, 2, 3], [1, 2, 3]).p, 1)
 
 
 class FewPeople(unittest.TestCase):
+    def test_ties_of_two_groups_are_exact(self):
+        """All choices of the ranks; three equal answers against three higher ones give 2 / 20."""
+        self.assertAlmostEqual(inference.mann_whitney([1] * 3, [2] * 3).p, 0.1, 12)
+        dice = np.random.default_rng(2)
+        for sizes in ((2, 3), (4, 4), (3, 6), (5, 2)):
+            for _ in range(10):
+                a, b = (dice.integers(1, 5, size).astype(float) for size in sizes)
+                ranks = stats.rankdata([*a, *b])
+                sums = np.array([sum(each) for each in itertools.combinations(ranks, len(a))])
+                at = ranks[:len(a)].sum()
+                wanted = min(1.0, 2 * min(np.mean(sums <= at), np.mean(sums >= at)))
+                self.assertAlmostEqual(inference.mann_whitney(a, b).p, wanted, 12)
+
     def test_the_least_p_of_ranks_is_told(self):
         """wilcox.test(1:3, 4:6)$p.value is 0.1; of four differences above 0 it is 0.125"""
         found = inference.run("mann_whitney", [1, 2, 3, 4, 5, 6], list("aaabbb"), range(6))
@@ -136,7 +166,7 @@ class Friedman(unittest.TestCase):
     def test_rounding_first_base(self):
         """friedman.test(RoundingTimes); pairwise.wilcox.test(paired, exact = FALSE, digits.rank = 7, holm): without
         digits.rank, R's ranks depend on how 5.40 - 5.50 is rounded"""
-        found = inference.friedman(dict(zip("123", ROUNDING.T)))
+        found = inference.friedman(dict(zip("123", ROUNDING.T)), is_exact=False)
         self.assertAlmostEqual(found.value, 11.142857, 6)
         self.assertEqual(found.df, (2,))
         self.assertAlmostEqual(found.p, 0.003805041, 9)
@@ -176,7 +206,7 @@ class Groups(unittest.TestCase):
         self.assertAlmostEqual(found.p, 0.1098303, 7)
         self.assertAlmostEqual(-found.high, -1.360096085, 8)
         self.assertAlmostEqual(-found.low, 12.915651640, 8)
-        found = inference.mann_whitney(wool["A"], wool["B"])
+        found = inference.mann_whitney(wool["A"], wool["B"], is_exact=False)
         self.assertEqual(27 * 27 - found.value, 431)
         self.assertAlmostEqual(found.p, 0.2530851, 7)
         self.assertEqual(found.estimate, -4)
@@ -276,6 +306,18 @@ class Mixed(unittest.TestCase):
         self.assertAlmostEqual(found.value, 30.86412445, 5)
         self.assertIn("people do not differ in their mean (variance 0)", found.notes)
         self.assertAlmostEqual(inference.mixed(scores, machines, workers).value, 30.86412445, 4)
+
+    def test_trials_that_are_all_the_same_count_once(self):
+        """F of aov(y ~ condition + Error(person / condition)), as of one value of each"""
+        table = np.array([[1, 2, 4], [4, 6, 5], [3, 3, 7], [2, 5, 6.0]])
+        people, conditions = np.repeat(range(4), 6), np.tile(list("aabbcc"), 4)
+        found = inference.mixed(np.repeat(table.ravel(), 2), conditions, people)
+        self.assertAlmostEqual(found.value, inference.repeated_anova(table)[0], 6)
+        self.assertIn("they count once", found.notes[0])
+
+    def test_nothing_beside_people_and_conditions(self):
+        with self.assertRaisesRegex(ValueError, "does not vary beside people and conditions"):
+            inference.mixed([0.1, 1.1, 0.2, 1.2, 0.7, 1.7], list("ababab"), [1, 1, 2, 2, 3, 3])
 
     def test_what_cannot_be_tested_says_why(self):
         people, conditions = np.repeat(range(4), 4), ["a", "a", "b", "b"] * 4

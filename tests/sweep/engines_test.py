@@ -27,7 +27,7 @@ VENV = ROOT / "build" / "sweep_venv"
 PYTHON = VENV / "bin" / "python"
 SKIPPED = 77
 RUNS = 30
-STUDY = f"""\
+TABLE = f"""\
 fixed: {{scenario: door, duration_s: 2}}
 parameters:
   seed: {{from: 1, to: {RUNS // 3}, count: {RUNS // 3}}}
@@ -75,9 +75,9 @@ class Engines(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="hg_sweep_"))
         cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
-        cls.study = cls.folder / "study.yaml"
-        cls.study.write_text(STUDY)
-        done = sweep(cls.study, "--out", cls.folder / "local")
+        cls.file = cls.folder / "sweep.yaml"
+        cls.file.write_text(TABLE)
+        done = sweep(cls.file, "--out", cls.folder / "local")
         assert done.returncode == 0, done.stdout + done.stderr
         cls.local = (cls.folder / "local/results.parquet").read_bytes()
 
@@ -113,7 +113,7 @@ class Engines(unittest.TestCase):
         out = self.folder / "dask_out"
         with self.cluster(3) as (address, workers):
             process = subprocess.Popen(
-                [PROGRAM, "sweep", self.study, "--out", out, "--engine", "dask", "--scheduler",
+                [PROGRAM, "sweep", self.file, "--out", out, "--engine", "dask", "--scheduler",
                  address], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                 env={**os.environ, "HAPTICGIANT_PYTHON": str(PYTHON)})
             manifest = out / "manifest.jsonl"
@@ -127,12 +127,12 @@ class Engines(unittest.TestCase):
 
     def test_dask_on_this_machine(self):
         out = self.folder / "dask_here"
-        done = sweep(self.study, "--out", out, "--engine", "dask", "--jobs", 2)
+        done = sweep(self.file, "--out", out, "--engine", "dask", "--jobs", 2)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.is_the_same(out)
 
     def test_a_scheduler_that_does_not_answer_is_named(self):
-        done = sweep(self.study, "--out", self.folder / "none", "--engine", "dask", "--scheduler",
+        done = sweep(self.file, "--out", self.folder / "none", "--engine", "dask", "--scheduler",
                      f"tcp://127.0.0.1:{free_port()}")
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
         self.assertIn("--scheduler tcp://127.0.0.1", done.stderr)
@@ -202,7 +202,7 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
     def test_slurm_as_a_job_array(self):
         out = self.folder / "slurm_out"
         with self.slurm() as environment:
-            done = subprocess.run([PROGRAM, "sweep", "submit", self.study, "--out", out, "--shards",
+            done = subprocess.run([PROGRAM, "sweep", "submit", self.file, "--out", out, "--shards",
                                    "5", "--sbatch=--time=00:10:00"], env=environment,
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -210,7 +210,7 @@ PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
                                                 capture_output=True).stdout, 300)
         said = "".join(file.read_text() for file in out.glob("slurm-*.txt"))
         self.assertEqual(len(list(out.glob("manifest.*of5.jsonl"))), 5, said)
-        done = sweep("merge", self.study, "--out", out)
+        done = sweep("merge", self.file, "--out", out)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr + said)
         self.is_the_same(out)
 

@@ -6,30 +6,17 @@ Exit codes: 0 placed, 2 bad input, 130 ended by Ctrl-C.
 from __future__ import annotations
 
 import argparse
-import difflib
 import json
 import math
-import os
 import pathlib
 import sys
-import types
 
 if not __package__:
-    # Run as a folder: the package's own __init__ would need its compiled part.
-    _package = types.ModuleType("hapticgiant")
-    _package.__path__ = [str(pathlib.Path(__file__).resolve().parents[1])]
-    sys.modules["hapticgiant"] = _package
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+    import as_folder  # noqa: F401
 
 RANDOM = 32  # placements that a choice is compared with
 LEAST_S = 0.1  # of a motion
-
-
-def count_from(least):
-    def whole(text):
-        if not (text.isdigit() and int(text) >= least):
-            raise argparse.ArgumentTypeError(f"expected a whole number from {least} on, got '{text}'")
-        return int(text)
-    return whole
 
 
 def positive(text):
@@ -54,29 +41,29 @@ def place_of(text):
 
 
 def parser():
-    from hapticgiant.command_line import Parser
+    from hapticgiant.command_line import Parser, whole_number
 
     found = Parser(
         prog="hapticgiant imus", description="Where inertial sensors observe best the speeds and "
         "accelerations of the joints of a robot (docs/start/imu_placement.md).")
     add = found.add_argument
     add("robot", metavar="URDF_OR_DEVICE", help="a URDF, or a device.yaml")
-    add("--count", type=count_from(1), default=1, metavar="N", help="sensors; default: 1")
+    add("--count", type=whole_number(1), default=1, metavar="N", help="sensors; default: 1")
     add("--measure", choices=("covariance", "gramian"), default="covariance",
         help="error covariance of a Kalman filter (default), or observability Gramian")
     add("--criterion", choices=("logdet", "lambda_min", "trace"), default="logdet",
         help="all states together (default), the worst direction, or the mean square")
-    add("--exhaustive", type=count_from(1), default=600, metavar="N",
+    add("--exhaustive", type=whole_number(1), default=600, metavar="N",
         help="tries every placement where there are at most N of them; default: 600")
     group = found.add_argument_group("motion")
     add = group.add_argument
-    add("--seed", type=count_from(0), default=1, help="of the sums of sines; default: 1")
+    add("--seed", type=whole_number(0), default=1, help="of the sums of sines; default: 1")
     add("--duration", type=positive, default=2.0, metavar="S", help="default: 2")
     add("--motion", metavar="CSV", help="positions instead of sines: time_s, a column per joint, or a "
         "table of hapticgiant export")
     group = found.add_argument_group("candidates")
     add = group.add_argument
-    add("--grid", type=count_from(1), default=2, metavar="N",
+    add("--grid", type=whole_number(1), default=2, metavar="N",
         help="points along each edge of a link's box; default: 2")
     add("--link", action="append", metavar="LINK", help="only on this link; may be given several times")
     add("--one-per-link", action="store_true", help="no link carries two sensors")
@@ -104,9 +91,10 @@ def parser():
     return found
 
 
-def nearest(name, names):
-    close = difflib.get_close_matches(name, names, 1, 0)
-    return f"; did you mean '{close[0]}'?" if close else ""
+def suggestion(name, names):
+    from hapticgiant.command_line import nearest
+
+    return f"; did you mean '{nearest(name, names)}'?" if names else ""
 
 
 def robot(file):
@@ -138,7 +126,7 @@ def robot(file):
             raise InputError(f"{file}: {key}: expected a value per joint")
         for name in values:
             if name not in names:
-                raise InputError(f"{file}: {key}: no joint '{name}'{nearest(str(name), names)}")
+                raise InputError(f"{file}: {key}: no joint '{name}'{suggestion(str(name), names)}")
         return values
 
     def number(value, where):
@@ -173,7 +161,7 @@ def places_of(chain, options):
     moving = chain.moving_links()
     for link in [*(options.link or []), *(link for link, _ in options.at or [])]:
         if link not in moving:
-            raise InputError(f"{chain.file}: no moving link '{link}'{nearest(link, moving)}")
+            raise InputError(f"{chain.file}: no moving link '{link}'{suggestion(link, moving)}")
     if options.at:
         return list(dict.fromkeys(placement.Candidate(*each) for each in options.at))
     return placement.candidates(chain, options.grid, options.link)
@@ -258,10 +246,33 @@ def report(chain, problem, choices, options):
                      not options.no_encoders)
 
 
+def run(options):
+    """Places the sensors of the options and reports. Raises InputError."""
+    from hapticgiant.imus import motion, placement
+    from hapticgiant.imus.chain import InputError
+
+    if options.picture and pathlib.Path(options.picture).suffix not in (".svg", ".png", ".pdf"):
+        raise InputError(f"--picture: '{options.picture}': expected .svg, .png or .pdf")
+    if options.duration * options.rate < LEAST_S * max(options.rate, 40 / LEAST_S):
+        raise InputError(f"--duration: expected at least {LEAST_S} s and 40 samples")
+    chain, middle, columns = robot(options.robot)
+    moved = (motion.from_table(chain, options.motion, options.rate, columns) if options.motion
+             else motion.sines(chain, options.seed, options.duration, options.rate, middle))
+    noise = placement.Noise(options.gyro, options.accelerometer, options.encoder,
+                            options.encoder_slide, options.jerk, options.jerk_slide,
+                            not options.no_encoders)
+    places = places_of(chain, options)
+    problem = placement.Problem(chain, moved, places, noise, not options.no_gravity,
+                                options.measure, options.criterion, options.one_per_link)
+    report(chain, problem, placement.place(problem, options.count, options.exhaustive), options)
+    return 0
+
+
 def main(words):
+    from hapticgiant.command_line import INTERRUPTED, exit_code_of
+
     options = parser().parse_args(words)
     try:
-        from hapticgiant.imus import motion, placement
         from hapticgiant.imus.chain import InputError
         if options.robot.endswith((".yaml", ".yml")):
             import yaml  # noqa: F401
@@ -272,32 +283,9 @@ def main(words):
               "matplotlib", file=sys.stderr)
         return 2
     try:
-        if options.picture and pathlib.Path(options.picture).suffix not in (".svg", ".png", ".pdf"):
-            raise InputError(f"--picture: '{options.picture}': expected .svg, .png or .pdf")
-        if options.duration * options.rate < LEAST_S * max(options.rate, 40 / LEAST_S):
-            raise InputError(f"--duration: expected at least {LEAST_S} s and 40 samples")
-        chain, middle, columns = robot(options.robot)
-        moved = (motion.from_table(chain, options.motion, options.rate, columns) if options.motion
-                 else motion.sines(chain, options.seed, options.duration, options.rate, middle))
-        noise = placement.Noise(options.gyro, options.accelerometer, options.encoder,
-                                options.encoder_slide, options.jerk, options.jerk_slide,
-                                not options.no_encoders)
-        places = places_of(chain, options)
-        problem = placement.Problem(chain, moved, places, noise, not options.no_gravity,
-                                    options.measure, options.criterion, options.one_per_link)
-        report(chain, problem, placement.place(problem, options.count, options.exhaustive), options)
-        return 0
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
-    except BrokenPipeError:  # the reader has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except OSError as error:
-        print(f"imus: {error}", file=sys.stderr)
-        return 2
+        return exit_code_of("imus", lambda: run(options), (InputError,))
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED
 
 
 if __name__ == "__main__":

@@ -16,8 +16,8 @@ MISSING = 69
 VERDICT = 100
 # the module that reports on results.json or, with folders of runs, on run.json of this kind; others
 # have the name of their kind
-MODULES = {"goals": "haptify", "contact": "studies", "free-space": "studies", "impedance": "studies",
-           "inertial": "studies", "seeds": "studies", "stability-map": "studies", "cartesian": "experiments", "excavator": "experiments",
+MODULES = {"goals": "haptify", "contact": "series", "free-space": "series", "impedance": "series",
+           "inertial": "series", "seeds": "series", "stability-map": "series", "cartesian": "experiments", "excavator": "experiments",
            "door": "experiments", "path": "experiments", "any": "recordings",
            "compare": "recordings"}
 

@@ -9,6 +9,6 @@
 
 from hapticgiant.study.description import Study, load_study
 from hapticgiant.study.planning import plan, steps
-from hapticgiant.sweep.reader import StudyError
+from hapticgiant.sweep.reader import InputError
 
-__all__ = ["Study", "StudyError", "load_study", "plan", "steps"]
+__all__ = ["Study", "InputError", "load_study", "plan", "steps"]

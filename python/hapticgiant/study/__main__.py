@@ -13,26 +13,19 @@ import pathlib
 import signal
 import sys
 import tempfile
-import types
 
 if not __package__:
-    # Run as a folder: the package's own __init__ would need its compiled part.
-    _package = types.ModuleType("hapticgiant")
-    _package.__path__ = [str(pathlib.Path(__file__).resolve().parents[1])]
-    sys.modules["hapticgiant"] = _package
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+    import as_folder  # noqa: F401
 
 NEEDED = {"yaml": "pyyaml", "numpy": "numpy", "scipy": "scipy"}
-NEEDED_BY = {"report": {"matplotlib": "matplotlib", "jinja2": "jinja2"}, "run": {"aiohttp": "aiohttp"}}
-
-
-def positive(text):
-    if not (text.isdigit() and int(text) > 0):
-        raise argparse.ArgumentTypeError(f"expected a whole number from 1 on, got '{text}'")
-    return int(text)
+FOR_MIXED = {"statsmodels": "statsmodels"}
+NEEDED_BY = {"report": {"matplotlib": "matplotlib", "jinja2": "jinja2"}, "run": {"aiohttp": "aiohttp", "mcap": "mcap"},
+             "simulate": {"mcap": "mcap"}, "check": {"mcap": "mcap"}}
 
 
 def parser():
-    from hapticgiant.command_line import Parser
+    from hapticgiant.command_line import Parser, whole_number
 
     main = Parser(prog="hapticgiant study", description="User studies (docs/start/user_studies.md).")
     commands = main.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -46,13 +39,13 @@ def parser():
     check.add_argument("--no-trials", action="store_true", help="play nothing")
     registration = add("preregistration", "Writes the text of a pre-registration (Markdown).")
     for each in (check, registration):
-        each.add_argument("--simulations", type=positive, default=500, help="simulated studies per figure")
+        each.add_argument("--simulations", type=whole_number(1), default=500, help="simulated studies per figure")
     plan = add("plan", "Prints the order of each participant.")
     plan.add_argument("--participant", metavar="CODE", help="every step of this one")
     add_run(add)
     simulate = add("simulate", "Plays a study with simulated people; the same command again continues.")
-    simulate.add_argument("--participants", type=positive, metavar="N", help="only the first N of the plan")
-    simulate.add_argument("--jobs", type=positive, help="trials at a time; default: one per processor")
+    simulate.add_argument("--participants", type=whole_number(1), metavar="N", help="only the first N of the plan")
+    simulate.add_argument("--jobs", type=whole_number(1), help="trials at a time; default: one per processor")
     simulate.add_argument("--keep-recordings", action="store_true", help="keep the recording of each trial (27 MB for 14 s)")
     report = add("report", "Writes report.html, report.tex and the analysis script into the folder of the study.")
     forget = commands.add_parser("forget", help="Deletes everything of one participant.",
@@ -103,22 +96,22 @@ def port(text):
 
 def hand_of(arguments):
     """Who moves the handle, from the options of `study run`."""
-    from hapticgiant.study.conductor import MOVE, Hand
-    from hapticgiant.sweep.reader import StudyError
+    from hapticgiant.study.conductor import Hand
+    from hapticgiant.sweep.reader import InputError
 
-    options = []
-    for name in ("device_address", "machine", "key_file", "posture_confirmed", "despite"):
-        if (value := getattr(arguments, name)) is not None:
-            options += [f"--{name.replace('_', '-')}", value]
-    options += ["--without-start-test"] if arguments.without_start_test else []
+    given = {name: value for name in ("machine", "key_file", "posture_confirmed", "despite", "without_start_test",
+                                      "without_move_to_start") if (value := getattr(arguments, name))}
     if arguments.device_address is None:
-        if options or arguments.without_move_to_start:
-            options.append("--without-move-to-start")
-            raise StudyError(f"{options[0]}: needs --device-address")
+        if given:
+            raise InputError(f"--{next(iter(given)).replace('_', '-')}: needs --device-address")
         return Hand("script" if arguments.rehearse else "mouse")
     if arguments.rehearse:
-        raise StudyError("--rehearse: is with the simulated device, leave out --device-address")
-    return Hand("device", (*options, *(() if arguments.without_move_to_start else (MOVE,))))
+        raise InputError("--rehearse: is with the simulated device, leave out --device-address")
+    for name in ("posture_confirmed", "despite"):
+        if name in given:
+            given[name] = given[name].split(",")
+    moves = not given.pop("without_move_to_start", False)
+    return Hand("device", {"device_address": arguments.device_address, "move_to_start": moves, **given})
 
 
 def serve(study, arguments):
@@ -129,11 +122,11 @@ def serve(study, arguments):
     from hapticgiant.study.folder import Folder
     from hapticgiant.study.server import Server
     from hapticgiant.sweep.program import find_program
-    from hapticgiant.sweep.reader import StudyError
+    from hapticgiant.sweep.reader import InputError
 
     pages = pathlib.Path(os.environ.get("HAPTICGIANT_PAGE", ""))
     if not (pages / "study" / "operator.html").is_file():
-        raise StudyError("the page is not built: cd viewer && npm ci && npm run build")
+        raise InputError("the page is not built: cd viewer && npm ci && npm run build")
     markers.require(study)
     hand, program = hand_of(arguments), find_program()
     trials.require_columns(study, trials.known_columns(program))
@@ -176,7 +169,7 @@ def missing(needed):
 
 def show_plan(study, code):
     from hapticgiant.study import planning
-    from hapticgiant.sweep.reader import StudyError, nearest
+    from hapticgiant.sweep.reader import InputError, nearest
 
     found = planning.plan(study)
     if code is None:
@@ -185,7 +178,7 @@ def show_plan(study, code):
         return 0
     one = next((each for each in found if each.code == code), None)
     if one is None:
-        raise StudyError(f"--participant {code}: no such code, did you mean '{nearest(code, [p.code for p in found])}'?")
+        raise InputError(f"--participant {code}: no such code, did you mean '{nearest(code, [p.code for p in found])}'?")
     for number, step in enumerate(planning.steps(study, one), 1):
         what = step.form or step.text or f"{step.condition} {step.repetition}"
         about = f" about {step.condition}" if step.kind == "form" and step.condition else ""
@@ -257,6 +250,7 @@ def run(arguments):
     from hapticgiant.study.folder import Folder
     from hapticgiant.sweep.campaign import explained
     from hapticgiant.sweep.program import find_program
+    from hapticgiant.sweep.reader import InputError
 
     if arguments.command == "forget":
         folder = Folder.as_it_was(arguments.study, arguments.out)
@@ -284,6 +278,8 @@ def run(arguments):
     if arguments.command == "report":
         from hapticgiant.study import report
 
+        if any(test.test == "mixed" for test in study.tests) and missing(FOR_MIXED):
+            raise InputError(f"test 'mixed': {sys.executable} needs statsmodels: pip install statsmodels")
         for file in report.write(folder):
             print(f"  written    {file}")
         return 0
@@ -303,30 +299,23 @@ def main(words):
     if packages := missing(needed):
         print(f"study: {sys.executable} needs {', '.join(packages)}: pip install {' '.join(packages)}", file=sys.stderr)
         return 2
+    from hapticgiant.command_line import INTERRUPTED, exit_code_of
     from hapticgiant.study.expressions import ExpressionError
     from hapticgiant.study.folder import FolderError
     from hapticgiant.study.markers import MarkerError
     from hapticgiant.study.trials import TrialError
-    from hapticgiant.sweep.reader import StudyError
+    from hapticgiant.sweep.reader import InputError
 
     def interrupt(*_):
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, interrupt)
     try:
-        return run(arguments)
-    except (StudyError, FolderError, ExpressionError, TrialError, MarkerError) as error:
-        print(error, file=sys.stderr)
-        return 2
-    except BrokenPipeError:  # the reader has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except OSError as error:
-        print(f"study: {error}", file=sys.stderr)
-        return 2
+        return exit_code_of("study", lambda: run(arguments),
+                            (InputError, FolderError, ExpressionError, TrialError, MarkerError))
     except KeyboardInterrupt:
         print("\nended; what has been played is kept, and the same command continues", file=sys.stderr)
-        return 130
+        return INTERRUPTED
 
 
 if __name__ == "__main__":

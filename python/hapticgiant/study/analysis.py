@@ -1,6 +1,6 @@
 """The analysis of a study, from its tables: what `hapticgiant study report` prints.
 
-    python code/analysis.py        in the folder of a study; needs numpy, scipy
+    python code/analysis.py        in the folder of a study; needs numpy, scipy; for mixed models statsmodels
 
 Reads code/plan.json (what was planned), participants.csv, trials.csv and answers.csv. This file and
 inference.py beside it are all there is: HapticGiant is not needed.

@@ -11,7 +11,6 @@ import contextlib
 import dataclasses
 import math
 import pathlib
-import subprocess
 import time
 
 from hapticgiant.study import expressions, markers, people, questionnaires, trials
@@ -19,12 +18,11 @@ from hapticgiant.study.description import Study
 from hapticgiant.study.folder import RUNNING, Folder, FolderError
 from hapticgiant.study.planning import Step, plan
 from hapticgiant.study.session import PLAYED, Session
-from hapticgiant.study.trial_run import TrialRun
-from hapticgiant.sweep.program import SUMMARY, Outcome, Program
+from hapticgiant.study.trial_run import TrialRun, played_at_once
+from hapticgiant.sweep.program import Program
 
 AT_ONCE = ("stop", "end", "abort")
 LONGEST_NOTE = 2000  # characters
-MOVE = "--move-to-start"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,19 +30,14 @@ class Hand:
     """Who moves the handle: mouse (simulated device), device (a person at it), script (rehearsal)."""
 
     kind: str
-    options: tuple[str, ...] = ()
-    """Of `hapticgiant run`, for a device."""
+    options: dict = dataclasses.field(default_factory=dict)
+    """Of a request, for a device: docs/reference/run_protocol.md."""
 
     @property
     def model(self) -> str:
         """What a report says of it."""
         return {"mouse": "A simulated device was moved with the mouse.", "device": "A device was held by its handle.",
                 "script": "Rehearsal: a scripted hand has played the trials; forms were answered by whoever was there."}[self.kind]
-
-    @property
-    def has_way(self) -> bool:
-        """Whether the device moves to the start by a run of its own; a Franka's motion is none."""
-        return MOVE in self.options and not any(each.startswith("franka://") for each in self.options)
 
     @property
     def is_real(self) -> bool:
@@ -56,30 +49,22 @@ class Refused(RuntimeError):
     """A command that is not possible now; the message says why."""
 
 
-MOUSE = ("--set", "scenario.person=mouse")  # and not --user, which is without the task's events
-
-
-def without_duration(words: list[str]) -> list[str]:
-    """The words of a run without how long its script plays."""
-    at = words.index("--duration") if "--duration" in words else len(words)
-    return words[:at] + words[at + 2:]
+MOUSE = "scenario.person=mouse"  # and not the user, who is without the task's events
 
 
 def expected_events(study: Study, program: Program, hand: Hand) -> dict[str, list[str]]:
     """The events that each condition's task has, by a run of some cycles on the simulated device. Raises TrialError."""
     found = {}
     for condition in study.conditions:
-        words = without_duration(study.arguments(condition))
-        if hand.is_real and "--user" in words:
+        request = study.request(condition)
+        if hand.is_real and "user" in request:
             raise trials.TrialError(f"condition {condition}: 'user' is a simulated person's; leave it out, or --rehearse")
-        words += MOUSE if hand.kind == "mouse" else ()
-        command = [program.file, "run", *words, "--fast", "--no-viewer", "--no-recording",
-                   "--flight-recorder", "off", "--duration", "0.01", *SUMMARY]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        outcome = Outcome(done.returncode, done.stdout, done.stderr)
-        summary = outcome.summary()
+        if hand.kind == "mouse":
+            request.setdefault("set", []).append(MOUSE)
+        request |= {"fast": True, "viewer": False, "recording": False, "flight_recorder": "off", "duration": 0.01}
+        _, summary, why = played_at_once(program.file, request)
         if summary is None:
-            raise trials.TrialError(f"condition {condition}: {outcome.why()}")
+            raise trials.TrialError(f"condition {condition}: {why}")
         found[condition] = [*(event["name"] for event in summary["events"]), *summary["missing_events"]]
     return found
 
@@ -302,8 +287,8 @@ class Conductor:
         self._phase, self._problem, self._abort_why = "starting", None, None
         position = self._session.position
         step = self._session.steps[position]
-        self._run = TrialRun(self._command(step), self._events[step.condition], self.study.pause_s, self._run_changed,
-                             self.hand.has_way)
+        self._run = TrialRun(self.program.file, self._request(step), self._events[step.condition], self.study.pause_s,
+                             self._run_changed)
         self._task = asyncio.create_task(self._play(self._run, position))
 
     async def _end(self, _):
@@ -391,21 +376,19 @@ class Conductor:
         """The folder of the trial that is played."""
         return (self.folder.path / RUNNING / "trial").absolute()
 
-    def _command(self, step: Step) -> list[str]:
-        words = self.study.arguments(step.condition)
-        options = [] if self.hand.kind == "device" else [
-            "--seed", str(people.seed_of(self.study, self._session.code, step.condition, step.repetition))]
+    def _request(self, step: Step) -> dict:
+        request = self.study.request(step.condition)
+        if self.hand.kind != "device":
+            request["seed"] = people.seed_of(self.study, self._session.code, step.condition, step.repetition)
         if self.hand.kind == "mouse":
-            options += MOUSE
+            request.setdefault("set", []).append(MOUSE)
         if self.hand.is_real:
-            words = without_duration(words)
-            options += ["--duration", f"{self.study.longest_s:g}"]
-        for origin in self._origins:
-            options += ["--embedded-in", origin]
+            request["duration"] = self.study.longest_s
+        if self._origins:
+            request["embedded_in"] = list(self._origins)
         if self.study.lab_streaming.outlets:
-            options.append("--lsl")
-        return [self.program.file, "run", *words, *options, *self.hand.options,
-                "--no-browser", "--recordings", str(self._work()), "--flight-recorder", "off"]
+            request["lsl"] = True
+        return request | self.hand.options | {"browser": False, "recordings": str(self._work()), "flight_recorder": "off"}
 
     async def _play(self, run, position):
         session, step = self._session, self._session.steps[position]
@@ -415,7 +398,7 @@ class Conductor:
             work.mkdir(parents=True)
             self._keep_markers()
             self._mark_step(position, "begin")
-            code, summary, said = await run.play(work / "summary.json")
+            code, summary, said = await run.play()
             self._mark_step(position, "end")
             self._run = None
             if self._abort_why is not None:
@@ -430,7 +413,7 @@ class Conductor:
             else:
                 self._phase = "measuring"
                 self._changed()
-                await asyncio.to_thread(self._measure, session, step, position, code, summary, run.ended_by, work)
+                await asyncio.to_thread(self._measure, session, step, position, code, summary, run.ended_by)
             self._enter()
         except Exception as error:  # whatever it is, the study goes on and the operator is told
             is_known = isinstance(error, (trials.TrialError, expressions.ExpressionError, FolderError, OSError))
@@ -466,11 +449,11 @@ class Conductor:
                 self.folder.keep(recording, self._session.code, step, "recording.mcap")
             self.folder.put_aside(self._session.code, step, why)
 
-    def _measure(self, session, step, position, exit_code, summary, ended_by, work):
-        found = trials.measured(self.study, self.program, summary, exit_code_of(summary, exit_code), work)
+    def _measure(self, session, step, position, exit_code, summary, ended_by):
+        found = trials.measured(self.study, summary, exit_code_of(summary, exit_code))
         recording = self.folder.keep(found.recording, session.code, step, "recording.mcap")
         if self._markers:
-            markers.write(self.folder, session.code, step, self._markers.take(), markers.lab_clock_of(work / "columns.events.csv"))
+            markers.write(self.folder, session.code, step, self._markers.take(), markers.lab_clock_of(found.recorded_events))
         self.folder.write(self.folder.file_of(session.code, step), trials.dump({
             "participant": session.code, "condition": step.condition, "repetition": step.repetition,
             "position": session.place(position), "simulated": not self.hand.is_real, "hand": self.hand.kind,

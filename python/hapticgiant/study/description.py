@@ -10,7 +10,7 @@ import pathlib
 import re
 
 from hapticgiant.study import expressions, order, questionnaires
-from hapticgiant.sweep.reader import Placed, Reader, StudyError, arguments_of, nearest, value_of
+from hapticgiant.sweep.reader import Placed, Reader, InputError, arguments_of, nearest, request_of, value_of
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 LABEL = re.compile(r"[A-Za-z][A-Za-z0-9]*")  # in names of files, where _ separates
@@ -144,13 +144,17 @@ class Study(Placed):
         options = {**self.fixed, **self.conditions[condition].options, **(hand or {})}
         return arguments_of(options, self.file.parent)
 
+    def request(self, condition: str) -> dict:
+        """The request of a trial with a person: docs/reference/run_protocol.md."""
+        return request_of({**self.fixed, **self.conditions[condition].options}, self.file.parent)
+
     def digest(self) -> str:
         """Differs where anything of the study differs."""
         return hashlib.sha256(self.file.read_bytes()).hexdigest()[:16]
 
 
 def load_study(file: str | os.PathLike) -> Study:
-    """The study of a file. Raises StudyError with place, rule and nearest name."""
+    """The study of a file. Raises InputError with place, rule and nearest name."""
     return _Reader(file).study()
 
 

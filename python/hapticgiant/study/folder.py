@@ -35,7 +35,7 @@ import threading
 from hapticgiant.study import markers, questionnaires, trials
 from hapticgiant.study.description import Study, load_study
 from hapticgiant.study.planning import Participant, Step, plan, steps
-from hapticgiant.sweep.reader import StudyError, nearest
+from hapticgiant.sweep.reader import InputError, nearest
 
 FORMAT = 1
 DESCRIPTION = "dataset_description.json"
@@ -108,12 +108,12 @@ class Folder:
     @classmethod
     def as_it_was(cls, file: str | os.PathLike, path: str | os.PathLike | None) -> Folder:
         """The folder with the study as it was when it began, whatever has become of the file since; without the study
-        where that cannot be read any more. Raises StudyError where there is no folder either."""
+        where that cannot be read any more. Raises InputError where there is no folder either."""
         path = pathlib.Path(path) if path is not None else pathlib.Path(file).with_suffix(".study")
         own = path / STUDY
         try:
             return cls(load_study(own if own.exists() else file), path)
-        except StudyError as error:
+        except InputError as error:
             if not any(path.glob("sub-*")) and not (path / DESCRIPTION).exists():
                 raise
             found = cls(None, path)

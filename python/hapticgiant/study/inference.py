@@ -1,4 +1,4 @@
-"""Tests of one outcome between conditions, by scipy; no files, no names of people.
+"""Tests of one outcome between conditions, by scipy and statsmodels; no files, no names of people.
 
 Every test gives an estimate with its interval, an effect size, and what its assumptions look like.
 Which test is right is a matter of the design, not of the data: an assumption that looks bad is
@@ -13,7 +13,15 @@ import math
 import warnings
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import stats
+
+
+MOST_EXACT = 49
+"""Values of a sample for which p of ranks is exact."""
+ZERO_VARIANCE = 1e-6
+"""A variance below this share of all of them is 0."""
+LEAST_REST = 1e-18
+"""Variance of the rest, of values with deviation 1, below which it is rounding."""
 
 
 @dataclasses.dataclass
@@ -55,7 +63,10 @@ class Result:
 
 
 def adjusted(values, method: str) -> list[float]:
-    """p values corrected for their number: holm, bonferroni or none."""
+    """p values corrected for their number: holm, bonferroni or none.
+
+    statsmodels has it, too, and collects garbage at each call: 0.2 s.
+    """
     values = np.asarray(values, float)
     count = len(values)
     if method == "none" or count == 0:
@@ -106,38 +117,46 @@ def differences(first, second) -> np.ndarray:
 def paired_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     """Student's t of differences; effect size d_z, the mean difference over its deviation."""
     difference = np.asarray(second, float) - np.asarray(first, float)
-    count, mean, deviation = len(difference), difference.mean(), difference.std(ddof=1)
+    mean, deviation = difference.mean(), difference.std(ddof=1)
     if deviation == 0:
         return Comparison(*names, "t", math.nan, 1.0 if mean == 0 else 0.0, mean, mean, mean, "d_z",
-                          math.nan, count - 1)
-    t = mean / (deviation / math.sqrt(count))
-    half = stats.t.ppf(1 - alpha / 2, count - 1) * deviation / math.sqrt(count)
-    return Comparison(*names, "t", t, 2 * stats.t.sf(abs(t), count - 1), mean, mean - half, mean + half,
-                      "d_z", mean / deviation, count - 1)
+                          math.nan, len(difference) - 1)
+    test = stats.ttest_1samp(difference, 0)
+    low, high = test.confidence_interval(1 - alpha)
+    return Comparison(*names, "t", test.statistic, test.pvalue, mean, low, high, "d_z", mean / deviation, test.df)
 
 
-def signed_rank_counts(count: int) -> np.ndarray:
-    """How many of 2^n signings give each sum of positive ranks."""
-    ways = np.zeros(count * (count + 1) // 2 + 1)
+def signed_rank_counts(ranks) -> np.ndarray:
+    """How many of the 2^n signs of the ranks give each sum of positive ones, in steps of a half (ties share a rank).
+
+    scipy counts them without ties only; with ties it lists all 2^n, and stops at 13.
+    """
+    doubled = np.rint(2 * np.asarray(ranks)).astype(int)
+    ways = np.zeros(doubled.sum() + 1)
     ways[0] = 1
-    for rank in range(1, count + 1):
-        ways[rank:] += ways[:-rank].copy()
+    for step in doubled:
+        ways[step:] += ways[:-step].copy()
     return ways
 
 
-def signed_rank_p(difference) -> float:
-    """p of signed ranks: exact up to 49 without ties and zeros, else with correction of continuity."""
+def signed_rank_p(difference, is_exact: bool | None = None) -> float:
+    """p of signed ranks, zeros left out: exact over all signs of the ranks up to 49 differences, with ties, too; above,
+    and where is_exact is False, the normal approximation with correction of continuity."""
     kept = difference[difference != 0]
     if len(kept) == 0:
         return 1.0
-    has_ties = len(np.unique(abs(kept))) < len(difference)
-    method = "exact" if not has_ties and len(kept) < 50 else "asymptotic"
-    return min(1.0, float(stats.wilcoxon(kept, correction=True, method=method).pvalue))
+    if is_exact is None:
+        is_exact = len(kept) <= MOST_EXACT
+    if not is_exact:
+        return min(1.0, float(stats.wilcoxon(kept, correction=True, method="asymptotic").pvalue))
+    ranks = stats.rankdata(abs(kept))
+    share = np.cumsum(signed_rank_counts(ranks)) / 2.0 ** len(kept)
+    smaller = min(ranks[kept > 0].sum(), ranks[kept < 0].sum())
+    return min(1.0, 2 * float(share[round(2 * smaller)]))
 
 
-def wilcoxon(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
-    """Wilcoxon's signed ranks: exact up to 49 differences without ties and zeros, else the normal
-    approximation with correction of continuity, zeros left out, as R's wilcox.test does.
+def wilcoxon(first, second, alpha=0.05, names=("a", "b"), is_exact: bool | None = None) -> Comparison:
+    """Wilcoxon's signed ranks; p by signed_rank_p, zeros left out, as R's wilcox.test does.
 
     Estimate and interval: Hodges and Lehmann; effect size: rank-biserial correlation.
     """
@@ -150,9 +169,9 @@ def wilcoxon(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     v = ranks[kept > 0].sum()
     total = count * (count + 1) / 2
     walsh = np.sort([(kept[i] + kept[j]) / 2 for i in range(count) for j in range(i, count)])
-    share = np.cumsum(signed_rank_counts(count)) / 2.0 ** count
+    share = np.cumsum(signed_rank_counts(range(1, count + 1))[::2]) / 2.0 ** count
     at = max(1, int(np.searchsorted(share, alpha / 2 * (1 - 1e-12))))
-    return Comparison(*names, "V", v, signed_rank_p(difference), float(np.median(walsh)), walsh[at - 1],
+    return Comparison(*names, "V", v, signed_rank_p(difference, is_exact), float(np.median(walsh)), walsh[at - 1],
                       walsh[len(walsh) - at], "rank-biserial", (2 * v - total) / total)
 
 
@@ -173,19 +192,46 @@ def welch_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
                       small * mean / pooled if pooled > 0 else math.nan, test.df)
 
 
-def mann_whitney(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
-    """Mann and Whitney's U of the second group: exact without ties, else with correction of
-    continuity, as R's wilcox.test. Estimate: Hodges and Lehmann; effect size rank-biserial."""
+def rank_sum_counts(ranks, count: int) -> np.ndarray:
+    """How many choices of `count` of the ranks give each sum, in steps of a half (ties share a rank); scipy counts them
+    without ties only."""
+    doubled = np.rint(2 * np.asarray(ranks)).astype(int)
+    ways = np.zeros((count + 1, doubled.sum() + 1))
+    ways[0, 0] = 1
+    for step in doubled:
+        ways[1:, step:] += ways[:-1, :-step].copy()
+    return ways[count]
+
+
+def rank_sum_p(first, second, is_exact: bool | None = None) -> float:
+    """p of Mann and Whitney's U: exact over all choices of the ranks where both groups have up to 49 values, with ties,
+    too; above, and where is_exact is False, the normal approximation with correction of continuity."""
+    pooled = np.concatenate([first, second])
+    if np.ptp(pooled) == 0:
+        return 1.0
+    if is_exact is None:
+        is_exact = max(len(first), len(second)) <= MOST_EXACT
+    if not is_exact or len(np.unique(pooled)) == len(pooled):
+        method = "exact" if is_exact else "asymptotic"
+        return float(stats.mannwhitneyu(second, first, method=method, use_continuity=True).pvalue)
+    ranks = stats.rankdata(pooled)
+    ways = rank_sum_counts(ranks, len(first))
+    at = round(2 * ranks[:len(first)].sum())
+    return min(1.0, 2 * float(min(ways[:at + 1].sum(), ways[at:].sum()) / ways.sum()))
+
+
+def mann_whitney(first, second, alpha=0.05, names=("a", "b"), is_exact: bool | None = None) -> Comparison:
+    """Mann and Whitney's U of the second group, as R's wilcox.test; p by rank_sum_p.
+
+    Estimate: Hodges and Lehmann; effect size: rank-biserial correlation.
+    """
     a, b = for_ranks([first, second])
-    has_ties = len(np.unique(np.concatenate([a, b]))) < len(a) + len(b)
-    method = "exact" if not has_ties and max(len(a), len(b)) < 50 else "asymptotic"
-    test = stats.mannwhitneyu(b, a, method=method, use_continuity=True)
-    p = test.pvalue if np.ptp(np.concatenate([a, b])) > 0 else 1.0
+    u = stats.mannwhitneyu(b, a, method="asymptotic").statistic if np.ptp(np.concatenate([a, b])) > 0 else len(a) * len(b) / 2
     gaps = np.sort((b[:, None] - a[None, :]).ravel())
     spread = math.sqrt(len(a) * len(b) * (len(a) + len(b) + 1) / 12)
     at = max(1, int(len(gaps) / 2 - stats.norm.ppf(1 - alpha / 2) * spread))
-    return Comparison(*names, "U", test.statistic, p, float(np.median(gaps)), gaps[at - 1],
-                      gaps[len(gaps) - at], "rank-biserial", 2 * test.statistic / len(gaps) - 1)
+    return Comparison(*names, "U", u, rank_sum_p(a, b, is_exact), float(np.median(gaps)), gaps[at - 1],
+                      gaps[len(gaps) - at], "rank-biserial", 2 * u / len(gaps) - 1)
 
 
 def least_p(test: str, sizes: list[int]) -> float:
@@ -195,15 +241,15 @@ def least_p(test: str, sizes: list[int]) -> float:
     return min(1.0, 2 / math.comb(sum(sizes), sizes[0])) if test == "mann_whitney" else 0.0
 
 
-def every_pair(groups: dict[str, np.ndarray], compare, alpha, correction) -> list[Comparison]:
+def every_pair(groups: dict[str, np.ndarray], compare, alpha, correction, **options) -> list[Comparison]:
     """All pairs of conditions, corrected for their number."""
-    found = [compare(groups[a], groups[b], alpha, (a, b)) for a, b in itertools.combinations(groups, 2)]
+    found = [compare(groups[a], groups[b], alpha, (a, b), **options) for a, b in itertools.combinations(groups, 2)]
     for each, p in zip(found, adjusted([each.p for each in found], correction)):
         each.p_adjusted = p
     return found
 
 
-def friedman(groups: dict[str, np.ndarray], alpha=0.05, correction="holm") -> Result:
+def friedman(groups: dict[str, np.ndarray], alpha=0.05, correction="holm", is_exact: bool | None = None) -> Result:
     """Friedman's test over people (rows), post-hoc Wilcoxon of all pairs; effect size Kendall's W."""
     columns = for_ranks(groups.values())
     count = len(columns[0])
@@ -212,11 +258,14 @@ def friedman(groups: dict[str, np.ndarray], alpha=0.05, correction="holm") -> Re
     else:
         value, p = stats.friedmanchisquare(*columns)
     return Result("friedman", count, "chi2", value, (len(columns) - 1,), p, "Kendall's W",
-                  value / (count * (len(columns) - 1)), every_pair(groups, wilcoxon, alpha, correction))
+                  value / (count * (len(columns) - 1)), every_pair(groups, wilcoxon, alpha, correction, is_exact=is_exact))
 
 
 def repeated_anova(table: np.ndarray) -> tuple[float, tuple[float, float], float]:
-    """F, its degrees of freedom and p of conditions (columns) within people (rows)."""
+    """F, its degrees of freedom and p of conditions (columns) within people (rows).
+
+    A power analysis does it some thousand times; statsmodels' AnovaRM takes 10 ms for each.
+    """
     rows, columns = table.shape
     mean = table.mean()
     between = rows * ((table.mean(axis=0) - mean) ** 2).sum() / (columns - 1)
@@ -227,66 +276,71 @@ def repeated_anova(table: np.ndarray) -> tuple[float, tuple[float, float], float
     return f, df, float(stats.f.sf(f, *df))
 
 
-class Reml:
-    """Linear mixed model of a mean for each condition, with random people and people x condition, by REML.
+@dataclasses.dataclass
+class Fit:
+    """A mixed model: variances over that of the rest, means of conditions and their covariance, variance of the rest,
+    and for the look at assumptions the whitened residuals and the offsets of people."""
 
-    The variances are those ratios to the rest where the restricted likelihood is largest, from 0 on; sigma
-    is profiled out (Bates et al., Journal of Statistical Software 67, 2015). A ratio of 0 is a result like others.
+    ratios: list[float]
+    converged: bool
+    means: np.ndarray
+    covariance: np.ndarray
+    rest: float
+    errors: np.ndarray
+    offsets: list[float]
+
+
+def variance_ratios(values, x, group, repeats: bool) -> tuple[list[float], bool]:
+    """Variances of people, and where trials repeat of people x condition, over that of the rest; whether they converged.
+
+    By the REML of statsmodels. Values have mean 0 and deviation 1; x (values x conditions) is 1 where a value is of a
+    condition. Powell's method, since the default one ends before a variance of 0 and calls that converged. Raises
+    ValueError where nothing is left beside people and conditions.
     """
+    from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
 
-    MOST = 1e5  # of a deviation over that of the rest
+    options = {}
+    if repeats:
+        people = [x[group == each] for each in range(group.max() + 1)]
+        names = [[str(i) for i in range(x.shape[1])]] * len(people)
+        options = {"exog_re": np.ones(len(values)), "exog_vc": VCSpec(["condition"], [names], [people])}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of a variance of 0, which is a result
+        try:
+            fit = MixedLM(values, x, groups=group, **options).fit(reml=True, method="powell", xtol=1e-8, ftol=1e-12)
+        except np.linalg.LinAlgError:
+            fit = None
+    if fit is None or fit.scale < LEAST_REST:
+        raise ValueError("does not vary beside people and conditions: a mixed model has no fit")
+    found = [float(np.squeeze(fit.cov_re)), *map(float, fit.vcomp)]
+    least = ZERO_VARIANCE * (fit.scale + sum(found))
+    return [each / float(fit.scale) if each > least else 0.0 for each in found], fit.converged
 
-    def __init__(self, values, code, group, kinds, repeats):
-        self.kinds, self.repeats = kinds, repeats
-        by_pattern = {}
-        for person in range(group.max() + 1):
-            rows = np.flatnonzero(group == person)
-            rows = rows[np.argsort(code[rows], kind="stable")]
-            by_pattern.setdefault(tuple(code[rows]), []).append(rows)
-        self.blocks = [(np.eye(kinds)[list(codes)], np.array(rows)) for codes, rows in by_pattern.items()]
-        self.values, self.count = values, len(values)
-        starts = [(1.0,), (0.1,), (10.0,)] if not repeats else [(1.0, 1.0), (0.1, 1.0), (1.0, 0.1), (10.0, 10.0)]
-        fits = [optimize.minimize(self.deviance, start, method="Nelder-Mead", bounds=[(0, self.MOST)] * len(start),
-                                  options={"xatol": 1e-7, "fatol": 1e-11, "maxiter": 2000}) for start in starts]
-        best = min(fits, key=lambda each: each.fun)
-        self.converged, self.ratios = best.success, np.array(best.x)
-        for i in range(len(self.ratios)):
-            without = self.ratios.copy()
-            without[i] = 0
-            if self.deviance(without) <= best.fun + 1e-8:
-                self.ratios = without
-        self.solve(self.ratios)
 
-    def spread(self, x, ratios):
-        """The covariance of a person's values over that of the rest."""
-        spread = np.eye(len(x)) + ratios[0] ** 2
-        return spread + ratios[1] ** 2 * x @ x.T if self.repeats else spread
+def fitted(values, x, group, repeats: bool) -> Fit:
+    """The mixed model of values, as variance_ratios has them.
 
-    def solve(self, ratios):
-        """Means, their covariance, variance of the rest; the two determinants' logarithm."""
-        left, right, logs = np.zeros((self.kinds, self.kinds)), np.zeros(self.kinds), 0.0
-        inner = []
-        for x, rows in self.blocks:
-            spread = self.spread(x, ratios)
-            inverse = np.linalg.inv(spread)
-            left += len(rows) * x.T @ inverse @ x
-            right += x.T @ inverse @ self.values[rows].sum(axis=0)
-            logs += len(rows) * np.linalg.slogdet(spread)[1]
-            inner.append(inverse)
-        self.means = np.linalg.solve(left, right)
-        self.errors, self.offsets = np.empty(self.count), []
-        total = 0.0
-        for (x, rows), inverse in zip(self.blocks, inner):
-            rest = self.values[rows] - x @ self.means
-            self.errors[rows] = rest @ inverse
-            self.offsets += (ratios[0] ** 2 * self.errors[rows].sum(axis=1)).tolist()
-            total += float(np.sum(rest * self.errors[rows]))
-        self.rest = max(total, 1e-300) / (self.count - self.kinds)
-        self.covariance = np.linalg.inv(left) * self.rest
-        return logs + np.linalg.slogdet(left)[1]
-
-    def deviance(self, ratios):
-        return self.solve(ratios) + (self.count - self.kinds) * math.log(self.rest)
+    Means and their covariance are the generalised least squares of the variances. Those of statsmodels 0.15 come from
+    the curvature in means and variances together: where a variance is 0, F of the published cases is off by a tenth.
+    """
+    ratios, converged = variance_ratios(values, x, group, repeats)
+    kinds = x.shape[1]
+    left, right, blocks = np.zeros((kinds, kinds)), np.zeros(kinds), []
+    for person in range(group.max() + 1):
+        rows = np.flatnonzero(group == person)
+        spread = np.eye(len(rows)) + ratios[0] + (ratios[1] * x[rows] @ x[rows].T if repeats else 0)
+        weighed = np.linalg.solve(spread, x[rows])
+        left += weighed.T @ x[rows]
+        right += weighed.T @ values[rows]
+        blocks.append((rows, spread))
+    means = np.linalg.solve(left, right)
+    rests = values - x @ means
+    errors = np.empty(len(values))
+    for rows, spread in blocks:
+        errors[rows] = np.linalg.solve(spread, rests[rows])
+    rest = max(float(rests @ errors), 1e-300) / (len(values) - kinds)
+    return Fit(ratios, converged, means, np.linalg.inv(left) * rest, rest, errors,
+               [ratios[0] * errors[rows].sum() for rows, _ in blocks])
 
 
 def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
@@ -294,7 +348,8 @@ def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
 
     Tests use the degrees of freedom (people - 1)(conditions - 1), which are exact for balanced data
     and stand in for Satterthwaite's otherwise. Effect size d: the difference over the deviation of a
-    single value. Raises ValueError for one person and for values that do not vary within conditions.
+    single value. Raises ValueError for one person, and for values that do not vary within conditions or
+    beside people and conditions.
     """
     values = np.asarray(values, float)
     names = list(dict.fromkeys(conditions))
@@ -304,15 +359,19 @@ def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
     if len(persons) < 2:
         raise ValueError("fewer than two people have values")
     require_spread([values[code == i] for i in range(len(names))])
-    repeats = len(values) > len(set(zip(group.tolist(), code.tolist())))
-    middle, scale = values.mean(), values.std(ddof=1)
-    fit = Reml((values - middle) / scale, code, group, len(names), repeats)
     result = Result("mixed", len(persons))
+    _, first, cell = np.unique(group * len(names) + code, return_index=True, return_inverse=True)
+    repeats = len(first) < len(values)
+    if repeats and np.array_equal(values, values[first][cell]):
+        result.notes.append("trials of a person and condition do not differ: they count once")
+        values, code, group, repeats = values[first], code[first], group[first], False
+    middle, scale = values.mean(), values.std(ddof=1)
+    fit = fitted((values - middle) / scale, np.eye(len(names))[code], group, repeats)
     if not fit.converged:
         result.notes.append("the fit of the mixed model has not converged")
     means, covariance = fit.means * scale, fit.covariance * scale ** 2
     rest = float(fit.rest * scale ** 2)
-    result.variances = {name: float(ratio ** 2 * rest) for name, ratio in zip(("person", "person x condition"), fit.ratios)}
+    result.variances = {name: ratio * rest for name, ratio in zip(("person", "person x condition"), fit.ratios)}
     result.variances["rest"] = rest
     deviation = math.sqrt(sum(result.variances.values()))
     df = len(names) - 1, (len(persons) - 1) * (len(names) - 1)
@@ -333,7 +392,7 @@ def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
     result.effect, result.size = "partial eta2", result.value * df[0] / (result.value * df[0] + df[1])
     result.assumptions.append(normality(fit.errors, "residuals", alpha))
     result.assumptions.append(normality(fit.offsets, "offsets of people", alpha))
-    if result.variances["person"] < 1e-6 * deviation ** 2:
+    if result.variances["person"] == 0:
         result.notes.append("people do not differ in their mean (variance 0)")
     return result
 

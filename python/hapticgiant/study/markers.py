@@ -19,6 +19,7 @@ import re
 import threading
 import time
 
+from hapticgiant import samples
 from hapticgiant.study.description import ALL_STREAMS, OWN_STREAMS, Study
 
 STUDY_STREAM = "HapticGiantStudy"
@@ -267,12 +268,11 @@ def _word(value) -> str:
         each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
 
 
-def lab_clock_of(events: pathlib.Path) -> list[tuple[float, float]]:
-    """The events 'lab clock' of what `hapticgiant export` writes as NAME.events.csv: since which run time, s, the local
-    clock of LSL is run time plus which offset, s."""
-    with open(events, encoding="utf-8", newline="") as file:
-        return [(float(row["time_s"]), float(found[1])) for row in csv.DictReader(file)
-                if row["name"] == "lab clock" and (found := CLOCK.search(row["text"]))]
+def lab_clock_of(events: list[samples.Event]) -> list[tuple[float, float]]:
+    """The events 'lab clock' of a recording: since which run time, s, the local clock of LSL is run time plus which
+    offset, s."""
+    return [(event.time_s, float(found[1])) for event in events
+            if event.name == "lab clock" and (found := CLOCK.search(event.text))]
 
 
 def run_time(lab_clock: list[tuple[float, float]], clock_s: float) -> float:

@@ -96,7 +96,7 @@ def sus_items() -> dict[str, Item]:
 
 
 def read_form(reader, name, node) -> Form:
-    """The form of a node of study.yaml. Raises StudyError."""
+    """The form of a node of study.yaml. Raises InputError."""
     item = f"questionnaires.{name}"
     parts = reader.map(node, item, ("kind", "after", "weighted", "items", "wording"))
     kind = reader.choice(parts, "kind", item, KINDS, "own")

@@ -48,7 +48,7 @@ def play(study: Study, folder: Folder, program: Program, count: int | None, jobs
                 progress.step()
                 code, step, position = wanted[number]
                 try:
-                    measured = trials.measure(study, program, outcome, _work(folder, number))
+                    measured = trials.measure(study, outcome)
                     _keep(study, folder, program, code, step, position, measured, keeps_recordings)
                     played += 1
                 except (trials.TrialError, expressions.ExpressionError) as error:
@@ -111,5 +111,5 @@ def try_conditions(study: Study, program: Program, work) -> dict[str, trials.Mea
                 for i, name in conditions.items()}
     found = {}
     for i, outcome in engines.Local().play(commands):
-        found[conditions[i]] = trials.measure(study, program, outcome, work / conditions[i])
+        found[conditions[i]] = trials.measure(study, outcome)
     return {name: found[name] for name in study.conditions}

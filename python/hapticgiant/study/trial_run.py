@@ -1,4 +1,4 @@
-"""One trial of a person in real time: `hapticgiant run` as a child process, and what it tells while it runs.
+"""A run as a child process: one request, one stream of JSON lines (docs/reference/run_protocol.md).
 
 The run's own page server has the direct way to the control loop; stops from the operator's page go there without this
 program. The child ends by itself when this program dies.
@@ -11,19 +11,17 @@ import contextlib
 import ctypes
 import dataclasses
 import json
-import math
 import os
-import pathlib
-import re
 import signal
+import subprocess
 
 import aiohttp
 
-LINK = re.compile(r"(http://\S+)/#token=([0-9a-f]+)")
-PROTOCOL = "hapticgiant"
+PROTOCOL = "hapticgiant"  # of the run's page
 PATIENCE_S = 30  # of a run that was asked to end, before it is killed
-RETRY_S = 0.3  # until the connection to a run is tried again
-LARGEST_MESSAGE = 1 << 20  # bytes
+STOP_S = 2.0  # until the run's page takes an emergency stop
+LONGEST_LINE = 4 << 20  # bytes; a summary has all events
+MODES = ("off", "ready", "armed", "running", "stopping", "fault")
 SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
@@ -45,6 +43,64 @@ class Shown:
     events: list[dict] = dataclasses.field(default_factory=list)
 
 
+class Reports:
+    """What the lines of a run have said."""
+
+    def __init__(self):
+        self.shown = Shown()
+        self.summary: dict | None = None
+        self.problems: list[str] = []
+
+    def take(self, report: dict) -> bool:
+        """Takes a line; whether more than a number has changed."""
+        shown = self.shown
+        before = dataclasses.replace(shown, time_s=0.0, force_N=0.0)
+        match next(iter(report), ""):
+            case "link":
+                shown.link = report["link"]
+            case "phase":
+                shown.is_on_its_way = report["phase"] == "moving"
+                shown.wanted = report.get("wanted") or ""
+                if report["phase"] in MODES:
+                    shown.mode = report["phase"]
+            case "status":
+                status = report["status"]
+                shown.time_s, shown.mode, shown.fault = status["time_s"], status["mode"], status["fault"]
+                shown.force_N = status["force_N"] or 0.0
+            case "fault":
+                shown.fault = report["fault"]
+            case "summary":
+                self.summary = report["summary"]
+            case "refused" | "problem" as kind:
+                self.problems.append(report[kind])
+        shown.is_held = shown.mode == "running" and not shown.is_on_its_way
+        return before != dataclasses.replace(shown, time_s=0.0, force_N=0.0)
+
+
+def command_of(program: str, reports: int) -> list[str]:
+    """The command that takes its request from standard input and reports to this descriptor."""
+    return [program, "run", "--request", "-", "--report-to", str(reports)]
+
+
+def played_at_once(program: str, request: dict) -> tuple[int, dict | None, str]:
+    """Plays a run to its end: exit code (minus the signal), its summary, and why there is none."""
+    found = Reports()
+    end, child_end = os.pipe()
+    with open(end, encoding="utf-8", errors="replace") as lines:
+        process = subprocess.Popen(command_of(program, child_end), stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True, pass_fds=(child_end,), start_new_session=True)
+        os.close(child_end)
+        with contextlib.suppress(BrokenPipeError):
+            process.stdin.write(json.dumps(request))
+            process.stdin.close()
+        for line in lines:
+            found.take(json.loads(line))
+        said = process.stderr.read()
+        process.stderr.close()
+    code = process.wait()
+    return code, found.summary, "\n".join(found.problems) or said.strip() or f"the run ended with {code} and no summary"
+
+
 def _end_with(parent):
     """In the child, before it becomes the program: SIGTERM when the parent dies, and no Ctrl-C of the terminal."""
     os.setsid()
@@ -56,101 +112,81 @@ def _end_with(parent):
 class TrialRun:
     """A run from its start to its end."""
 
-    def __init__(self, command: list[str], expected: list[str], pause_s: float | None, changed, has_way: bool = False):
-        """command: without --summary. expected: names of the task's events. pause_s: how long after the last of them the
-        run ends; None: it does not end by them. changed(): called when more than a number has changed. has_way: the
-        device first moves to the start."""
-        self.shown = Shown()
-        self._command = command
+    def __init__(self, program: str, request: dict, expected: list[str], pause_s: float | None, changed):
+        """expected: names of the task's events. pause_s: how long after the last of them the run ends; None: it does not
+        end by them. changed(): called when more than a number has changed."""
+        self._reports = Reports()
+        self._program, self._request = program, request
         self._missing = set(expected)
         self._pause_s = pause_s
         self._changed = changed
-        self._first_run = 2 if has_way else 1  # by the number of its frames; before it is the way
         self._process: asyncio.subprocess.Process | None = None
-        self._socket: aiohttp.ClientWebSocketResponse | None = None
-        self._found_link = asyncio.Event()
+        self._pages = contextlib.AsyncExitStack()
+        self._listener: asyncio.Task | None = None
         self._said: list[str] = []
-        self._id = 0
         self.is_ending = False
         self.ended_by = "time"
         """What has ended it: events, operator, or time (also of a script that has played)."""
 
-    async def play(self, summary: pathlib.Path) -> tuple[int, dict | None, str]:
-        """Plays it; exit code (minus the signal), the summary if it was written, and what standard error said."""
+    @property
+    def shown(self) -> Shown:
+        return self._reports.shown
+
+    async def play(self) -> tuple[int, dict | None, str]:
+        """Plays it; exit code (minus the signal), the summary if there is one, and what it could not do."""
+        end, child_end = os.pipe()
         parent = os.getpid()
-        self._process = await asyncio.create_subprocess_exec(
-            *self._command, "--summary", str(summary), stdin=asyncio.subprocess.DEVNULL,
-            stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE, preexec_fn=lambda: _end_with(parent))
-        if self.is_ending:  # somebody was faster
+        lines = asyncio.StreamReader(limit=LONGEST_LINE)
+        transport, _ = await asyncio.get_running_loop().connect_read_pipe(
+            lambda: asyncio.StreamReaderProtocol(lines), os.fdopen(end, "rb"))
+        try:
+            self._process = await asyncio.create_subprocess_exec(
+                *command_of(self._program, child_end), stdin=asyncio.subprocess.PIPE, stdout=asyncio.subprocess.DEVNULL,
+                stderr=asyncio.subprocess.PIPE, pass_fds=(child_end,), preexec_fn=lambda: _end_with(parent))
+        finally:
+            os.close(child_end)
+        if self.is_ending:  # ended before it has begun
             self._send_end()
-        readers = [asyncio.create_task(self._read(self._process.stdout, self._take_line)),
-                   asyncio.create_task(self._read(self._process.stderr, self._said.append))]
-        watcher = asyncio.create_task(self._watch())
+        readers = [asyncio.create_task(each) for each in (self._send_request(), self._read_reports(lines), self._read_errors())]
         try:
             code = await self._process.wait()
             await asyncio.gather(*readers)
         finally:
-            watcher.cancel()
             for reader in readers:
                 reader.cancel()
+            transport.close()
+            await self._pages.aclose()
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()
-        try:
-            found = json.loads(summary.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            found = None
-        return code, found, "".join(self._said).strip()
+        return code, self._reports.summary, "\n".join([*self._reports.problems, "".join(self._said).strip()]).strip()
 
-    async def _read(self, stream, take):
-        while line := await stream.readline():
-            take(line.decode(errors="replace"))
+    async def _send_request(self):
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+            self._process.stdin.write(json.dumps(self._request).encode())
+            await self._process.stdin.drain()
+        self._process.stdin.close()
 
-    def _take_line(self, line):
-        if not self.shown.link and (match := LINK.search(line)):
-            self.shown.link = match[0]
-            self._found_link.set()
-            self._changed()
+    async def _read_errors(self):
+        while line := await self._process.stderr.readline():
+            self._said.append(line.decode(errors="replace"))
 
-    async def _watch(self):
-        """Follows the frames of the run; ends it after the last expected event."""
-        await self._found_link.wait()
-        address, token = LINK.match(self.shown.link).groups()
-        async with aiohttp.ClientSession() as session:
-            while self._process.returncode is None:
-                with contextlib.suppress(aiohttp.ClientError):
-                    async with session.ws_connect(f"{address}/ws", origin=address, max_msg_size=LARGEST_MESSAGE,
-                                                  protocols=(PROTOCOL, f"token.{token}")) as socket:
-                        self._socket = socket
-                        async for message in socket:
-                            if message.type == aiohttp.WSMsgType.TEXT:
-                                self._take(json.loads(message.data))
-                self._socket = None
-                await asyncio.sleep(RETRY_S)
-
-    def _take(self, message):
-        shown = self.shown
-        if message["type"] == "frame":
-            before = shown.mode, shown.fault, shown.is_on_its_way
-            shown.is_on_its_way = message["run"] < self._first_run
-            shown.mode, shown.time_s = message["mode"], message["time_s"]
-            shown.fault = message["fault"]
-            force = [x for x in message["force_N"] if x is not None]
-            shown.force_N = math.hypot(*force) if len(force) == 3 else 0.0
-            shown.is_held = shown.mode == "running" and not shown.is_on_its_way
-            if shown.mode == "running":
-                shown.wanted = ""
-            if before != (shown.mode, shown.fault, shown.is_on_its_way):
+    async def _read_reports(self, lines):
+        while line := await lines.readline():
+            report = json.loads(line)
+            has_changed = self._reports.take(report)
+            has_changed |= "event" in report and self._take_event(report)
+            if has_changed:
                 self._changed()
-        elif message["type"] == "event" and message["run"] < self._first_run:
-            if message["name"] == "start":
-                shown.wanted = message["text"]
-                self._changed()
-        elif message["type"] == "event" and message["name"] in self._missing:
-            self._missing.discard(message["name"])
-            shown.events.append({"time_s": message["time_s"], "name": message["name"]})
-            if not self._missing and self._pause_s is not None:
-                asyncio.get_running_loop().call_later(self._pause_s, self.end, "events")
-            self._changed()
+
+    def _take_event(self, event):
+        """An event of the task; the run ends after the last one that is expected. On the way to the start there is none."""
+        if self.shown.is_on_its_way or event["event"] not in self._missing:
+            return False
+        self._missing.discard(event["event"])
+        self.shown.events.append({"time_s": event["time_s"], "name": event["event"]})
+        if not self._missing and self._pause_s is not None:
+            asyncio.get_running_loop().call_later(self._pause_s, self.end, "events")
+        return True
 
     def end(self, by: str = "operator") -> None:
         """Ends the run as Ctrl-C does: the device stops, recording and summary are completed. Killed if it does not end.
@@ -172,12 +208,22 @@ class TrialRun:
             self._process.kill()
 
     async def emergency_stop(self) -> bool:
-        """Presses the emergency stop by this program's own connection; False: there is none."""
-        socket = self._socket
-        if socket is None:
+        """Presses the emergency stop at the run's page; False: it has none yet, or does not take it."""
+        if not self.shown.link:
             return False
-        self._id += 1
-        with contextlib.suppress(ConnectionError, aiohttp.ClientError):
-            await socket.send_json({"type": "command", "id": self._id, "command": "emergency_stop", "name": "", "value": 0})
+        with contextlib.suppress(OSError, asyncio.TimeoutError, aiohttp.ClientError):
+            await asyncio.wait_for(self._press(), STOP_S)
             return True
         return False
+
+    async def _press(self):
+        address, _, token = self.shown.link.partition("/#token=")
+        client = await self._pages.enter_async_context(aiohttp.ClientSession())
+        socket = await client.ws_connect(f"{address}/ws", origin=address, protocols=(PROTOCOL, f"token.{token}"))
+        await socket.send_json({"type": "command", "id": 1, "command": "emergency_stop", "name": "", "value": 0})
+        self._listener = asyncio.create_task(_listen(socket))  # until the run ends
+
+
+async def _listen(socket):
+    async for _ in socket:
+        pass

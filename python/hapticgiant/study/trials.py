@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import hashlib
 import json
@@ -13,13 +12,14 @@ import subprocess
 
 import numpy as np
 
+from hapticgiant import samples
 from hapticgiant.study import expressions
 from hapticgiant.study.description import Study
 from hapticgiant.sweep.program import SUMMARY, Outcome, Program
-from hapticgiant.sweep.reader import StudyError, nearest
+from hapticgiant.sweep.reader import InputError, nearest
 
 RUNNING = 3  # of the column `mode`
-ALWAYS = ("mode",)
+ALWAYS = ("mode", "time_s")
 LENGTHS = {"robot.w_h": 6, "truth.w_h": 6, "sensors.w_s": 6, "v_h": 3, "handle.p": 3, "truth.handle.p": 3, "handle.r": 9}
 """Of columns that are as long for every device."""
 
@@ -52,13 +52,14 @@ class Measured:
     recording: pathlib.Path
     digest: str
     """SHA-256 of the recording."""
+    recorded_events: list[samples.Event]
 
 
 def columns_of(study: Study) -> list[str]:
     """The recorded columns that measures read, without their index."""
     names = {name.partition("[")[0] for measure in study.measures.values()
              for name in expressions.names_of(expressions.parse(measure.expression))}
-    return sorted((names | set(ALWAYS)) - {"time_s"})
+    return sorted(names | set(ALWAYS))
 
 
 def known_columns(program: Program) -> dict[str, bool]:
@@ -69,41 +70,41 @@ def known_columns(program: Program) -> dict[str, bool]:
 
 
 def require_columns(study: Study, known: dict[str, bool]) -> None:
-    """Raises StudyError for a measure of a column that no recording has. How long a column is depends on the device:
+    """Raises InputError for a measure of a column that no recording has. How long a column is depends on the device:
     an index beyond its end is found by a trial."""
     for name, measure in study.measures.items():
         for column in expressions.names_of(expressions.parse(measure.expression)):
             whole, bracket, index = column.partition("[")
             place = f"{study.place(f'measures.{name}')}: measures.{name}: "
             if whole not in known:
-                raise StudyError(f"{place}no column is called '{column}', did you mean '{nearest(whole, known)}'?")
+                raise InputError(f"{place}no column is called '{column}', did you mean '{nearest(whole, known)}'?")
             if known[whole] != bool(bracket):
-                raise StudyError(f"{place}'{column}': " + (f"take one of its values, as '{whole}[0]'" if known[whole]
+                raise InputError(f"{place}'{column}': " + (f"take one of its values, as '{whole}[0]'" if known[whole]
                                                            else f"'{whole}' is one value, without an index"))
             if bracket and "." not in index and int(index.rstrip("]")) >= LENGTHS.get(whole, math.inf):
-                raise StudyError(f"{place}'{column}': '{whole}' has the indices 0 to {LENGTHS[whole] - 1}")
+                raise InputError(f"{place}'{column}': '{whole}' has the indices 0 to {LENGTHS[whole] - 1}")
 
 
-def measure(study: Study, program: Program, outcome: Outcome, folder: pathlib.Path) -> Measured:
+def measure(study: Study, outcome: Outcome) -> Measured:
     """The measures of a run that has ended by itself. Raises TrialError, ExpressionError."""
     summary = outcome.summary()
     if summary is None:
         raise TrialError(outcome.why())
-    return measured(study, program, summary, outcome.code, folder)
+    return measured(study, summary, outcome.code)
 
 
-def measured(study: Study, program: Program, summary: dict, exit_code: int, folder: pathlib.Path) -> Measured:
-    """The measures of a run by its summary and its recording; the folder is for what is needed meanwhile. Raises
-    TrialError, ExpressionError."""
+def measured(study: Study, summary: dict, exit_code: int) -> Measured:
+    """The measures of a run by its summary and its recording. Raises TrialError, ExpressionError."""
     recording = pathlib.Path(summary["recording"])
     if not summary["recording"] or not recording.is_file():
         raise TrialError(f"no recording: {summary['recording_error'] or 'nothing was written'}")
-    table = folder / "columns"
-    done = subprocess.run([program.file, "export", recording, "--out", table, "--columns", *columns_of(study)],
-                          capture_output=True, text=True, check=False, start_new_session=True)
-    if done.returncode != 0:
-        raise TrialError(done.stderr.strip() or f"export ended with {done.returncode}")
-    columns = _read_table(table.with_suffix(".csv"))
+    try:
+        recorded = samples.read(recording, columns_of(study))
+    except (ValueError, OSError) as error:
+        raise TrialError(str(error)) from error
+    if recorded.losses:
+        raise TrialError(f"{recording}: {recorded.losses[0]}")
+    columns = _numbered(recorded.columns)
     is_felt = columns["mode"] == RUNNING
     columns = {name: values[is_felt] for name, values in columns.items()}
     for values in columns.values():
@@ -119,7 +120,8 @@ def measured(study: Study, program: Program, summary: dict, exit_code: int, fold
                 measures[name] = math.nan
                 continue
             raise expressions.ExpressionError(f"{study.place(f'measures.{name}')}: measures.{name}: {error}") from None
-    return Measured(exit_code, summary["state_hash"], events, measures, recording, digest_of(recording))
+    return Measured(exit_code, summary["state_hash"], events, measures, recording, digest_of(recording),
+                    recorded.events)
 
 
 def digest_of(file: pathlib.Path) -> str:
@@ -131,12 +133,15 @@ def digest_of(file: pathlib.Path) -> str:
     return digest.hexdigest()
 
 
-def _read_table(file):
-    with open(file, encoding="utf-8") as lines:
-        names = next(csv.reader(lines))
-        rows = np.loadtxt(lines, delimiter=",", ndmin=2)
-    rows = rows if rows.size else np.empty((0, len(names)))
-    return dict(zip(names, rows.T))
+def _numbered(columns):
+    """Columns of one number, as "robot.w_h[0]", as floats."""
+    found = {}
+    for name, values in columns.items():
+        if values.ndim == 1:
+            found[name] = values.astype(float)
+        else:
+            found |= {f"{name}[{i}]": entry for i, entry in enumerate(values.T.astype(float))}
+    return found
 
 
 def _numbers(summary):

@@ -44,13 +44,10 @@ import ctypes  # noqa: E402
 import importlib.util  # noqa: E402
 import os  # noqa: E402
 import pathlib  # noqa: E402
-import types  # noqa: E402
 
 if not __package__:
-    # Run as a folder: the package's own __init__ would need its compiled part.
-    _package = types.ModuleType("hapticgiant")
-    _package.__path__ = [str(pathlib.Path(__file__).resolve().parents[1])]
-    sys.modules["hapticgiant"] = _package
+    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+    import as_folder  # noqa: F401
 
 SHOWN = 5  # commands of a kind that are printed
 COMMANDS = ("submit", "merge", "check", "show")
@@ -63,22 +60,18 @@ def shard(text):
     return int(index), int(count)
 
 
-def positive(text):
-    if not (text.isdigit() and int(text) > 0):
-        raise argparse.ArgumentTypeError(f"expected a whole number from 1 on, got '{text}'")
-    return int(text)
-
-
 def parsers():
-    from hapticgiant.command_line import Parser
+    from hapticgiant.command_line import Parser, whole_number
+
+    positive = whole_number(1)
 
     main = Parser(
         prog="hapticgiant sweep",
         description="Many runs over a table of parameters (docs/start/sweep.md). The same command "
                     "again continues where a sweep has ended.",
-        epilog="hapticgiant sweep submit|merge|check|show STUDY --help: a job array of Slurm, the "
+        epilog="hapticgiant sweep submit|merge|check|show SWEEP --help: a job array of Slurm, the "
                "table of all shards, runs played again, what would be played")
-    main.add_argument("study", help="study.yaml")
+    main.add_argument("sweep", help="sweep.yaml")
     submit = Parser(prog="hapticgiant sweep submit",
                     description="Writes the script of a job array, and hands it to Slurm.")
     merge = Parser(prog="hapticgiant sweep merge",
@@ -89,9 +82,9 @@ def parsers():
     show = Parser(prog="hapticgiant sweep show",
                   description="Prints the commands of the runs, plays nothing.")
     for other in (submit, merge, check, show):
-        other.add_argument("study", help="study.yaml")
+        other.add_argument("sweep", help="sweep.yaml")
     for each in (main, submit, merge, check):
-        each.add_argument("--out", help="folder of the sweep; default: STUDY.sweep beside the study")
+        each.add_argument("--out", help="folder of the sweep; default: NAME.sweep beside NAME.yaml")
     for each in (main, check):
         each.add_argument("--jobs", type=positive,
                           help="processes at a time; default: one per processor")
@@ -139,7 +132,7 @@ def tell(result, is_quiet=False):
         return 1 if result.without_result() else 0
     lost, fault, unexpected = result.without_result(), result.with_code(3), result.with_code(1)
     continued = f", {result.repeated} of them from before" if result.repeated else ""
-    print(f"{runs(len(result.runs))} of '{result.study.title}'{continued}: "
+    print(f"{runs(len(result.runs))} of '{result.sweep.title}'{continued}: "
           f"{len(result.with_code(0))} as expected, {len(unexpected)} not as expected, "
           f"{len(fault)} stopped by a fault, {len(lost)} without a result")
     named = sorted(lost + fault + unexpected, key=lambda run: run.number)
@@ -159,6 +152,49 @@ def end_with_parent():
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGTERM)
 
 
+def run(command, arguments):
+    """Does what a subcommand says, "": plays the runs; the exit code. Raises InputError, SweepError."""
+    from hapticgiant.sweep import campaign, description, slurm
+
+    described = description.load_sweep(arguments.sweep)
+    if command == "show":
+        program = campaign.find_program()
+        for run in described.runs:
+            if arguments.run in (None, run.number):
+                print(campaign.Result(described, pathlib.Path(), {}, program).command(run))
+        return 0
+    if command == "merge":
+        return tell(campaign.merge(described, arguments.out))
+    if command == "check":
+        found = campaign.check(described, arguments.out, jobs=arguments.jobs,
+                               count=None if arguments.all else arguments.count,
+                               engine=arguments.engine, scheduler=arguments.scheduler)
+        print(f"{runs(len(found.played))} played again: "
+              f"{len(found.played) - len(found.differing)} the same, {len(found.differing)} not")
+        for run, what in found.differing:
+            print(f"  run {run.number}: {what}\n    {found.result.command(run)}")
+        return 1 if found.differing or not found.played else 0
+    if command == "submit":
+        if arguments.again:
+            campaign.forget(campaign.Folder(campaign.folder_of(described, arguments.out)))
+        campaign.begin(described, arguments.out)
+        script = slurm.write_script(described, arguments.out, campaign.find_program().file,
+                                    arguments.shards, arguments.cpus, arguments.sbatch)
+        print(f"  script     {script}")
+        if not arguments.dry_run:
+            print(f"  job        {slurm.submit(script)}; when it is done:")
+            out = f" --out {arguments.out}" if arguments.out else ""
+            print(f"  hapticgiant sweep merge {arguments.sweep}{out}")
+        return 0
+    if arguments.quiet:
+        end_with_parent()
+    return tell(campaign.run(described, arguments.out, jobs=arguments.jobs,
+                             shard=arguments.shard, engine=arguments.engine,
+                             scheduler=arguments.scheduler, again=arguments.again,
+                             table=not arguments.quiet),
+                arguments.quiet)
+
+
 def main(words):
     has_yaml = importlib.util.find_spec("yaml") is not None
     if words == ["--check"]:  # who asks says what is missing
@@ -167,7 +203,8 @@ def main(words):
         print(f"sweep: {sys.executable} needs PyYAML: tools/setup.sh build, or pip install pyyaml "
               "scipy pyarrow", file=sys.stderr)
         return 2
-    from hapticgiant.sweep import campaign, reader, slurm, study
+    from hapticgiant.command_line import exit_code_of
+    from hapticgiant.sweep import campaign, reader
 
     command = words[0] if words and words[0] in COMMANDS else ""
     known = parsers()
@@ -176,53 +213,7 @@ def main(words):
         known[""].wrong(words[0], "subcommand", COMMANDS)
     arguments = known[command].parse_args(words[1:] if command else words)
 
-    try:
-        described = study.load_study(arguments.study)
-        if command == "show":
-            program = campaign.find_program()
-            for run in described.runs:
-                if arguments.run in (None, run.number):
-                    print(campaign.Result(described, pathlib.Path(), {}, program).command(run))
-            return 0
-        if command == "merge":
-            return tell(campaign.merge(described, arguments.out))
-        if command == "check":
-            found = campaign.check(described, arguments.out, jobs=arguments.jobs,
-                                   count=None if arguments.all else arguments.count,
-                                   engine=arguments.engine, scheduler=arguments.scheduler)
-            print(f"{runs(len(found.played))} played again: "
-                  f"{len(found.played) - len(found.differing)} the same, {len(found.differing)} not")
-            for run, what in found.differing:
-                print(f"  run {run.number}: {what}\n    {found.result.command(run)}")
-            return 1 if found.differing or not found.played else 0
-        if command == "submit":
-            if arguments.again:
-                campaign.forget(campaign.Folder(campaign.folder_of(described, arguments.out)))
-            campaign.begin(described, arguments.out)
-            script = slurm.write_script(described, arguments.out, campaign.find_program().file,
-                                        arguments.shards, arguments.cpus, arguments.sbatch)
-            print(f"  script     {script}")
-            if not arguments.dry_run:
-                print(f"  job        {slurm.submit(script)}; when it is done:")
-                out = f" --out {arguments.out}" if arguments.out else ""
-                print(f"  hapticgiant sweep merge {arguments.study}{out}")
-            return 0
-        if arguments.quiet:
-            end_with_parent()
-        return tell(campaign.run(described, arguments.out, jobs=arguments.jobs,
-                                 shard=arguments.shard, engine=arguments.engine,
-                                 scheduler=arguments.scheduler, again=arguments.again,
-                                 table=not arguments.quiet),
-                    arguments.quiet)
-    except (reader.StudyError, campaign.SweepError) as error:
-        print(error, file=sys.stderr)
-        return 2
-    except BrokenPipeError:  # the reader has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except OSError as error:
-        print(f"sweep: {error}", file=sys.stderr)
-        return 2
+    return exit_code_of("sweep", lambda: run(command, arguments), (reader.InputError, campaign.SweepError))
 
 
 if __name__ == "__main__":

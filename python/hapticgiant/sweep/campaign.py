@@ -1,4 +1,4 @@
-"""A sweep from its study to its table: checked, played, continued, merged, repeated."""
+"""A sweep from its file to its table: checked, played, continued, merged, repeated."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ import shlex
 import time
 
 from hapticgiant.sweep import engines
+from hapticgiant.sweep.description import Run, Sweep, load_sweep
 from hapticgiant.sweep.manifest import HEADER, Folder, Manifest, SweepError
 from hapticgiant.sweep.program import (BAD_INPUT, SUMMARY, Outcome, Program, find_program,
                                        measures_of)
 from hapticgiant.sweep.progress import Progress
-from hapticgiant.sweep.reader import OPTIONS, StudyError, nearest, value_of
-from hapticgiant.sweep.study import Run, Study, load_study
+from hapticgiant.sweep.reader import OPTIONS, InputError, nearest, value_of
 from hapticgiant.sweep.table import rows_of, write_table
 
 FORMAT = 1
@@ -32,7 +32,7 @@ TRIAL = ["--duration", "0.001"]  # enough to load, check and take the posture
 class Result:
     """What a sweep has so far."""
 
-    study: Study
+    sweep: Sweep
     folder: pathlib.Path
     records: dict[int, dict]
     program: Program
@@ -45,12 +45,12 @@ class Result:
     @property
     def runs(self) -> list[Run]:
         """Those that were asked for."""
-        return _of_shard(self.study, self.shard)
+        return _of_shard(self.sweep, self.shard)
 
     @property
     def rows(self) -> list[dict]:
         """One dict per run that has ended."""
-        return rows_of(self.study, self.records)
+        return rows_of(self.sweep, self.records)
 
     def with_code(self, *codes: int) -> list[Run]:
         """Runs with a result and this exit code: 0 as expected, 1 not, 3 stopped by a fault."""
@@ -64,49 +64,49 @@ class Result:
 
     def command(self, run: Run) -> str:
         """The command that repeats this run."""
-        return shlex.join(self.program.command(self.study, run))
+        return shlex.join(self.program.command(self.sweep, run))
 
 
-def run(study: Study | str | os.PathLike, out: str | os.PathLike | None = None, *,
+def run(sweep: Sweep | str | os.PathLike, out: str | os.PathLike | None = None, *,
         jobs: int | None = None, shard: tuple[int, int] | None = None, engine: str = "local",
         scheduler: str = "", again: bool = False, table: bool = True) -> Result:
-    """Plays all runs of a study that its folder does not have, and writes the table.
+    """Plays all runs of a sweep that its folder does not have, and writes the table.
 
-    out: the folder; default NAME.sweep beside the study. jobs: processes at a time. shard: (i, n)
+    out: the folder; default NAME.sweep beside its file. jobs: processes at a time. shard: (i, n)
     plays each n-th run from the i-th on. engine: local or dask, there at `scheduler` or, without
     one, on this machine. again: forgets what the folder has. table: whether the table is written.
-    Raises StudyError, SweepError.
+    Raises InputError, SweepError.
     """
-    study, folder, program = _prepare(study, out)
+    sweep, folder, program = _prepare(sweep, out)
     if again and shard is not None:
         raise SweepError("--again deletes the runs of other shards, too: give it to `submit` or to "
                          "a sweep without --shard")
     if again:
         forget(folder)
-    _begin(study, folder, program, jobs)
+    _begin(sweep, folder, program, jobs)
     records = folder.records()
     has_before = {number for number, record in records.items() if record["state_hash"] is not None}
-    wanted = [run for run in _of_shard(study, shard) if run.number not in has_before]
+    wanted = [run for run in _of_shard(sweep, shard) if run.number not in has_before]
     try:
         manifest = Manifest(folder, shard)
     except BlockingIOError:
         raise _busy(folder) from None
-    commands = {run.number: program.measured(study, run) for run in wanted}
+    commands = {run.number: program.measured(sweep, run) for run in wanted}
     by_number = {run.number: run for run in wanted}
     refused = 0
     try:
         for number, outcome, seconds in _play(commands, engine, scheduler, jobs, "runs"):
-            record = _record(study, by_number[number], program, outcome, seconds)
+            record = _record(sweep, by_number[number], program, outcome, seconds)
             manifest.append(record)
             records[number] = record
             refused = refused + 1 if outcome.code == BAD_INPUT and refused >= 0 else -1
             if refused >= FIRST_RUNS:
                 raise SweepError(f"none of the first {refused} runs could begin:\n"
-                                 + explained(outcome.why(), study))
+                                 + explained(outcome.why(), sweep))
     finally:
         manifest.close()
-    result = Result(study, folder.path, records, program, shard=shard,
-                    repeated=len(_of_shard(study, shard)) - len(wanted))
+    result = Result(sweep, folder.path, records, program, shard=shard,
+                    repeated=len(_of_shard(sweep, shard)) - len(wanted))
     if shard is None and table:
         result.file = write_table(folder.path, result.rows)
     return result
@@ -120,21 +120,21 @@ def forget(folder: Folder) -> None:
         raise _busy(folder) from None
 
 
-def begin(study: Study | str | os.PathLike, out: str | os.PathLike | None = None) -> None:
-    """Checks a study and makes its folder, for shards to be played. Raises StudyError, SweepError."""
-    study, folder, program = _prepare(study, out)
-    _begin(study, folder, program, None)
+def begin(sweep: Sweep | str | os.PathLike, out: str | os.PathLike | None = None) -> None:
+    """Checks a sweep and makes its folder, for shards to be played. Raises InputError, SweepError."""
+    sweep, folder, program = _prepare(sweep, out)
+    _begin(sweep, folder, program, None)
 
 
-def merge(study: Study | str | os.PathLike, out: str | os.PathLike | None = None) -> Result:
-    """The table of all shards that are there. Raises StudyError, SweepError."""
-    study, folder, program = _prepare(study, out)
+def merge(sweep: Sweep | str | os.PathLike, out: str | os.PathLike | None = None) -> Result:
+    """The table of all shards that are there. Raises InputError, SweepError."""
+    sweep, folder, program = _prepare(sweep, out)
     there = folder.header()
     if there is None:
         raise SweepError(f"{folder.path}: holds no sweep")
-    if there["study"] != study.digest():
-        raise SweepError(_other(folder, "runs of another study"))
-    result = Result(study, folder.path, folder.records(), program)
+    if there["sweep"] != sweep.digest():
+        raise SweepError(_other(folder, "runs of another sweep"))
+    result = Result(sweep, folder.path, folder.records(), program)
     result.file = write_table(folder.path, result.rows)
     return result
 
@@ -149,28 +149,28 @@ class Check:
     result: Result
 
 
-def check(study: Study | str | os.PathLike, out: str | os.PathLike | None = None, *,
+def check(sweep: Sweep | str | os.PathLike, out: str | os.PathLike | None = None, *,
           count: int | None = 10, jobs: int | None = None, engine: str = "local",
           scheduler: str = "") -> Check:
     """Plays runs of a finished sweep again, and compares exit codes, hashes and measures.
 
-    count: how many, spread at random; None: all. Raises StudyError, SweepError.
+    count: how many, spread at random; None: all. Raises InputError, SweepError.
     """
-    study, folder, program = _prepare(study, out)
+    sweep, folder, program = _prepare(sweep, out)
     if folder.header() is None:
         raise SweepError(f"{folder.path}: holds no sweep")
-    _refuse_other(folder, _header(study, program, jobs))
+    _refuse_other(folder, _header(sweep, program, jobs))
     records = folder.records()
-    played = [run for run in study.runs
+    played = [run for run in sweep.runs
               if run.number in records and records[run.number]["state_hash"] is not None]
     if count is not None and count < len(played):
         played = sorted(random.Random(1).sample(played, count), key=lambda run: run.number)
     by_number = {run.number: run for run in played}
-    commands = {run.number: program.measured(study, run) for run in played}
+    commands = {run.number: program.measured(sweep, run) for run in played}
     differing = []
     for number, outcome, seconds in _play(commands, engine, scheduler, jobs, "repeated"):
         before = records[number]
-        after = _record(study, by_number[number], program, outcome, seconds)
+        after = _record(sweep, by_number[number], program, outcome, seconds)
         what = [f"{key} {before[key]}, now {after[key]}"
                 for key in ("exit_code", "state_hash", "fault") if before[key] != after[key]]
         if not what and before["measures"] != after["measures"]:
@@ -178,58 +178,58 @@ def check(study: Study | str | os.PathLike, out: str | os.PathLike | None = None
         if what:
             differing.append((by_number[number], "; ".join(what)))
     differing.sort(key=lambda item: item[0].number)
-    return Check(played, differing, Result(study, folder.path, records, program))
+    return Check(played, differing, Result(sweep, folder.path, records, program))
 
 
-def folder_of(study: Study, out: str | os.PathLike | None) -> pathlib.Path:
-    """The folder of a sweep: `out`, or NAME.sweep beside the study."""
-    return pathlib.Path(out) if out is not None else study.file.with_suffix(".sweep")
+def folder_of(sweep: Sweep, out: str | os.PathLike | None) -> pathlib.Path:
+    """The folder of a sweep: `out`, or NAME.sweep beside its file."""
+    return pathlib.Path(out) if out is not None else sweep.file.with_suffix(".sweep")
 
 
-def explained(text: str, study: Study) -> str:
-    """What the program says about --set KEY or an option, at the place of the study that gives it."""
+def explained(text: str, sweep: Sweep) -> str:
+    """What the program says about --set KEY or an option, at the place of the file that gives it."""
     lines = []
     for line in text.splitlines():
         words = line.split()
         if line.startswith("--set "):
             item = line.removeprefix("--set ")
             key = item.partition(": ")[0].partition("=")[0]
-            lines.append(f"{study.place(key)}: {item}")
+            lines.append(f"{sweep.place(key)}: {item}")
             continue
         key = next((key for key, flag in OPTIONS.items() if flag and words and
                     flag in (words[0].rstrip(":"), words[0].partition("=")[0])), None)
         if line and line != "Run with --help for more information.":
-            lines.append(f"{study.place(key) if key else study.file}: {line}")
+            lines.append(f"{sweep.place(key) if key else sweep.file}: {line}")
     return "\n".join(lines)
 
 
-def _prepare(study, out):
-    if not isinstance(study, Study):
-        study = load_study(study)
+def _prepare(sweep, out):
+    if not isinstance(sweep, Sweep):
+        sweep = load_sweep(sweep)
     try:
         program = find_program()
     except FileNotFoundError as error:
         raise SweepError(str(error)) from None
-    return study, Folder(folder_of(study, out)), program
+    return sweep, Folder(folder_of(sweep, out)), program
 
 
-def _begin(study, folder, program, jobs):
-    header = _header(study, program, jobs)
+def _begin(sweep, folder, program, jobs):
+    header = _header(sweep, program, jobs)
     _refuse_other(folder, header)
     folder.settle(header)
     _refuse_other(folder, header)
 
 
-def _of_shard(study, shard):
-    return study.runs if shard is None else study.runs[shard[0] - 1::shard[1]]
+def _of_shard(sweep, shard):
+    return sweep.runs if shard is None else sweep.runs[shard[0] - 1::shard[1]]
 
 
-def _trials(study):
+def _trials(sweep):
     """The first run, and the same with the ends of each parameter's values, or all its words."""
-    first = study.runs[0]
+    first = sweep.runs[0]
     trials = [first]
     for key in first.parameters:
-        values = list(dict.fromkeys(run.parameters[key] for run in study.runs))
+        values = list(dict.fromkeys(run.parameters[key] for run in sweep.runs))
         numbers = [value_of(value) for value in values]
         if all(isinstance(value, (int, float)) and math.isfinite(value) for value in numbers):
             values = [values[numbers.index(end(numbers))] for end in (min, max)]
@@ -237,24 +237,24 @@ def _trials(study):
     return trials
 
 
-def _header(study, program, jobs):
+def _header(sweep, program, jobs):
     """Who plays what with which files; tries whether the runs can begin."""
-    header = {"format": FORMAT, "title": study.title, "runs": len(study.runs),
-              "study": study.digest(), "version": program.version, "program": program.digest,
-              "files": study.files}
-    return header if study.command else {**header, "files": _files(study, program, jobs)}
+    header = {"format": FORMAT, "title": sweep.title, "runs": len(sweep.runs),
+              "sweep": sweep.digest(), "version": program.version, "program": program.digest,
+              "files": sweep.files}
+    return header if sweep.command else {**header, "files": _files(sweep, program, jobs)}
 
 
-def _files(study, program, jobs):
-    """What the files of the runs hold, as a hash. Raises StudyError where runs cannot begin."""
-    for duration in {run.parameters.get("duration_s", study.fixed.get("duration_s"))
-                     for run in study.runs} - {None}:
+def _files(sweep, program, jobs):
+    """What the files of the runs hold, as a hash. Raises InputError where runs cannot begin."""
+    for duration in {run.parameters.get("duration_s", sweep.fixed.get("duration_s"))
+                     for run in sweep.runs} - {None}:
         if not isinstance(value_of(duration), (int, float)) or not 0 < value_of(duration) < math.inf:
-            raise StudyError(f"{study.place('duration_s')}: duration_s: expected a number above 0, "
+            raise InputError(f"{sweep.place('duration_s')}: duration_s: expected a number above 0, "
                              f"got '{duration}'")
     commands = {}
-    for trial in _trials(study):
-        arguments = study.arguments(trial)
+    for trial in _trials(sweep):
+        arguments = sweep.arguments(trial)
         if "--duration" in arguments:
             at = arguments.index("--duration")
             del arguments[at:at + 2]
@@ -264,17 +264,17 @@ def _files(study, program, jobs):
     first = dict(engines.Local(1).play({0: commands.pop(0)}))
     outcomes = {**first, **(dict(engines.Local(jobs).play(commands))
                             if first[0].summary() else {})}
-    faults = [explained(outcome.why(), study) for _, outcome in sorted(outcomes.items())
+    faults = [explained(outcome.why(), sweep) for _, outcome in sorted(outcomes.items())
               if outcome.summary() is None]
     if faults:
-        raise StudyError("\n".join(dict.fromkeys("\n".join(faults).splitlines())))
+        raise InputError("\n".join(dict.fromkeys("\n".join(faults).splitlines())))
     summaries = [outcome.summary() for _, outcome in sorted(outcomes.items())]
     known = sorted({name.split(".")[0].split("[")[0] for summary in summaries
                     for name in measures_of(summary)} | LATER)
-    for wanted in study.measures:
+    for wanted in sweep.measures:
         top = wanted.split(".")[0].split("[")[0]
         if "*" not in top and "?" not in top and top not in known:
-            raise StudyError(f"{study.file}: measures: no measure '{wanted}', did you mean "
+            raise InputError(f"{sweep.file}: measures: no measure '{wanted}', did you mean "
                              f"'{nearest(top, known)}'?")
     files = "".join(summary["configuration"] for summary in summaries)
     return _digest(files)
@@ -299,8 +299,8 @@ def _refuse_other(folder, header):
         return
     if there["format"] != header["format"]:
         raise SweepError(_other(folder, f"a sweep of another kind ({HEADER})"))
-    if there["study"] != header["study"]:
-        raise SweepError(_other(folder, f"runs of another study ('{there['title']}', "
+    if there["sweep"] != header["sweep"]:
+        raise SweepError(_other(folder, f"runs of another sweep ('{there['title']}', "
                                         f"{there['runs']} runs; this one has {header['runs']})"))
     if there["program"] != header["program"]:
         raise SweepError(_other(folder, f"runs of another program ({there['version']} "
@@ -350,20 +350,20 @@ def _engine(name, scheduler, jobs):
         raise SweepError(f"--scheduler {scheduler}: {error}") from None
 
 
-def _record(study: Study, run: Run, program: Program, outcome: Outcome, seconds: float) -> dict:
+def _record(sweep: Sweep, run: Run, program: Program, outcome: Outcome, seconds: float) -> dict:
     summary = outcome.summary()
-    seed = run.parameters.get("seed", study.fixed.get("seed"))
+    seed = run.parameters.get("seed", sweep.fixed.get("seed"))
     record = {"run": run.number, "parameters": run.parameters,
               "seed": None if seed is None else value_of(seed), "version": program.version,
               "exit_code": outcome.code, "state_hash": None, "fault": None, "measures": None,
               "ended_s": round(seconds, 3)}
     if summary is None:
         record["error"] = outcome.why()
-        if study.command:
+        if sweep.command:
             record["results"] = None
-    elif study.command and not isinstance(summary.get("results"), dict):
-        record |= {"error": f"{study.command[0]}: has no parts that print results", "results": None}
-    elif study.command:
+    elif sweep.command and not isinstance(summary.get("results"), dict):
+        record |= {"error": f"{sweep.command[0]}: has no parts that print results", "results": None}
+    elif sweep.command:
         results = summary["results"]
         record |= {"state_hash": _digest(json.dumps(results, sort_keys=True)), "results": results}
     else:

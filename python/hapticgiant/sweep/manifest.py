@@ -1,6 +1,6 @@
 """The folder of a sweep: who made it, and a line per run that has ended.
 
-study.json says for which study, program and files the lines hold. manifest.jsonl, or for a shard
+sweep.json says for which runs, program and files the lines hold. manifest.jsonl, or for a shard
 manifest.1of8.jsonl, has a line of JSON per run. A line is written whole, at once and at the end, so
 that a sweep that is killed loses the runs that are being played and nothing else.
 """
@@ -15,8 +15,8 @@ import pathlib
 import re
 import sys
 
-HEADER = "study.json"
-KEYS = {"format", "title", "runs", "study", "version", "program", "files"}  # of the header
+HEADER = "sweep.json"
+KEYS = {"format", "title", "runs", "sweep", "version", "program", "files"}  # of the header
 LINES = re.compile(r"manifest(\.\d+of\d+)?\.jsonl")
 TABLES = ("results.parquet", "results.csv", "repeat.sh")
 
@@ -37,7 +37,7 @@ class Folder:
             header = json.loads((self.path / HEADER).read_text(encoding="utf-8"))
         except FileNotFoundError:
             if self._has_runs():
-                raise SweepError(f"{self.path} has runs, but no {HEADER} that says of which study: "
+                raise SweepError(f"{self.path} has runs, but no {HEADER} that says of what: "
                                  "--again forgets them") from None
             self._refuse_files_of_others()
             return None

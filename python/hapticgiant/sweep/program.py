@@ -11,7 +11,7 @@ import shutil
 import subprocess
 import sys
 
-from hapticgiant.sweep.study import Run, Study
+from hapticgiant.sweep.description import Run, Sweep
 
 QUIET = ["--fast", "--no-viewer", "--no-recording", "--flight-recorder", "off"]
 SUMMARY = ["--summary", "/dev/stdout"]
@@ -33,19 +33,19 @@ class Program:
     version: str
     digest: str
 
-    def command(self, study: Study, run: Run) -> list[str]:
+    def command(self, sweep: Sweep, run: Run) -> list[str]:
         """The command of a run, as it can be typed."""
-        if study.command:
-            return [self.file, *study.command, *study.arguments(run)]
-        return self.run(study.arguments(run))
+        if sweep.command:
+            return [self.file, *sweep.command, *sweep.arguments(run)]
+        return self.run(sweep.arguments(run))
 
     def run(self, arguments: list[str]) -> list[str]:
         """`hapticgiant run` with these arguments, as it can be typed."""
         return [self.file, "run", *arguments, *QUIET]
 
-    def measured(self, study: Study, run: Run) -> list[str]:
+    def measured(self, sweep: Sweep, run: Run) -> list[str]:
         """The same, so that it prints what Outcome.summary() reads."""
-        return self.command(study, run) + ([] if study.command else SUMMARY)
+        return self.command(sweep, run) + ([] if sweep.command else SUMMARY)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -16,14 +16,14 @@ OPTIONS = {"scenario": "", "device": "--device", "twin": "--twin", "user": "--us
            "simulation": "--simulation", "plant": "--plant", "sensors": "--sensors",
            "hand": "--hand", "seed": "--seed", "law": "--law", "rate_Hz": "--rate-hz",
            "step_s": "--step", "duration_s": "--duration"}
-"""Options of `hapticgiant run` that a study may give, and how the command line calls them."""
+"""Options of `hapticgiant run` that a sweep or a study may give, and how the command line calls them."""
 FILES = ("scenario", "device", "twin", "user", "simulation")  # options that may name a file
 PARTS = ("scenario", "device", "simulation", "twin", "script")  # before the dot of a key
 MOST = 1_000_000  # of anything that is counted
 
 
-class StudyError(ValueError):
-    """A fault of a study; the message has file, line and column."""
+class InputError(ValueError):
+    """A fault of a file; the message has file, line and column."""
 
 
 def value_of(words: str):
@@ -54,6 +54,26 @@ def arguments_of(options: dict[str, str], folder: pathlib.Path) -> list[str]:
     return words
 
 
+NUMBERS = ("seed", "rate_Hz", "step_s", "duration_s")  # options
+
+
+def request_of(options: dict[str, str], folder: pathlib.Path) -> dict:
+    """The same as a request of `hapticgiant run --request`: docs/reference/run_protocol.md."""
+    request = {"scenario": _file_beside(folder, options.get("scenario", "door"))}
+    for key, value in options.items():
+        if key in NUMBERS:
+            request[_key_of(key)] = value_of(value)
+        elif key in OPTIONS:
+            request[_key_of(key)] = _file_beside(folder, value) if key in FILES else value
+        else:
+            request.setdefault("set", []).append(f"{key}={value}")
+    return request
+
+
+def _key_of(option):
+    return OPTIONS[option].removeprefix("--").replace("-", "_") or option
+
+
 @functools.cache
 def _file_beside(folder, name):
     beside = folder / name
@@ -80,30 +100,30 @@ class Reader:
     def __init__(self, file: str | os.PathLike):
         self.file = pathlib.Path(file)
         self.places = {}
-        """Where a key of a run stands: "study.yaml:7:3"."""
+        """Where a key of a run stands: "door.yaml:7:3"."""
 
     def root(self):
-        """The node of the whole file. Raises StudyError."""
+        """The node of the whole file. Raises InputError."""
         import yaml
 
         try:
             text = self.file.read_text(encoding="utf-8")
             root = yaml.compose(text, Loader=yaml.SafeLoader)
         except (OSError, UnicodeDecodeError) as error:
-            raise StudyError(f"{self.file}: cannot be read: {error}") from None
+            raise InputError(f"{self.file}: cannot be read: {error}") from None
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None)
             place = f"{self.file}:{mark.line + 1}:{mark.column + 1}" if mark else str(self.file)
-            raise StudyError(f"{place}: not valid YAML: {getattr(error, 'problem', error)}") from None
+            raise InputError(f"{place}: not valid YAML: {getattr(error, 'problem', error)}") from None
         self.nodes = yaml.nodes
         if root is None:
-            raise StudyError(f"{self.file}: expected a map of keys, got nothing")
+            raise InputError(f"{self.file}: expected a map of keys, got nothing")
         return root
 
     def fault(self, node, item, what):
         mark = node.start_mark
         place = f"{self.file}:{mark.line + 1}:{mark.column + 1}: "
-        raise StudyError(place + (f"{item}: " if item else "") + what)
+        raise InputError(place + (f"{item}: " if item else "") + what)
 
     def words(self, node):
         """A value in one line, as it can stand behind --set KEY=."""

@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 from hapticgiant.sweep.campaign import SweepError, folder_of
-from hapticgiant.sweep.study import Study
+from hapticgiant.sweep.description import Sweep
 
 RUNS_PER_SHARD = 50  # an element of an array takes Slurm a second
 MOST_SHARDS = 1000  # Slurm's default: MaxArraySize 1001, and we count from 1
@@ -26,19 +26,19 @@ def most_shards() -> int:
     return int(found.group(1)) - 1 if found else MOST_SHARDS
 
 
-def write_script(study: Study, out: str | None, program: str, shards: int | None, cpus: int,
+def write_script(sweep: Sweep, out: str | None, program: str, shards: int | None, cpus: int,
                  options: list[str]) -> pathlib.Path:
     """Writes slurm.sh into the folder of the sweep. Raises SweepError."""
     most = most_shards()
     if shards is None:
-        shards = min(most, -(-len(study.runs) // RUNS_PER_SHARD))
-    if not 1 <= shards <= min(most, len(study.runs)):
-        raise SweepError(f"--shards: expected 1 to {min(most, len(study.runs))} (runs, and the "
+        shards = min(most, -(-len(sweep.runs) // RUNS_PER_SHARD))
+    if not 1 <= shards <= min(most, len(sweep.runs)):
+        raise SweepError(f"--shards: expected 1 to {min(most, len(sweep.runs))} (runs, and the "
                          f"MaxArraySize of this Slurm), got {shards}")
-    folder = folder_of(study, out).resolve()
+    folder = folder_of(sweep, out).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    command = [program, "sweep", str(study.file.resolve()), "--out", str(folder)]
-    lines = ["#!/bin/sh", f"#SBATCH --job-name={shlex.quote(study.file.stem)}",
+    command = [program, "sweep", str(sweep.file.resolve()), "--out", str(folder)]
+    lines = ["#!/bin/sh", f"#SBATCH --job-name={shlex.quote(sweep.file.stem)}",
              f"#SBATCH --array=1-{shards}", f"#SBATCH --cpus-per-task={cpus}",
              f"#SBATCH --output={folder}/slurm-%a.txt",
              *(f"#SBATCH {option}" for option in options),

@@ -13,25 +13,25 @@ import os
 import pathlib
 
 from hapticgiant.sweep.reader import value_of
-from hapticgiant.sweep.study import Study
+from hapticgiant.sweep.description import Sweep
 
 
-def rows_of(study: Study, records: dict[int, dict]) -> list[dict]:
+def rows_of(sweep: Sweep, records: dict[int, dict]) -> list[dict]:
     """One dict per run that has ended: run, parameters, exit_code, state_hash, fault, measures."""
     chosen = {}  # name of a measure: is in the table
 
     def is_chosen(name):
         if name not in chosen:
-            chosen[name] = not study.measures or any(
-                name == wanted or fnmatch.fnmatchcase(name, wanted) for wanted in study.measures)
+            chosen[name] = not sweep.measures or any(
+                name == wanted or fnmatch.fnmatchcase(name, wanted) for wanted in sweep.measures)
         return chosen[name]
 
     rows = []
-    for run in study.runs:
+    for run in sweep.runs:
         record = records.get(run.number)
         if record is None:
             continue
-        if study.command:
+        if sweep.command:
             for number, result in sorted((record["results"] or {}).items(), key=lambda it: int(it[0])):
                 rows.append({"run": int(number), **{
                     key: value if isinstance(value, (int, float, str, type(None))) else

@@ -1,6 +1,6 @@
 """Tables and pictures of studies and of computing times.
 
-Usage: studies_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
+Usage: series_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
 import contextlib
@@ -15,7 +15,7 @@ import numpy as np
 from report_test import overlapping  # also finds the package
 
 from hapticgiant import figures
-from hapticgiant.report import studies, timing
+from hapticgiant.report import series, timing
 
 
 class Reports(unittest.TestCase):
@@ -42,7 +42,7 @@ def seeded(trial=0, excess=0.0, **more):
 class Seeds(Reports):
     def test_the_table_has_median_and_worst(self):
         runs = [seeded(excess=1e-3 * i * i) for i in range(3)]
-        verdict, said, folder = self.report(studies, {"kind": "seeds", "runs": runs})
+        verdict, said, folder = self.report(series, {"kind": "seeds", "runs": runs})
         self.assertEqual(verdict, 0)
         self.assertIn("| 3 of 3 | 3 of 3 | 0.00 / 0.00 | - | 1.00 / 4.00 | elbow x |",
                       (folder / "seeds.md").read_text())
@@ -51,7 +51,7 @@ class Seeds(Reports):
     def test_a_fault_is_reported_and_makes_the_verdict(self):
         runs = [seeded(), seeded(trial=1, hand="stiff", held=False, fault=100, seed=4, ended_s=12.34,
                                  fault_text="measured value is not finite", expected_events=0)]
-        verdict, said, folder = self.report(studies, {"kind": "seeds", "runs": runs})
+        verdict, said, folder = self.report(series, {"kind": "seeds", "runs": runs})
         self.assertEqual(verdict, 1)
         line = ("- walk, stiff hand: 100 measured value is not finite in 1 runs, first at 12.34 s with "
                 "seed 4\n")
@@ -82,7 +82,7 @@ class Contact(Reports):
         case = contact_case()
         docs = pathlib.Path(tempfile.mkdtemp())
         (docs / "contact.md").write_text("a\n<!-- figures: begin -->\nb\n<!-- figures: end -->\nc\n")
-        verdict, said, _ = self.report(studies, {"kind": "contact", "seeds": 4, "settled_s": 0.5,
+        verdict, said, _ = self.report(series, {"kind": "contact", "seeds": 4, "settled_s": 0.5,
                                                  "cases": [case]}, docs)
         self.assertEqual(verdict, 0)
         self.assertIn("1 of 1 without compliance, 0 with it", said)
@@ -102,7 +102,7 @@ class Inertial(Reports):
                     "encoders": errors, "inertial": errors, "lateness_s": 2e-3, "largest_change": 1.5,
                     "fault": 111 if seed == 9 else 0, "fault_text": "torque"}
         runs = [run(units, seed) for units in ("all", "arm") for seed in (1, 9, 3)]
-        _, said, _ = self.report(studies, {"kind": "inertial", "runs": runs})
+        _, said, _ = self.report(series, {"kind": "inertial", "runs": runs})
         lines = [line.split() for line in said.splitlines()]
         self.assertEqual(lines[2][:9], ["walk", "-", "encoders,", "reference", "3.00", "0.300", "0.000",
                                         "2.00", "0.300"])
@@ -114,7 +114,7 @@ class Inertial(Reports):
         felt = {"transparency_Hz": 15.6, "latency_s": 2.9e-3, "extra_N": 0.19, "vibration_m_per_s2": 0.06,
                 "centroid_Hz": 97.7, "joint_error_rad": 1e-3, "light_normal_m_per_s": 5e-3,
                 "light_stiff_m_per_s": 7e-3, "wall": ["stable", "hunts"]}
-        _, said, _ = self.report(studies, {"kind": "inertial", "runs": [],
+        _, said, _ = self.report(series, {"kind": "inertial", "runs": [],
                                            "felt": {"encoders alone": felt}})
         self.assertRegex(said, r"encoders alone +15.6 +2.9 +0.19 +0.060 +98 +1.00 +5.0 +7.0  stable, hunts")
 
@@ -131,7 +131,7 @@ class FreeSpace(Reports):
         variants = [variant("as shipped", 0.2, 0.06, takes_away=False), variant("no noise", 0.15, 0.03),
                     variant("no friction", 0.1, 0.07), variant("slow", 0.01, 0.01, takes_away=False),
                     variant("dead", 0.0, 0.0, failure="fault 100")]
-        _, said, _ = self.report(studies, {"kind": "free-space", "force_below_Hz": 20,
+        _, said, _ = self.report(series, {"kind": "free-space", "force_below_Hz": 20,
                                            "vibration_above_Hz": 20, "variants": variants})
         self.assertIn("most by 'no friction': 0.100 instead of 0.200 N\n", said)
         self.assertIn("most by 'no noise': 0.030 instead of 0.060 m/s^2\n", said)
@@ -148,7 +148,7 @@ class Impedance(Reports):
         omega = 2.0 * np.pi
         spring = run(1.0, -1j * 2e4 / omega, is_rigid=True, static_peak_m=2e-3, static_end_m=1e-3)
         half = run(1.0, 0.5 * (1j * omega * 6.0 + 4.0), is_rigid=False)
-        _, said, _ = self.report(studies, {
+        _, said, _ = self.report(series, {
             "kind": "impedance", "twin": {"mass_kg": 6.0, "damping_Ns_per_m": 4.0}, "static_force_N": 50.0,
             "static_end_s": 1.55, "runs": [half, spring]})
         self.assertRegex(said, r"modal, along x +50.0 +2.00 mm +1.00 mm\n")
@@ -169,7 +169,7 @@ def stability():
 
 class Stability(Reports):
     def test_text_and_map_have_all_verdicts_and_masses(self):
-        verdict, said, folder = self.report(studies, stability())
+        verdict, said, folder = self.report(series, stability())
         self.assertEqual(verdict, 0)
         for line in ("300 N/m       X    h       1.25", "stiff         U    U       none",
                      ".    r       <= 0.1", "2 of 12 cells hunt (h), 6 swing or diverge"):

@@ -1,4 +1,4 @@
-"""What `hapticgiant experiment contact|free-space|impedance|inertial|seeds|stability-map` shows."""
+"""What `hapticgiant experiment contact|free-space|impedance|inertial|seeds|stability-map` shows: series of runs."""
 
 import itertools
 import json

@@ -1,6 +1,6 @@
-"""A study: a YAML file that says which runs there are.
+"""A sweep: a YAML file that says which runs there are.
 
-A study of another command of the program is written by that command (command, parts, files): its
+A sweep of another command of the program is written by that command (command, parts, files): its
 runs are the shares of its work, `--part I/N`.
 
 fixed and parameters have the same keys: an option of `hapticgiant run` (seed, hand, duration_s), or
@@ -18,7 +18,7 @@ import math
 import os
 import pathlib
 
-from hapticgiant.sweep.reader import (MOST, Placed, Reader, StudyError, arguments_of, value_of)
+from hapticgiant.sweep.reader import (MOST, InputError, Placed, Reader, arguments_of, value_of)
 
 METHODS = ("latin_hypercube", "sobol")
 
@@ -32,8 +32,8 @@ class Run:
 
 
 @dataclasses.dataclass
-class Study(Placed):
-    """What load_study() returns."""
+class Sweep(Placed):
+    """What load_sweep() returns."""
 
     file: pathlib.Path
     title: str
@@ -41,11 +41,11 @@ class Study(Placed):
     runs: list[Run]
     measures: list[str]
     places: dict[str, str]
-    """Where a key stands: "study.yaml:7:3"."""
+    """Where a key stands: "sweep.yaml:7:3"."""
     command: list[str] = dataclasses.field(default_factory=list)
     """Words of a command that plays a share of its work per run; empty: `run`."""
     files: str = ""
-    """Of such a study, what its files hold, as a hash."""
+    """Of such a sweep, what its files hold, as a hash."""
 
     def arguments(self, run: Run) -> list[str]:
         """The words after `hapticgiant run` that are this run's own."""
@@ -61,18 +61,18 @@ class Study(Placed):
         return hashlib.sha256(json.dumps(every).encode()).hexdigest()[:16]
 
 
-def load_study(file: str | os.PathLike) -> Study:
-    """The study of a file. Raises StudyError with place, rule and nearest name."""
-    return _Reader(pathlib.Path(file)).study()
+def load_sweep(file: str | os.PathLike) -> Sweep:
+    """The sweep of a file. Raises InputError with place, rule and nearest name."""
+    return _Reader(pathlib.Path(file)).sweep()
 
 
 class _Reader(Reader):
-    def study(self):
+    def sweep(self):
         root = self.root()
         parts = self.map(root, "", ("title", "fixed", "parameters", "samples", "rows", "measures",
                                     "command", "parts", "files"))
         if "command" in parts:
-            return self.study_of_a_command(root, parts)
+            return self.sweep_of_a_command(root, parts)
         for key in ("parts", "files"):
             if key in parts:
                 self.fault(parts[key], key, "only beside 'command'")
@@ -97,11 +97,11 @@ class _Reader(Reader):
         if measures is not None and not isinstance(measures, self.nodes.SequenceNode):
             self.fault(measures, "measures", "expected a list of names, * stands for anything")
         title = parts.get("title")
-        return Study(self.file, self.words(title) if title else self.file.stem, fixed, runs,
+        return Sweep(self.file, self.words(title) if title else self.file.stem, fixed, runs,
                      [self.words(node) for node in measures.value] if measures else [],
                      self.places)
 
-    def study_of_a_command(self, root, parts):
+    def sweep_of_a_command(self, root, parts):
         for needed in ("command", "parts"):
             if needed not in parts:
                 self.fault(root, "", f"key '{needed}' is missing")
@@ -111,7 +111,7 @@ class _Reader(Reader):
             self.fault(parts["command"], "command", "expected a list of words")
         command = [self.words(word) for word in parts["command"].value]
         count = self.count(parts["parts"], "parts")
-        return Study(self.file, self.words(parts["title"]) if "title" in parts else command[0], {},
+        return Sweep(self.file, self.words(parts["title"]) if "title" in parts else command[0], {},
                      [Run(i, {"part": f"{i}/{count}"}) for i in range(1, count + 1)], [], {},
                      command, self.words(parts["files"]) if "files" in parts else "")
 
