@@ -2,7 +2,7 @@
 ///
 /// Between the points the function is a cubic spline: continuous with slope and curvature. Where it
 /// repeats it is so from the last point to the first of the next turn, too; where it does not, it
-/// ends without curvature and goes on straight.
+/// ends without curvature and continues straight.
 #pragma once
 
 #include <memory>

@@ -52,7 +52,7 @@ def kinds(reports):
 
 
 class RunProtocol(TemporaryFolder):
-    def test_a_run_is_told_once_and_says_what_happens(self):
+    def test_a_run_takes_one_request_and_says_what_happens(self):
         reports, code, out, err = Played({**FAST, "scenario": "door"}).end()
         self.assertEqual((code, err), (0, ""))
         phases = [report["phase"] for report in reports if "phase" in report]
@@ -63,9 +63,9 @@ class RunProtocol(TemporaryFolder):
         summary = self.folder / "summary.json"
         subprocess.run([PROGRAM, "run", "door", "--fast", "--no-recording", "--flight-recorder", "off",
                         "--summary", summary], check=True, capture_output=True)
-        told = json.loads(summary.read_text())
-        self.assertEqual(reports[-1]["summary"]["state_hash"], told["state_hash"])
-        self.assertEqual(reports[-1]["summary"].keys(), told.keys())
+        written = json.loads(summary.read_text())
+        self.assertEqual(reports[-1]["summary"]["state_hash"], written["state_hash"])
+        self.assertEqual(reports[-1]["summary"].keys(), written.keys())
         self.assertIn("HapticGiant", out)
 
     def test_the_options_of_a_request_are_those_of_the_command_line(self):

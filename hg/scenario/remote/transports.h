@@ -45,7 +45,7 @@ struct Transport {
   std::string_view start_test_refusal, commission_refusal;
   /// Why both are refused for a device that is a simulation; empty = they are possible.
   std::string_view simulation_refusal;
-  /// `hapticgiant commission` tests that the device stops by itself when commands fail to come.
+  /// `hapticgiant commission` tests that the device stops when no commands come.
   bool tests_silence = false;
   /// Reaches the device of the scenario. Files that describe the machine become sources of the
   /// scenario. Throws SetupError.

@@ -55,7 +55,7 @@ void open_if_ready(Contact& contact, Connection& connection, const MachineAddres
   connection.is_simulated = contact.is_simulated;
 }
 
-void move_by_itself(const Transport& transport, device::ConnectedDevice& device,
+void move_alone(const Transport& transport, device::ConnectedDevice& device,
                     const RunTiming& timing, const config::Scenario& scenario) {
   const VectorM start = find_start(scenario.device, scenario.twin).q_m;
   std::async(std::launch::async, [&] {
@@ -91,7 +91,7 @@ Connection connect_to_run(const MachineAddress& machine, const RunTiming& timing
     connection.posture = start_test::check_posture(memory, scenario.device, *connection.device);
   }
   if (machine.moves_to_start && transport.move_to != nullptr) {
-    move_by_itself(transport, *connection.device, timing, scenario);
+    move_alone(transport, *connection.device, timing, scenario);
   }
   if (!connection.is_machine) connection.note = transport.note(*connection.device);
   return connection;

@@ -142,8 +142,8 @@ PreparedWay prepare_way(const ScenarioOptions& world, const MachineAddress& mach
   const config::Scenario scenario = probe->scenario;
   if (!scenario.device.monitor.has_dead_man) {
     throw SetupError(fmt::format(
-        "--move-to-start: {} has no dead-man switch: it cannot know that nobody holds its handle, "
-        "and does not move by itself",
+        "--move-to-start: {} has no dead-man switch: it cannot know whether a hand holds its "
+        "handle, and does not move on its own",
         scenario.device.name));
   }
   const Start start = find_start(scenario.device, scenario.twin);

@@ -16,7 +16,7 @@ namespace hg::scenario {
 constexpr int kNotThere = 3;  ///< exit code of a run whose device has not come to the start
 
 /// Why pages change nothing about the way.
-inline constexpr char kMovesItself[] = "the device moves to the start by itself";
+inline constexpr char kMovesItself[] = "the device moves to the start on its own";
 
 /// A run along the way, prepared.
 struct PreparedWay {

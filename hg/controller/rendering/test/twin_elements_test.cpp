@@ -69,7 +69,7 @@ TEST(TwinElements, KeysAreThoseOfTheJoint) {
             "joints.root.damping_Ns_per_m");
 }
 
-// a magnet that holds the joint at its rest, as someone may add it
+// a magnet that holds the joint at its rest, as a later version may add it
 TEST(TwinElements, OneThatIsAddedIsLeftOutAndCountsInAllSums) {
   std::vector<Element> elements(kElements.begin(), kElements.end());
   elements.push_back({.key = "magnet",

@@ -10,7 +10,7 @@
 namespace hg::scenario {
 namespace {
 
-TEST(Transports, EachHasItsSchemeAndTellsWhyNoStartTestIsRequired) {
+TEST(Transports, EachHasItsSchemeAndSaysWhyNoStartTestIsRequired) {
   std::set<std::string_view> schemes;
   for (const Transport* transport : transports()) {
     EXPECT_TRUE(schemes.insert(transport->scheme).second) << transport->scheme;
