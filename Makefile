@@ -92,26 +92,30 @@ define run_tests
   --tests-regex '^($(subst $(space),|,$(strip $(2))))$$'
 endef
 
-.PHONY: demo build wheel deb docs format clean \
+.PHONY: demo demo-build test-build build wheel deb docs format clean \
   test test-wheel test-packages check headers lint audit sanitize sanitizer-set-up rtsan rtsan-tests fuzz \
   franka foxglove ros2 ros1 notebooks pictures sweep-engines soak soak-machines \
   bench bench-instructions experiments arms
 
-demo:
+demo: demo-build
+	@$(BUILD)/hapticgiant run $(ARGS)
+
+demo-build:
 	@tools/setup.sh build
 	@tools/configure.sh $(PRESET) build
 	@cmake --build $(BUILD) --target hapticgiant
-	@$(BUILD)/hapticgiant run $(ARGS)
 
 build:
 	@tools/setup.sh build
 	@tools/configure.sh $(PRESET) build
 	@cmake --build $(BUILD) --target programs
 
-test:
+test-build:
 	@tools/setup.sh test
 	@tools/configure.sh $(PRESET) test
 	@cmake --build $(BUILD)
+
+test: test-build
 	@PATH="$(CURDIR)/.venv/bin:$$PATH" ctest --test-dir $(BUILD) --output-on-failure --no-tests=error
 
 # pack,wheel or deb: builds what it is made of, then packs it

@@ -36,7 +36,8 @@ def flags_of(build):
                 includes[(word,)] = None
     march = [word for word in commands[0] if word.startswith("-march")]
     flags = ["-std=c++20", "-D_FILE_OFFSET_BITS=64", "-w", *march]
-    return commands[0][0], flags + [word for pair in includes for word in pair]
+    compiler = next(word for word in commands[0] if not word.endswith("ccache"))
+    return compiler, flags + [word for pair in includes for word in pair]
 
 
 def own_includes(header):

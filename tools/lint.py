@@ -20,10 +20,11 @@ import subprocess
 import sys
 
 import house_rules
+import together
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["hg", "apps", "bench", "python/src"]
-MOST_TOGETHER = 16  # sources read as one; more need more memory than they save time
+MOST_TOGETHER = 16  # sources read as one
 CLANG_TIDY = pathlib.Path(sys.executable).with_name("clang-tidy")  # of the .venv
 FINDING = re.compile(r"(\S+?):(\d+):(\d+): (?:warning|error): (.*)")
 
@@ -40,29 +41,20 @@ def flags_of(command):
     return tuple(flags)
 
 
-def own_names(source):
-    """Names that stand in an unnamed namespace of the source, or look like it."""
-    text = source.read_text()
-    names = set(re.findall(r"^(?:struct|class|enum class|enum) (\w+)", text, re.MULTILINE))
-    names |= set(re.findall(r"^(?:constexpr|const|using|inline|static)\b.*?\b(\w+)(?:\[.*\])? ?(?:=|\{)",
-                            text, re.MULTILINE))
-    names |= set(re.findall(r"^(?:[\w:<>,*&\[\]]+ )+[*&]?(\w+)\([^;]*?\)[^;(]*\{", text, re.MULTILINE))
-    return names
+def sources_of(entry):
+    """The sources of ours that a command compiles: itself, or those that it compiles as one."""
+    source = pathlib.Path(entry["file"])
+    if source.is_relative_to(ROOT) and "Unity" not in source.parts:
+        return [source]
+    listed = re.findall(r'#include "(.*[.]cpp)"', source.read_text()) if source.suffix == ".cxx" else []
+    return [pathlib.Path(name) for name in listed]
 
 
 def grouped(sources):
     """Lists of sources that can be read as one, with their flags."""
-    groups = []  # flags, names, sources
-    for source, flags in sources:
-        names = own_names(source)
-        for group in groups:
-            if group[0] == flags and not group[1] & names and len(group[2]) < MOST_TOGETHER:
-                group[1].update(names)
-                group[2].append(source)
-                break
-        else:
-            groups.append((flags, set(names), [source]))
-    return [(flags, members) for flags, _, members in groups]
+    return [(flags, members) for flags in sorted(set(sources.values()))
+            for members in together.grouped(
+                sorted(source for source in sources if sources[source] == flags), MOST_TOGETHER)]
 
 
 def tidy(flags, sources, work):
@@ -98,14 +90,12 @@ def main():
     work.mkdir(exist_ok=True)
     sources = {}
     for entry in json.loads((arguments.build / "compile_commands.json").read_text()):
-        source = pathlib.Path(entry["file"])
-        if not source.is_relative_to(ROOT):
-            continue
-        name = source.relative_to(ROOT)
-        if "test" not in name.parts and any(name.is_relative_to(f) for f in arguments.folders):
-            sources.setdefault(source, flags_of(entry["command"]))
+        for source in sources_of(entry):
+            name = source.relative_to(ROOT)
+            if "test" not in name.parts and any(name.is_relative_to(f) for f in arguments.folders):
+                sources.setdefault(source, flags_of(entry["command"]))
 
-    groups = sorted(grouped(sorted(sources.items())), key=lambda group: -len(group[1]))
+    groups = sorted(grouped(sources), key=lambda group: -len(group[1]))
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         findings = set().union(*pool.map(lambda group: findings_of(*group, work), groups))
     faults, _ = house_rules.check_tree()

@@ -14,7 +14,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FOLDERS = ["hg", "apps", "bench", "tests", "python/src", "tools/pages"]
-MOST_SOURCES, MOST_LINES = 8, 1600  # of a group: more need more memory than they save time
+MOST_TOGETHER, MOST_LINES = 8, 1600  # more need more memory than they save time
 HEAVY = ("<pinocchio/", "chain_parts.h", "<boost/beast", "<CLI/")  # its source is compiled alone: 1 GB
 
 
@@ -27,17 +27,15 @@ def own_names(text):
     return names | set(re.findall(r"^TEST(?:_F|_P)?\((\w+, \w+)\)", text, re.MULTILINE))
 
 
-def grouped(sources):
-    """Lists of sources that can be read as one."""
+def grouped(sources, most=MOST_TOGETHER, most_lines=10**6):
+    """Lists of sources that can be read as one, of at most so many sources and lines."""
     groups = []  # names, lines, sources
     for source in sources:
         text = source.read_text()
-        if any(f"#include {header}" in text or f"/{header}" in text for header in HEAVY):
-            continue
         names, lines = own_names(text), text.count("\n")
         for group in groups:
-            if (not group[0] & names and len(group[2]) < MOST_SOURCES
-                    and group[1] + lines <= MOST_LINES):
+            if (not group[0] & names and len(group[2]) < most
+                    and group[1] + lines <= most_lines):
                 group[0].update(names)
                 group[1] += lines
                 group[2].append(source)
@@ -47,11 +45,17 @@ def grouped(sources):
     return [members for *_, members in groups]
 
 
+def is_heavy(source):
+    text = source.read_text()
+    return any(f"#include {header}" in text or f"/{header}" in text for header in HEAVY)
+
+
 def main():
     folders = sorted({path.parent for folder in FOLDERS for path in (ROOT / folder).rglob("*.cpp")})
     lines = []
     for folder in folders:
-        for number, members in enumerate(grouped(sorted(folder.glob("*.cpp"))), 1):
+        light = [source for source in sorted(folder.glob("*.cpp")) if not is_heavy(source)]
+        for number, members in enumerate(grouped(light, most_lines=MOST_LINES), 1):
             if len(members) > 1:
                 lines.append("set_source_files_properties(\n  {}\n  PROPERTIES UNITY_GROUP {}_{})".format(
                     "\n  ".join(f"${{PROJECT_SOURCE_DIR}}/{m.relative_to(ROOT)}" for m in members),
