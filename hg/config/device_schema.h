@@ -17,8 +17,6 @@ namespace hg::config {
 inline constexpr std::array<Choice<bool>, 2> kKinematics = {
     {{"haptic_giant", true}, {"generic", false}}};
 
-inline constexpr JointKey kBrake = {"ddq_brake_rad_per_s2", "ddq_brake_m_per_s2"};
-
 template <class V>
 void describe_chain(V& v, DeviceDraft& d) {
   v.words("name", d.device.name, "name of the device", Need::kRequired);

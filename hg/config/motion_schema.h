@@ -11,6 +11,8 @@
 
 namespace hg::config {
 
+inline constexpr JointKey kBrake = {"ddq_brake_rad_per_s2", "ddq_brake_m_per_s2"};
+
 template <class V>
 void describe(V& v, rendering::RenderingOptions& options, std::size_t manipulator_joints) {
   LawPreset law = LawPreset::kGauss;
