@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
-#include <cstdio>
+#include <filesystem>
 #include <sstream>
 #include <utility>
 
@@ -93,7 +93,10 @@ Option Command::add_option(const std::string& name, T& value, const std::string&
 }
 
 template Option Command::add_option(const std::string&, std::string&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::filesystem::path&,
+                                    const std::string&) const;
 template Option Command::add_option(const std::string&, int&, const std::string&) const;
+template Option Command::add_option(const std::string&, unsigned int&, const std::string&) const;
 template Option Command::add_option(const std::string&, double&, const std::string&) const;
 template Option Command::add_option(const std::string&, std::uint16_t&, const std::string&) const;
 template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&) const;

@@ -135,6 +135,23 @@ class Commands(unittest.TestCase):
                 self.assertRegex(result.stdout, r"start +there after \d+\.\d s")
                 self.assertNotIn("not armed", result.stdout)
 
+    def test_the_way_to_the_start_is_a_phase_of_its_own(self):
+        with Server("door", "--fast", "--stays", "--user", "mouse") as server:
+            report, write_end = os.pipe()
+            request = {"scenario": "path", "user": "mouse", "fast": True, "duration": 1, "recording": False,
+                       "device_address": server.address, "move_to_start": True}
+            result = subprocess.run([PROGRAM, "run", "--request", "-", "--report-to", str(write_end)],
+                                    input=json.dumps(request), pass_fds=(write_end,), text=True,
+                                    capture_output=True, check=False)
+            os.close(write_end)
+            with open(report, encoding="utf-8") as lines:
+                phases = [each["phase"] for each in map(json.loads, lines) if "phase" in each]
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        way = [name == "moving" for name in phases]
+        self.assertTrue(way[0])
+        self.assertEqual(way, sorted(way, reverse=True))
+        self.assertEqual(phases[-1], "over")
+
     def test_a_start_out_of_reach_is_refused_before_anything_moves(self):
         with Server("door", "--fast", "--stays", "--user", "mouse") as server:
             result = run("path", "--fast", "--duration", "0.3", "--device-address", server.address,

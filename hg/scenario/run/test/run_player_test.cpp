@@ -8,6 +8,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ class Log final : public RunObserver {
  public:
   void phase(RunPhase phase, double, const std::string&) override {
     add("phase " + std::string(to_string(phase)));
+    if (phase == RunPhase::kRunning && at_running) at_running();
   }
   void event(double, std::string_view name, std::string_view) override {
     add("event " + std::string(name));
@@ -54,6 +56,7 @@ class Log final : public RunObserver {
   std::string closing_lines;
   double stop_at_s = -1.0;  ///< sets `stop` then; negative = never
   std::atomic<bool> stop{false};
+  std::function<void()> at_running;
 
  private:
   void add(std::string line) { lines.push_back(std::move(line)); }
@@ -128,19 +131,32 @@ TEST_F(RunPlayerTest, AFaultEndsWithThree) {
   EXPECT_TRUE(log_.has("fault emergency stop"));
 }
 
+/// From now on no file of this program grows.
+class FullDisk {
+ public:
+  FullDisk() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+  void begin() const {
+    const rlimit none = {.rlim_cur = 1, .rlim_max = before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &none);
+  }
+
+ private:
+  rlimit before_{};
+};
+
 TEST_F(RunPlayerTest, ARecordingThatIsIncompleteEndsWithFour) {
   if (!recording::recording_available()) GTEST_SKIP();
   plan_.world.scenario = "free_space";
   plan_.records.has_recording = true;
-  plan_.timing.duration_s = 3.0;
-  log_.stop_at_s = 0.0;
-  std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit small = {.rlim_cur = 20'000, .rlim_max = before.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
+  plan_.timing.duration_s = 600.0;
+  log_.stop_at_s = 3.0;
+  const FullDisk disk;
+  log_.at_running = [&] { disk.begin(); };
   const RunOutcome outcome = play(plan_, log_, log_.stop);
-  setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(outcome.exit_code, kRecordingIncomplete) << log_.closing_lines;
   EXPECT_TRUE(std::ranges::any_of(log_.lines, [](const std::string& line) {
     return line.starts_with("problem recording ended early");
