@@ -29,6 +29,7 @@
 #include "hg/recording/column_facts.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/recording/rosbag2.h"
+#include "hg/scenario/names.h"
 
 namespace hg::apps {
 namespace {

@@ -17,6 +17,7 @@
 #include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
+#include "apps/offline/experiment_run.h"
 #include "hg/core/error.h"
 
 namespace hg::apps {

@@ -21,6 +21,7 @@
 #include "hg/core/scratch_folder.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/names.h"
 
 namespace hg::apps {
 namespace {
