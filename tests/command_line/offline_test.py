@@ -1,0 +1,59 @@
+"""Commands of programs beside hapticgiant: the same name and help, and one sentence where one is not built.
+
+    offline_test.py PROGRAM
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
+OFFLINE = PROGRAM.with_name("hapticgiant-offline")
+
+
+def run(*words, code=0):
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
+    assert done.returncode == code, done
+    return done.stdout, done.stderr
+
+
+def commands(program):
+    """Name -> description of the subcommands in the help of a program."""
+    out, _ = run(program, "--help")
+    return dict(re.findall(r"^  ([a-z][\w-]*) +(\S.*)$", out.split("Subcommands:")[1], re.MULTILINE))
+
+
+class Offline(unittest.TestCase):
+    def test_every_command_has_the_description_that_hapticgiant_shows(self):
+        shown, offline = commands(PROGRAM), commands(OFFLINE)
+        self.assertIn("export", offline)
+        for name, description in offline.items():
+            self.assertEqual(shown.get(name), description)
+
+    def test_help_and_errors_are_those_of_the_command(self):
+        out, _ = run(PROGRAM, "export", "--help")
+        self.assertEqual(out, run(OFFLINE, "export", "--help")[0])
+        self.assertIn("--list-columns", out)
+        _, err = run(PROGRAM, "hqp", "solv", code=2)
+        self.assertIn("did you mean 'solve'?", err)
+
+    def test_a_program_that_is_not_built_is_named_in_one_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            alone = shutil.copy(PROGRAM, folder)
+            for words in (["export", "x.mcap"], ["bridge", "ros2"]):
+                out, err = run(alone, *words, code=2)
+                self.assertEqual((out, err.count("\n")), ("", 1))
+                self.assertIn("make build", err)
+
+    def test_options_of_earlier_versions_name_what_to_use(self):
+        for option, instead in (("--bounds", "--law as_published"), ("--braking", "--law together")):
+            _, err = run(PROGRAM, "run", "door", option, "paper", code=2)
+            self.assertIn(f"{option}: is no option any more: use {instead}", err)
+
+
+if __name__ == "__main__":
+    unittest.main()
