@@ -15,7 +15,7 @@
 namespace hg::rendering {
 namespace {
 
-struct Braking : testing::Test {
+struct BrakingTest : testing::Test {
   DeviceModel device = unlimited_device();
   DeviceMotion motion = {kGantryAtHome, VectorP::Zero(2), kPosture, VectorM::Zero(6)};
 
@@ -45,7 +45,7 @@ struct Braking : testing::Test {
   }
 };
 
-TEST_F(Braking, TakesOneMotorToItsBound) {
+TEST_F(BrakingTest, TakesOneMotorToItsBound) {
   for (const bool moves : {false, true}) {
     if (moves) motion.dq_m = posture({0.3, -0.4, 0.2, 0.5, -0.3, 0.6});
     for (int axis = 0; axis < 3; ++axis) {
@@ -57,7 +57,7 @@ TEST_F(Braking, TakesOneMotorToItsBound) {
   }
 }
 
-TEST_F(Braking, IncludesTheForceOfTheHand) {
+TEST_F(BrakingTest, IncludesTheForceOfTheHand) {
   const Eigen::Vector3d along = -Eigen::Vector3d::UnitY();
   const double free = largest_acceleration(device, motion, along);
   motion.w_H[1] = 40.0;
@@ -68,7 +68,7 @@ TEST_F(Braking, IncludesTheForceOfTheHand) {
   EXPECT_EQ(largest_acceleration(device, motion, along), 0.0);
 }
 
-TEST_F(Braking, IsTheRatingWithoutMotorModel) {
+TEST_F(BrakingTest, IsTheRatingWithoutMotorModel) {
   device.has_torque_limits = false;
   EXPECT_TRUE(std::isinf(largest_acceleration(device, motion, Eigen::Vector3d::UnitX())));
   CartesianLimit limit = {.name = "handle", .frame = device.handle};
