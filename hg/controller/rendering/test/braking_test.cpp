@@ -19,7 +19,7 @@ struct BrakingTest : testing::Test {
   DeviceModel device = unlimited_device();
   DeviceMotion motion = {kGantryAtHome, VectorP::Zero(2), kPosture, VectorM::Zero(6)};
 
-  Braking() {
+  BrakingTest() {
     const auto motors = reference_actuators();
     device.actuators.assign(motors.begin(), motors.end());
     device.has_torque_limits = true;
