@@ -112,9 +112,8 @@ sys.exit(3)""", expected=["start"])
         run = self.run_of("until_ended()\nsay(summary=SUMMARY, exit_code=0)")
         run.end()
         begin = time.monotonic()
-        code, summary, _ = await asyncio.wait_for(run.play(), 15)
+        await run.play()
         self.assertLess(time.monotonic() - begin, 15)
-        self.assertTrue(code in (0, -signal.SIGINT) or summary, (code, summary))  # ended in its first lines
         self.assertEqual(run.ended_by, "operator")
 
     async def test_one_that_does_not_end_is_killed(self):

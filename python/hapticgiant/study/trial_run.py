@@ -14,6 +14,7 @@ import json
 import os
 import signal
 import subprocess
+import tempfile
 
 import aiohttp
 
@@ -86,18 +87,18 @@ def played_at_once(program: str, request: dict) -> tuple[int, dict | None, str]:
     """Plays a run to its end: exit code (minus the signal), its summary, and why there is none."""
     found = Reports()
     end, child_end = os.pipe()
-    with open(end, encoding="utf-8", errors="replace") as lines:
+    with open(end, encoding="utf-8", errors="replace") as lines, tempfile.TemporaryFile("w+", errors="replace") as errors:
         process = subprocess.Popen(command_of(program, child_end), stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True, pass_fds=(child_end,), start_new_session=True)
+                                   stderr=errors, text=True, pass_fds=(child_end,), start_new_session=True)
         os.close(child_end)
         with contextlib.suppress(BrokenPipeError):
             process.stdin.write(json.dumps(request))
             process.stdin.close()
         for line in lines:
             found.take(json.loads(line))
-        said = process.stderr.read()
-        process.stderr.close()
-    code = process.wait()
+        code = process.wait()
+        errors.seek(0)
+        said = errors.read()
     return code, found.summary, "\n".join(found.problems) or said.strip() or f"the run ended with {code} and no summary"
 
 
@@ -158,7 +159,7 @@ class TrialRun:
             await self._pages.aclose()
             with contextlib.suppress(ProcessLookupError):
                 self._process.kill()
-        return code, self._reports.summary, "\n".join([*self._reports.problems, "".join(self._said).strip()]).strip()
+        return code, self._reports.summary, "\n".join(self._reports.problems) or "".join(self._said).strip()
 
     async def _send_request(self):
         with contextlib.suppress(BrokenPipeError, ConnectionResetError):
