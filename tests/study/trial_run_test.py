@@ -24,7 +24,7 @@ def end(*_):
     global ended
     ended = True
 signal.signal(signal.SIGINT, end)
-print("http://nowhere/#token=00 what is printed is for people")
+print("http://127.0.0.1:9/#token=00 what is printed is for people")
 def say(**report):
     os.write(reports, (json.dumps(report) + "\\n").encode())
 def until_ended(most_s=20):

@@ -430,6 +430,35 @@ def equal_spread(columns, alpha) -> str:
     return f"groups: {words} (Levene W = {value:.3f}, p = {number(p)})"
 
 
+def two_conditions(test: str, groups: dict[str, np.ndarray], alpha: float, count: int) -> Result:
+    """A test of two conditions by its name, of means of so many people."""
+    compare = {"paired_t": paired_t, "wilcoxon": wilcoxon, "welch_t": welch_t,
+               "mann_whitney": mann_whitney}[test]
+    one = compare(*groups.values(), alpha, tuple(groups))
+    one.p_adjusted = one.p
+    result = Result(test, count, one.statistic, one.value, () if one.df is None else (one.df,), one.p,
+                    one.effect, one.size, [one])
+    a, b = groups.values()
+    if test == "paired_t":
+        result.assumptions = [normality(b - a, "differences", alpha)]
+        rank = wilcoxon(a, b, alpha)
+        result.notes.append(f"without normality: Wilcoxon V = {rank.value:g}, p = {number(rank.p)}")
+    if test == "welch_t":
+        result.assumptions = [normality(each, name, alpha) for name, each in groups.items()]
+        rank = mann_whitney(a, b, alpha)
+        result.notes.append(f"without normality: Mann-Whitney U = {rank.value:g}, p = {number(rank.p)}")
+    if test == "wilcoxon":
+        gaps = differences(a, b)
+        skew = float(stats.skew(gaps)) if np.ptp(gaps) > 0 else 0.0
+        result.assumptions = [f"differences: skewness {skew:.2f}; signed ranks assume that they are "
+                              "symmetric about their middle"]
+    least = least_p(test, list(map(len, groups.values())))
+    if least > alpha:
+        result.notes.append(f"with {count} people no p below {least:g} can come out, and the interval cannot reach "
+                            f"{100 * (1 - alpha):g} %")
+    return result
+
+
 def run(test: str, values, conditions, people, alpha=0.05, correction="holm") -> Result:
     """The test by its name, of values with their conditions and people.
 
@@ -463,30 +492,7 @@ def run(test: str, values, conditions, people, alpha=0.05, correction="holm") ->
     elif test in ("anova", "kruskal"):
         result = between(groups, test, alpha, correction)
     else:
-        compare = {"paired_t": paired_t, "wilcoxon": wilcoxon, "welch_t": welch_t,
-                   "mann_whitney": mann_whitney}[test]
-        one = compare(*groups.values(), alpha, tuple(names))
-        one.p_adjusted = one.p
-        count = len(complete) if is_within else sum(map(len, groups.values()))
-        result = Result(test, count, one.statistic, one.value, () if one.df is None else (one.df,), one.p,
-                        one.effect, one.size, [one])
-        a, b = groups.values()
-        if test == "paired_t":
-            result.assumptions = [normality(b - a, "differences", alpha)]
-            rank = wilcoxon(a, b, alpha)
-            result.notes.append(f"without normality: Wilcoxon V = {rank.value:g}, p = {number(rank.p)}")
-        if test == "welch_t":
-            result.assumptions = [normality(each, name, alpha) for name, each in groups.items()]
-            rank = mann_whitney(a, b, alpha)
-            result.notes.append(f"without normality: Mann-Whitney U = {rank.value:g}, p = {number(rank.p)}")
-        if test == "wilcoxon":
-            gaps = differences(a, b)
-            skew = float(stats.skew(gaps)) if np.ptp(gaps) > 0 else 0.0
-            result.assumptions = [f"differences: skewness {skew:.2f}; signed ranks assume that they are "
-                                  "symmetric about their middle"]
-        if least_p(test, list(map(len, groups.values()))) > alpha:
-            result.notes.append(f"with {count} people no p below {least_p(test, list(map(len, groups.values()))):g} can "
-                                f"come out, and the interval cannot reach {100 * (1 - alpha):g} %")
+        result = two_conditions(test, groups, alpha, len(complete) if is_within else sum(map(len, groups.values())))
     if len(cells) < len(list(values)):
         result.notes.append("a person's trials of a condition are averaged")
     if left := len(persons) - len(complete):
