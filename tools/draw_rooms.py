@@ -18,9 +18,9 @@ import check_modules
 
 WIDTH, LEFT, MARGIN, ROW, BOX = 1040, 210, 24, 92, 34
 LETTER = 7.6  # width of a letter, more or less
-PROGRAMS = {"bench": ["experiments"], "python": ["scenario"],
-            "apps": ["bench", "page", "tune", "check", "new", "doctor", "commission", "identify", "scenario/remote", "recording", "lab_streaming",
-                     "device/ethercat"]}
+PROGRAMS = {"bench": ["experiments"], "python": ["scenario", "scenario/run"],
+            "apps/hapticgiant": ["scenario/run", "check", "new", "commission"],
+            "apps/offline": ["bench", "apps/hapticgiant", "tune", "design", "identify"]}
 
 
 def read_rows():
