@@ -34,8 +34,10 @@ INSTANTIATE_TEST_SUITE_P(, OtherLaws,
 
 TEST_P(OtherLaws, CompleteTheScenario) {
   const auto& [scenario, law, bounds] = GetParam();
-  ScenarioRun run(
-      with_ideal_device(scenario::load({.scenario = scenario, .law = law, .bounds = bounds})));
+  ScenarioRun run(with_ideal_device(
+      scenario::load({.scenario = scenario,
+                      .law = law,
+                      .changes = {std::string("device.rendering.bounds=") + bounds}})));
   double violation = 0.0;
   run.play([&](const Sample& sample) {
     for (const LimitReport& limit : sample.record.limits) {

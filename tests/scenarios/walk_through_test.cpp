@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector2d;
 
 // models/twins/door: placement and shapes of the URDF, as the eye sees them; x along the shut leaf
-const Vector2d kHinge(-0.30, -0.20);                 // in B
+const Vector2d kHingePlace(-0.30, -0.20);                 // in B
 constexpr double kLeafFrom = 0.01, kLeafTo = 0.92;   // m, along the leaf
 constexpr double kLeafHalf = 0.02;                   // m, of its thickness
 constexpr double kOpenFrom = -0.01, kOpenTo = 0.93;  // m, between the posts
@@ -71,11 +71,11 @@ class WalkThrough {
       const person::Walker& walker = world_.person().walker();
       const Pose& handle = world_.truth().T_B_H;
       const Vector2d to_person = handle.R.col(2).head<2>();
-      Moment now{.time_s = sample.record.time_s, .body = walker.body() - kHinge};
+      Moment now{.time_s = sample.record.time_s, .body = walker.body() - kHingePlace};
       now.hinge = std::atan2(to_person.x(), -to_person.y());
       now.lever = sample.record.twin.q_a[1];
       now.hold = walker.hold();
-      now.hand = handle.p.head<2>() - kHinge;
+      now.hand = handle.p.head<2>() - kHingePlace;
       now.reach = (handle.p - walker.shoulder()).head<2>().norm();
       moments_.push_back(now);
     });
