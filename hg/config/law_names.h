@@ -19,7 +19,7 @@ enum class LawPreset : std::uint8_t {
   kGantry,       ///< gauss with the accelerations of the gantry as unknowns
   kTogether,     ///< gauss with limits of the device that brake together
   kPaper,        ///< the law of [HG] with recoverable bounds
-  kAsPublished,  ///< law and bounds of [HG]
+  kPaperBounds,  ///< law and bounds of [HG]
 };
 
 inline constexpr auto kLawPresets = choices_of<LawPreset>();

@@ -17,7 +17,7 @@ template <class V>
 void describe(V& v, rendering::RenderingOptions& options, std::size_t manipulator_joints) {
   LawPreset law = LawPreset::kGauss;
   v.choice("law", law, kLawPresets,
-           "preset of the law; paper and as_published need six joints, see docs/concepts/law.md");
+           "preset of the law; paper and paper_bounds need six joints, see docs/concepts/law.md");
   set_parts(options, law);
   v.choice("bounds", options.bounds, kBounds,
            "for experiments, instead of the preset's: how limits become bounds on accelerations");

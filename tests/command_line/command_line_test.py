@@ -99,7 +99,7 @@ class MainJob(TemporaryFolder):
 
     def test_a_preset_sets_four_parts_of_the_law(self):
         summary = self.folder / "summary.json"
-        for options, parts in ((("--law", "as_published"), ("paper", "paper", "rule", "alone")),
+        for options, parts in ((("--law", "paper_bounds"), ("paper", "paper", "rule", "alone")),
                                (("--law", "together", "--set", "device.rendering.gantry=law"),
                                 ("gauss", "recoverable", "law", "together"))):
             code, out, err = run("run", "door", "--user", "none", "--fast", "--no-recording", "--duration",
@@ -109,7 +109,7 @@ class MainJob(TemporaryFolder):
             self.assertEqual(tuple(facts[key] for key in ("law", "bounds", "gantry", "braking")), parts)
 
     def test_options_for_single_parts_of_the_law_name_the_preset(self):
-        for option, instead in (("--bounds", "--law as_published"), ("--gantry", "--law gantry"),
+        for option, instead in (("--bounds", "--law paper_bounds"), ("--gantry", "--law gantry"),
                                 ("--braking", "--law together"),
                                 ("--passivity", "--set device.passivity.reaction=act")):
             code, _, err = run("run", "door", option, "law")

@@ -231,7 +231,7 @@ class Recordings(TemporaryFolder):
         self.assertRegex(out, r"t_b \([\d.]+ s\) is missing in the second")
 
     def test_replay_runs_again_bit_for_bit(self):
-        for options in (("door", "--duration", 3, "--law", "as_published"),
+        for options in (("door", "--duration", 3, "--law", "paper_bounds"),
                         ("door", "--duration", 2, "--plant", "ideal", "--rate-hz", 500)):
             code, out, err = run("replay", self.record(str(len(options)), *options))
             self.assertEqual((code, err), (0, ""), out)

@@ -12,8 +12,8 @@ namespace hg::scenario {
 namespace {
 
 TEST(Options, ARecordingKeepsThoseThatDetermineTheCycle) {
-  const ScenarioOptions options = {.scenario = "door", .rate_Hz = 500.0, .law = "as_published"};
-  EXPECT_EQ(to_text(options), "--rate-hz 500\n--law as_published\n");
+  const ScenarioOptions options = {.scenario = "door", .rate_Hz = 500.0, .law = "paper_bounds"};
+  EXPECT_EQ(to_text(options), "--rate-hz 500\n--law paper_bounds\n");
   const config::Scenario recorded =
       load_recorded(load({.scenario = "door"}).sources, to_text(options));
   EXPECT_EQ(recorded.device.model.rate_Hz, 500.0);
@@ -31,7 +31,7 @@ TEST(Options, EveryPresetSetsTheFourPartsOfTheLaw) {
   EXPECT_EQ(parts("gantry"), "gauss recoverable law alone");
   EXPECT_EQ(parts("together"), "gauss recoverable rule together");
   EXPECT_EQ(parts("paper"), "paper recoverable rule alone");
-  EXPECT_EQ(parts("as_published"), "paper paper rule alone");
+  EXPECT_EQ(parts("paper_bounds"), "paper paper rule alone");
 }
 
 TEST(Options, ASinglePartOfTheLawReplacesThatOfThePreset) {
@@ -40,9 +40,9 @@ TEST(Options, ASinglePartOfTheLawReplacesThatOfThePreset) {
       .law = "paper",
       .changes = {"device.rendering.bounds=paper", "device.rendering.law=together"}};
   const config::Scenario scenario = load(options);
-  EXPECT_EQ(config::preset_name(scenario.device.rendering), "as_published");
+  EXPECT_EQ(config::preset_name(scenario.device.rendering), "paper_bounds");
   const config::Scenario recorded = load_recorded(scenario.sources, to_text(options));
-  EXPECT_EQ(config::preset_name(recorded.device.rendering), "as_published");
+  EXPECT_EQ(config::preset_name(recorded.device.rendering), "paper_bounds");
 }
 
 TEST(Options, ARecordingOfAnEarlierVersionKeepsItsPartsOfTheLaw) {
