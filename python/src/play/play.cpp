@@ -71,7 +71,7 @@ class Listener {
         if (!error_ && !on_report_.is_none()) on_report_(nb::str(line.c_str(), line.size()));
       }
     } catch (nb::python_error& error) {
-      error_ = std::move(error);
+      error_.emplace(std::move(error));
     }
     return !error_;
   }
