@@ -23,7 +23,7 @@ export interface Scene {
   box: SceneBox;
   environment: "room" | "door" | "excavator"; // surroundings of the twin
   surfaces: SceneSurface[];
-  shapes: SceneShape[]; // of the device, watched for collisions with itself
+  shapes: SceneShape[]; // shapes of the device, watched for collisions with itself
   checkpoints: SceneCheckpoint[]; // places that the handle is to be brought to, in order
   choices: Choices;
   settings: Setting[];
@@ -38,7 +38,7 @@ export interface SceneChain {
   urdf: string; // address of the file, empty = none
   p_B_root_m: Vec3;
   quaternion_B_root: Quaternion;
-  joints: SceneJoint[]; // in the order of the coordinates
+  joints: SceneJoint[]; // joints in the order of the coordinates
   followers: SceneFollower[]; // joints that follow by curves, which have no coordinates
 }
 
@@ -48,29 +48,29 @@ export interface SceneJoint {
   type: "revolute" | "prismatic" | "floating"; // floating: x y z qx qy qz qw
   planar: string; // planar joint of the URDF with this joint as one of three parts: slide, slide, turn
   axis: Vec3; // axis of such a part, in the frame of the planar joint
-  q_min: number | null; // lower limit, rad or m; null = unbounded
-  q_max: number | null; // upper limit, rad or m; null = unbounded
-  dq_max: number | null; // speed limit, rad/s or m/s; null = unbounded
-  tau_max: number | null; // peak torque or force, Nm or N; null = unknown
+  q_min: number | null; // [rad or m] lower limit; null = unbounded
+  q_max: number | null; // [rad or m] upper limit; null = unbounded
+  dq_max: number | null; // [rad/s or m/s] speed limit; null = unbounded
+  tau_max: number | null; // [Nm or N] peak torque or force; null = unknown
 }
 
 // a joint that follows another one by a curve: its position over the other's
 export interface SceneFollower {
   joint: string;
   leader: string;
-  begin: number; // of the range of the leader, rad or m
-  end: number; // of the range of the leader, rad or m
-  is_periodic: boolean; // the range is one turn, and goes on
-  values: number[]; // at equal distances over the range, rad or m
+  begin: number; // [rad or m] begin of the range of the leader
+  end: number; // [rad or m] end of the range of the leader
+  is_periodic: boolean; // the range is one turn, and repeats
+  values: number[]; // [rad or m] positions at equal distances over the range
 }
 
 // a limited quantity
 export interface SceneLimit {
   name: string;
   kind: "manipulator" | "virtual" | "motor" | "cartesian" | "twin";
-  unit: "rad" | "m"; // unit of the position; its reaction is in Nm for rad, in N for m
-  min: number | null; // lower end; null = unbounded
-  max: number | null; // upper end; null = unbounded
+  unit: "rad" | "m"; // unit of the position; the reaction has that of a torque or of a force
+  min: number | null; // [rad or m] lower end; null = unbounded
+  max: number | null; // [rad or m] upper end; null = unbounded
   priority: number; // level of the law: 1 is the coupling of hand and twin, then 2, 3, ...
 }
 
@@ -96,17 +96,17 @@ export interface SceneShape {
   link: string; // link of the device's URDF that it moves with
   p_link_m: Vec3; // position of the centre
   quaternion_link: Quaternion;
-  radius_m: number; // of a capsule along z
-  length_m: number; // of a capsule, without its ends
-  size_m: Vec3; // of a box; zero for a capsule
+  radius_m: number; // radius of a capsule along z
+  length_m: number; // length of a capsule, without its ends
+  size_m: Vec3; // size of a box; zero for a capsule
 }
 
 // a place of the handle that an event asks for, nearer than 0.10 m, 15 degrees
 export interface SceneCheckpoint {
-  name: string; // of the event
-  x_m: number; // in B
-  y_m: number; // in B
-  azimuth_rad: number; // of the hand axis, z of H, about z of B
+  name: string; // name of the event
+  x_m: number; // position in B
+  y_m: number; // position in B
+  azimuth_rad: number; // azimuth of the hand axis, z of H, about z of B
 }
 
 // options and the chosen ones
@@ -132,11 +132,11 @@ export interface Setting {
   name: string; // name in the command "set"
   group: string; // joint of the twin, or empty
   label: string;
-  unit: string;
+  unit: string; // unit of all numbers of the setting
   min: number; // smallest accepted value
   max: number; // largest accepted value
   value: number | null; // initial value, later ones come as Values; null = unlimited
-  step: number;
+  step: number; // step of the form
   help: string;
 }
 
@@ -149,15 +149,15 @@ export interface Frame {
   mode_text: string; // mode and its cause as text
   fault: string; // empty = none
   status: string; // status in one line
-  q_device: number[]; // gantry, then reference of the manipulator, rad or m
-  q_measured: number[]; // gantry, then manipulator, rad or m
-  dq_device: number[]; // velocities of q_device, rad/s or m/s
-  dq_measured: number[]; // velocities of q_measured, rad/s or m/s
+  q_device: number[]; // [rad or m] gantry, then reference of the manipulator
+  q_measured: number[]; // [rad or m] gantry, then manipulator
+  dq_device: number[]; // [rad/s or m/s] velocities of q_device
+  dq_measured: number[]; // [rad/s or m/s] velocities of q_measured
   tau_measured_Nm: number[]; // torque sensors of the manipulator's joints; empty = none
-  q_twin: number[]; // coordinates of the twin, rad or m
-  dq_twin: number[]; // velocities of the twin, rad/s or m/s; a floating joint has 6, in its own frame
+  q_twin: number[]; // [rad or m] coordinates of the twin
+  dq_twin: number[]; // [rad/s or m/s] velocities of the twin; a floating joint has 6, in its own frame
   q_gantry_target_m: number[]; // gantry target of prepositioning
-  tracking_error: number[]; // reference minus link side of the manipulator, rad or m
+  tracking_error: number[]; // [rad or m] reference minus link side of the manipulator
   is_clamped: boolean; // tracking was lost: the reference was moved back to the device
   p_B_H_m: Vec3; // position of the handle, at the reference
   quaternion_B_H: Quaternion;
@@ -170,8 +170,8 @@ export interface Frame {
   felt: FeltLimit | null;
   active: ActiveLimit[]; // active limits
   contact: Contact | null; // null = none
-  limit_position: number[]; // positions of the limited quantities in the order of Scene.limits, rad or m
-  limit_distance: (number | null)[]; // distance to the nearer end, with margin; null = unbounded
+  limit_position: number[]; // [rad or m] positions of the limited quantities in the order of Scene.limits
+  limit_distance: (number | null)[]; // [rad or m] distance to the nearer end, with margin; null = unbounded
   budget: Budget; // breakdown of the user's wrench
   singularity: Singularity | null;
   sync_error_mm: number; // distance of handle and twin
@@ -199,15 +199,15 @@ export interface ActiveLimit {
   index: number; // index in Scene.limits
   state: "inactive" | "lower" | "upper" | "violated";
   cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque" | "torque_rate";
-  excess: number; // distance outside the configured range, rad or m
-  reaction: number; // constraint force in the quantity's own coordinate, Nm or N
+  excess: number; // [rad or m] distance outside the configured range, >= 0
+  reaction: number; // [Nm or N] constraint force or torque in the quantity's own coordinate
   text: string;
 }
 
 // contact with virtual surfaces
 export interface Contact {
-  force: Vec3; // force of virtual surfaces on the handle, N
-  proxy: Vec3; // point nearest to the handle outside all surfaces, m
+  force: Vec3; // [N] force of virtual surfaces on the handle
+  proxy: Vec3; // [m] point nearest to the handle outside all surfaces
   surface: number; // surface with the largest force, index in the scenario; -1 = none
 }
 
@@ -240,9 +240,9 @@ export interface Singularity {
 // state of the run as set by commands
 export interface RunState {
   is_paused: boolean;
-  speed: number; // simulated or recorded seconds per second
+  speed: number; // simulated or recorded time over real time
   is_over: boolean; // stopped, a fault, or the end of a recording
-  position_s: number; // time of the run, also of a recorded one, s
+  position_s: number; // time of the run, also of a recorded one
   recording: string; // name of the file that is written or played; empty = none
 }
 
@@ -263,9 +263,9 @@ export interface Safety {
 
 // second recording, overlaid for comparison
 export interface Ghost {
-  time_s: number; // time of its run, s
-  q_device: number[]; // gantry, then reference of the manipulator, rad or m
-  q_twin: number[]; // coordinates of the twin, rad or m
+  time_s: number; // time of its run
+  q_device: number[]; // [rad or m] gantry, then reference of the manipulator
+  q_twin: number[]; // [rad or m] coordinates of the twin
   p_B_H_m: Vec3;
   force_N: Vec3;
 }
@@ -291,7 +291,7 @@ export interface Command {
   id: number; // any whole number of 0..2^53, comes back in the answer
   command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop";
   name: string; // name of the chosen option or setting; else empty
-  value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: s, set: value, release_stop: page
+  value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: run time, set: value, release_stop: page
 }
 
 // program -> page: the first message of a connection
