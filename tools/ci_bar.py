@@ -59,8 +59,10 @@ def read_times(file):
 
 
 def check(sizes):
-    with RECORDED.open(newline="") as file:
-        recorded = {row["phase"]: float(row["loops"]) for row in csv.DictReader(file)}
+    recorded = {}
+    if RECORDED.exists():
+        with RECORDED.open(newline="") as file:
+            recorded = {row["phase"]: float(row["loops"]) for row in csv.DictReader(file)}
     worst = 0.0
     for phase, size in sizes.items():
         if phase not in recorded:

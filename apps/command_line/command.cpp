@@ -122,6 +122,7 @@ void Command::retire_option(const std::string& name, const std::string& instead)
       ->add_option_function<std::string>(
           name,
           [=](const std::string&) { refuse_option(name, "is no option any more: " + instead); })
+      ->expected(0, 1)
       ->group("");
 }
 

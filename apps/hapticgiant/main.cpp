@@ -18,7 +18,7 @@
 
 int main(int argc, char** argv) {
   namespace apps = hg::apps;
-  return apps::start(argc, argv, [argv](apps::Command program, int& exit_code) {
+  return apps::start(argc, argv, [argc, argv](apps::Command program, int& exit_code) {
     apps::add_run(program, argv[0], exit_code);
     apps::add_simulate(program, exit_code);
     apps::add_replay(program, exit_code);
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
     apps::add_start_test(program, exit_code);
     apps::add_commission(program, exit_code);
     apps::add_bridge(program);
-    apps::add_offline_commands(program);
+    apps::add_offline_commands(program, argc, argv);
     apps::add_python_commands(program);
   });
 }

@@ -1,5 +1,7 @@
 #include "apps/hapticgiant/offline_commands.h"
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "apps/command_line/command.h"
@@ -7,14 +9,14 @@
 
 namespace hg::apps {
 
-void add_offline_commands(Command app) {
+void add_offline_commands(Command app, int argc, char** argv) {
+  // from the command's name on: no option of the program stands before it
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   for (const OfflineCommand& offline : kOfflineCommands) {
     const Command command =
         app.add_subcommand(std::string(offline.name), std::string(offline.description));
     command.take_all_words();
-    command.callback([command] {
-      std::vector<std::string> words = {command.name()};
-      for (const std::string& word : command.remaining()) words.push_back(word);
+    command.callback([command, words] {
       become_sibling("offline", words, command.name() + ": not built",
                      "'make build' makes it from source");
     });

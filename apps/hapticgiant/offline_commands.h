@@ -45,7 +45,8 @@ constexpr std::string_view offline_description(std::string_view name) {
   return std::ranges::find(kOfflineCommands, name, &OfflineCommand::name)->description;
 }
 
-/// Adds these commands to the program; each becomes hapticgiant-offline with its words.
-void add_offline_commands(Command app);
+/// Adds these commands to the program; each becomes hapticgiant-offline with the words of the
+/// command line as they are.
+void add_offline_commands(Command app, int argc, char** argv);
 
 }  // namespace hg::apps

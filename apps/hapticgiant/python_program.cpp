@@ -62,8 +62,8 @@ std::vector<std::string> python_program(const std::string& part) {
 
 std::vector<std::string> python_program_that_runs_us(const std::string& part) {
   std::error_code error;
-  const std::string program = fs::read_symlink("/proc/self/exe", error).string();
-  setenv("HAPTICGIANT_PROGRAM", program.c_str(), 1);
+  const fs::path own = fs::read_symlink("/proc/self/exe", error);
+  setenv("HAPTICGIANT_PROGRAM", (own.parent_path() / "hapticgiant").c_str(), 1);
   setenv("HAPTICGIANT_PAGE", page::page_folder().c_str(), 1);
   return python_program(part);
 }

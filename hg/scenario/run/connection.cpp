@@ -56,7 +56,7 @@ void open_if_ready(Contact& contact, Connection& connection, const MachineAddres
 }
 
 void move_alone(const Transport& transport, device::ConnectedDevice& device,
-                    const RunTiming& timing, const config::Scenario& scenario) {
+                const RunTiming& timing, const config::Scenario& scenario) {
   const VectorM start = find_start(scenario.device, scenario.twin).q_m;
   std::async(std::launch::async, [&] {
     runtime::become_real_time({.priority = timing.priority, .cpu = timing.cpu});

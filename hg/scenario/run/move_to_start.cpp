@@ -73,8 +73,8 @@ class WayWatch {
   WayWatch(const config::Scenario& way, WayGuide& guide, page::RunPage* page, RunObserver& observer)
       : way_(way), guide_(guide), page_(page), observer_(observer) {}
 
-  void follow(runtime::Runtime& runtime) {
-    const std::uint32_t stops = page_ == nullptr ? 0 : page_->desk().stops();
+  // `stops`: how many stops a page had asked for before the way was begun
+  void follow(runtime::Runtime& runtime, std::uint32_t stops) {
     observer_.phase(RunPhase::kMoving, 0.0, "");
     runtime.start();
     while (true) {
@@ -161,11 +161,12 @@ std::string move_to_start(PreparedWay& way, const RunTiming& timing,
   PreparedRun& run = *way.run;
   WayGuide guide(run.scenario, way.goal);
   WayWatch watch(run.scenario, guide, page, observer);
+  const std::uint32_t stops = page == nullptr ? 0 : page->desk().stops();
   if (page != nullptr) page->begin(run.shown(kMovesItself), "", std::chrono::system_clock::now());
   observer.note("start", run.scenario.description);
 
   runtime::Runtime runtime(options_of(run.scenario, timing, stop, page), run.cycle, run.device());
-  watch.follow(runtime);
+  watch.follow(runtime, stops);
   const Fault fault = runtime.join().fault;
   if (run.machine() != nullptr) {
     for (const std::string& line :

@@ -78,6 +78,14 @@ class Reports:
         return before != dataclasses.replace(shown, time_s=0.0, force_N=0.0)
 
 
+def report_in(line: str | bytes) -> dict:
+    """The report of a line; empty for one that a kill has cut."""
+    try:
+        return json.loads(line)
+    except ValueError:
+        return {}
+
+
 def command_of(program: str, reports: int) -> list[str]:
     """The command that takes its request from standard input and reports to this descriptor."""
     return [program, "run", "--request", "-", "--report-to", str(reports)]
@@ -95,7 +103,8 @@ def played_at_once(program: str, request: dict) -> tuple[int, dict | None, str]:
             process.stdin.write(json.dumps(request))
             process.stdin.close()
         for line in lines:
-            found.take(json.loads(line))
+            if report := report_in(line):
+                found.take(report)
         code = process.wait()
         errors.seek(0)
         said = errors.read()
@@ -123,7 +132,9 @@ class TrialRun:
         self._changed = changed
         self._process: asyncio.subprocess.Process | None = None
         self._pages = contextlib.AsyncExitStack()
-        self._listener: asyncio.Task | None = None
+        self._connecting = asyncio.Lock()
+        self._socket: aiohttp.ClientWebSocketResponse | None = None
+        self._tasks: list[asyncio.Task] = []
         self._said: list[str] = []
         self.is_ending = False
         self.ended_by = "time"
@@ -146,6 +157,8 @@ class TrialRun:
                 stderr=asyncio.subprocess.PIPE, pass_fds=(child_end,), preexec_fn=lambda: _end_with(parent))
         finally:
             os.close(child_end)
+            if self._process is None:
+                transport.close()
         if self.is_ending:  # ended before it has begun
             self._send_end()
         readers = [asyncio.create_task(each) for each in (self._send_request(), self._read_reports(lines), self._read_errors())]
@@ -153,8 +166,8 @@ class TrialRun:
             code = await self._process.wait()
             await asyncio.gather(*readers)
         finally:
-            for reader in readers:
-                reader.cancel()
+            for task in (*readers, *self._tasks):
+                task.cancel()
             transport.close()
             await self._pages.aclose()
             with contextlib.suppress(ProcessLookupError):
@@ -173,8 +186,11 @@ class TrialRun:
 
     async def _read_reports(self, lines):
         while line := await lines.readline():
-            report = json.loads(line)
+            if not (report := report_in(line)):
+                continue
             has_changed = self._reports.take(report)
+            if "link" in report:
+                self._tasks.append(asyncio.create_task(self._open_page()))
             has_changed |= "event" in report and self._take_event(report)
             if has_changed:
                 self._changed()
@@ -218,13 +234,25 @@ class TrialRun:
         return False
 
     async def _press(self):
-        address, _, token = self.shown.link.partition("/#token=")
-        client = await self._pages.enter_async_context(aiohttp.ClientSession())
-        socket = await client.ws_connect(f"{address}/ws", origin=address, protocols=(PROTOCOL, f"token.{token}"))
+        socket = await self._connected()
         await socket.send_json({"type": "command", "id": 1, "command": "emergency_stop", "name": "", "value": 0})
-        self._listener = asyncio.create_task(_listen(socket))  # until the run ends
+
+    async def _open_page(self):
+        """Opens the connection that a stop takes before it is needed."""
+        with contextlib.suppress(OSError, aiohttp.ClientError):
+            await self._connected()
+
+    async def _connected(self):
+        async with self._connecting:
+            if self._socket is None or self._socket.closed:
+                address, _, token = self.shown.link.partition("/#token=")
+                client = await self._pages.enter_async_context(aiohttp.ClientSession())
+                self._socket = await client.ws_connect(f"{address}/ws", origin=address,
+                                                       protocols=(PROTOCOL, f"token.{token}"))
+                self._tasks.append(asyncio.create_task(_drain(self._socket)))
+        return self._socket
 
 
-async def _listen(socket):
+async def _drain(socket):
     async for _ in socket:
         pass

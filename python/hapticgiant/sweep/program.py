@@ -86,8 +86,9 @@ def find_program() -> Program:
         raise FileNotFoundError(f"{name}: no such program; set HAPTICGIANT_PROGRAM to its file")
     file = str(pathlib.Path(file).resolve())
     version = subprocess.run([file, "--version"], capture_output=True, text=True, check=True)
-    digest = hashlib.sha256(pathlib.Path(file).read_bytes()).hexdigest()[:12]
-    return Program(file, version.stdout.strip(), digest)
+    programs = [pathlib.Path(file), pathlib.Path(file).with_name("hapticgiant-offline")]  # of all commands
+    content = b"".join(each.read_bytes() for each in programs if each.is_file())
+    return Program(file, version.stdout.strip(), hashlib.sha256(content).hexdigest()[:12])
 
 
 def measures_of(summary: dict) -> dict:

@@ -17,6 +17,9 @@ OPTIONS = {"scenario": "", "device": "--device", "twin": "--twin", "user": "--us
            "hand": "--hand", "seed": "--seed", "law": "--law", "rate_Hz": "--rate-hz",
            "step_s": "--step", "duration_s": "--duration"}
 """Options of `hapticgiant run` that a sweep or a study may give, and how the command line calls them."""
+RETIRED = {"bounds": "device.rendering.bounds", "gantry": "device.rendering.gantry",
+           "braking": "device.rendering.braking", "passivity": "device.passivity.reaction"}
+"""Options of earlier versions, and the key that takes their place."""
 FILES = ("scenario", "device", "twin", "user", "simulation")  # options that may name a file
 PARTS = ("scenario", "device", "simulation", "twin", "script")  # before the dot of a key
 MOST = 1_000_000  # of anything that is counted
@@ -62,7 +65,9 @@ def request_of(options: dict[str, str], folder: pathlib.Path) -> dict:
     request = {"scenario": _file_beside(folder, options.get("scenario", "door"))}
     for key, value in options.items():
         if key in NUMBERS:
-            request[_key_of(key)] = value_of(value)
+            number = value_of(value)
+            is_whole = isinstance(number, float) and number.is_integer()
+            request[_key_of(key)] = int(number) if is_whole else number
         elif key in OPTIONS:
             request[_key_of(key)] = _file_beside(folder, value) if key in FILES else value
         else:
@@ -164,6 +169,8 @@ class Reader:
                 self.fault(key, name, f"no such part, did you mean '{nearest(part, PARTS)}'? "
                                       f"They are {', '.join(PARTS)}")
             if "." not in name and name not in OPTIONS:
+                if name in RETIRED:
+                    self.fault(key, name, f"is no option any more: use {RETIRED[name]}")
                 self.fault(key, name, f"no such option, did you mean '{nearest(name, OPTIONS)}'? "
                                       f"They are {', '.join(OPTIONS)}")
         for key, value in result.items():
