@@ -40,7 +40,7 @@ class Motion:
             self.begin = q_m, q_p
         travel = [*abs(q_m - self.begin[0]) / self.stop_distance_rad, *abs(q_p - self.begin[1]) / self.gantry_stop_distance_m]
         self.travel_share = max(self.travel_share, *travel)
-        self.energy_J -= dt * float(np.dot(truth.w_H, truth.twist))
+        self.energy_J -= dt * float(np.dot(truth.w_h, truth.twist))
         self.most_energy_J = max(self.most_energy_J, self.energy_J)
         self.watched_s += dt
         speeds = abs(np.array(truth.dq_m))
@@ -148,5 +148,5 @@ def fields_of(sensors):
              safety.has_disagreement)
     vectors = (each for values in (sensors.q_m, sensors.dq_m, sensors.theta_m, sensors.tau_m) for each in vector(values))
     return [sensors.sequence, sensors.time_s, sensors.answered_sequence, *map(int, flags), int(sensors.driver_fault.value),
-            sensors.bus_errors, *vectors, *vector(sensors.q_p, 2), *sensors.w_S, *sensors.a_S, *sensors.omega_S,
+            sensors.bus_errors, *vectors, *vector(sensors.q_p, 2), *sensors.w_s, *sensors.a_s, *sensors.omega_s,
             *vector(sensors.temperature_m)]
