@@ -60,7 +60,7 @@ template <typename Archive, Is<FeltLimitMessage> T>
 void fields(Archive& a, T& felt) {
   a("index", felt.index, "index in Scene.limits");
   a("name", felt.name);
-  a("text", felt.text, "elbow x: upper limit, 23 N");
+  a("text", felt.text, "name and side of the limit, and its force");
   fields(a, felt.w);
 }
 

@@ -58,7 +58,7 @@ void fields(Archive& a, T& joint) {
   a("type", joint.type, "floating: x y z qx qy qz qw");
   a("planar", joint.planar,
     "planar joint of the URDF with this joint as one of three parts: slide, slide, turn");
-  a("axis", joint.axis, "axis of such a part, in the frame of the planar joint");
+  a("axis", joint.axis, "axis of such a part, in the frame of the planar joint", unit::kNone);
   a("q_min", bounded(joint.range.lb), "lower limit; null = unbounded", unit::kJointPosition);
   a("q_max", bounded(joint.range.ub), "upper limit; null = unbounded", unit::kJointPosition);
   a("dq_max", bounded(joint.dq_max), "speed limit; null = unbounded", unit::kJointSpeed);

@@ -139,10 +139,10 @@ std::string fault_of_cam(const std::string& keys) {
 TEST(Twin, CamsThatCannotBeAreRefusedAtTheirPlace) {
   const std::string points = "points: [{at_rad: 0, position_rad: 0}, {at_rad: 1, position_rad: 2}]";
   EXPECT_EQ(fault_of_cam("follows: lever, " + points),
-            "twin.yaml:6:34: cams[0].follows: must be a joint of the URDF, got 'lever', did you "
+            "twin.yaml:6:35: cams[0].follows: must be a joint of the URDF, got 'lever', did you "
             "mean 'lever_joint'?");
   EXPECT_EQ(fault_of_cam("follows: wheel_joint, " + points),
-            "twin.yaml:6:34: cams[0].follows: a joint cannot follow itself");
+            "twin.yaml:6:35: cams[0].follows: a joint cannot follow itself");
   EXPECT_EQ(fault_of_cam("follows: lever_joint, points: [{at_rad: 0, position_rad: 0}]"),
             "twin.yaml:6:56: cams[0].points: a cam needs 2 .. 200 points, got 1");
   EXPECT_EQ(fault_of_cam("follows: lever_joint, points: [{at_rad: 1, position_rad: 0}, {at_rad: 0, "
@@ -157,11 +157,11 @@ TEST(Twin, CamsThatCannotBeAreRefusedAtTheirPlace) {
   EXPECT_EQ(fault_of_cam("follows: lever_joint, points: [{at_rad: 0, position_rad: .nan}, "
                          "{at_rad: 1, position_rad: 2}]")
                 .substr(0, 56),
-            "twin.yaml:6:86: cams[0].points[0].position_rad: must be ");
+            "twin.yaml:6:83: cams[0].points[0].position_rad: must be ");
   EXPECT_EQ(fault_of_cam("follows: lever_joint, points: [{at_rad: 0}, {at_rad: 1, "
                          "position_rad: 2}]")
                 .substr(0, 32),
-            "twin.yaml:6:65: cams[0].points[0");
+            "twin.yaml:6:57: cams[0].points[0");
   EXPECT_EQ(fault_of("couplings: [{joint: wheel_joint, follows: lever_joint}]\ncams:\n  - {joint: "
                      "wheel_joint, follows: lever_joint, " +
                      points + "}\n"),
@@ -190,12 +190,12 @@ TEST(Twin, ACamKeepsTheJointThatFollowsWithinItsLimits) {
          {"f.urdf", disk.read("models/twins/cam_press/cam_press.urdf")}});
     return load_twin("twin.yaml", reader);
   };
-  const model::Joint crank = press("0.04").model.chain.joints()[0];
+  const model::Joint crank = press("0.03").model.chain.joints()[0];
   EXPECT_EQ(crank.type, model::JointType::kContinuous);
   EXPECT_FALSE(crank.position.bounded());
   EXPECT_LT(crank.velocity_max, 4.0 * 10.0);
   EXPECT_EQ(message_of([&] { press("0.07"); }).substr(0, 107),
-            "twin.yaml:5:69: cams[0].points: the joint that follows must stay within its limits, "
+            "twin.yaml:5:72: cams[0].points: the joint that follows must stay within its limits, "
             "-0.005 .. 0.06, got -0");
 }
 
