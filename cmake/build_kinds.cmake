@@ -101,11 +101,18 @@ function(hg_build_kind target kind)
   target_precompile_headers(${target} REUSE_FROM ${donor})
 endfunction()
 
-# hg_library_path(TARGET FOLDER...)
-# Where the installed target looks for libraries, relative to its own folder. They stand in its
-# RUNPATH in the build folder as well: CMake makes room for the longer of the two by empty entries,
-# and an empty entry is the working directory.
-function(hg_library_path target)
+# hg_library_path(TARGET OUTPUT FOLDER...)
+# Where the target, built in the folder OUTPUT, looks for libraries: the wheels of .venv, and each
+# FOLDER; all relative to its own folder, so that it is the same where it is built and installed.
+# Where the two differ, CMake ends the RUNPATH of the build with an empty entry, and an empty entry is
+# the working directory.
+function(hg_library_path target output)
+  if(NOT SKBUILD)
+    foreach(prefix IN LISTS wheel_prefix)
+      file(RELATIVE_PATH wheels ${output} ${prefix}/lib)
+      list(APPEND ARGN ${wheels})
+    endforeach()
+  endif()
   list(TRANSFORM ARGN PREPEND "$ORIGIN/")
-  set_target_properties(${target} PROPERTIES INSTALL_RPATH "${ARGN}" BUILD_RPATH "${ARGN}")
+  set_target_properties(${target} PROPERTIES INSTALL_RPATH "${ARGN}" BUILD_WITH_INSTALL_RPATH ON)
 endfunction()

@@ -10,7 +10,7 @@ add_custom_target(hg_programs)
 add_dependencies(hg_programs ${programs})
 # where the Debian package has its libraries, or the wheels beside ours theirs
 foreach(program IN LISTS programs)
-  hg_library_path(${program} ../lib/hapticgiant/lib ../../cmeel.prefix/lib)
+  hg_library_path(${program} ${PROJECT_BINARY_DIR} ../lib/hapticgiant/lib ../../cmeel.prefix/lib)
 endforeach()
 install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET hg_libraries
   RUNTIME DESTINATION ${HG_PROGRAM_PREFIX}bin COMPONENT program)

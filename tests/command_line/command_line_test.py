@@ -91,7 +91,7 @@ class MainJob(TemporaryFolder):
         self.assertEqual((code, err), (0, ""), out)
         for arguments, words in (
                 (("--device", "fr4"), "fr4: no such device file, did you mean 'fr3'?"),
-                (("--twin", "fr3/drawr"), "did you mean 'fr3/drawer'? Of fr3 there are cupboard"),
+                (("--twin", "fr3/drawr"), "did you mean 'fr3/drawer'? Of fr3 there are cam_press, cupboard"),
                 (("fr3/opendrawer",), "did you mean 'fr3/open_drawer'?")):
             code, _, err = run("run", *arguments, "--fast", "--no-viewer")
             self.assertEqual(code, 2)
@@ -388,7 +388,7 @@ class BadInput(TemporaryFolder):
         self.refused("nothing.yaml", arguments=["door", "--twin", "nothing.yaml"])
         self.refused("nothing.yaml", arguments=["door", "--device", "nothing.yaml"])
         self.refused("nothing.yaml", arguments=["door", "--user", "nothing.yaml"])
-        self.refused("'none'", "Shipped are chain, door", arguments=["door", "--user", "ghost"])
+        self.refused("'none'", "Shipped are cam_press, chain, door", arguments=["door", "--user", "nome"])
         self.refused("'friction'", arguments=["door", "--user", "frictoin"])
 
     def test_names_that_are_too_long(self):

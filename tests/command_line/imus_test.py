@@ -103,7 +103,7 @@ class KnownFacts(unittest.TestCase):
 
 class Search(unittest.TestCase):
     def test_greedy_with_exchange_is_close_to_the_best_of_all(self):
-        for measure, criterion in itertools.product(placement.MEASURES, placement.CRITERIA):
+        for measure, criterion in itertools.product(placement.MEASURES, ("logdet", "lambda_min", "trace")):
             problem = problem_of(UR5E, measure=measure, criterion=criterion)
             best = placement.exhaustive(problem, 2)
             found = placement.exchange(problem, placement.greedy(problem, 2))
