@@ -189,7 +189,7 @@ export interface Frame {
 export interface FeltLimit {
   index: number; // index in Scene.limits
   name: string;
-  text: string; // elbow x: upper limit, 23 N
+  text: string; // name and side of the limit, and its force
   force_N: Vec3;
   torque_Nm: Vec3;
 }

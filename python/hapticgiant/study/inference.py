@@ -306,10 +306,13 @@ def variance_ratios(values, x, group, repeats: bool) -> tuple[list[float], bool]
         options = {"exog_re": np.ones(len(values)), "exog_vc": VCSpec(["condition"], [names], [people])}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a variance of 0, which is a result
-        try:
-            fit = MixedLM(values, x, groups=group, **options).fit(reml=True, method="powell", xtol=1e-8, ftol=1e-12)
-        except np.linalg.LinAlgError:
-            fit = None
+        methods = [("powell", {"xtol": 1e-8, "ftol": 1e-12})] + [("lbfgs", {})] * repeats
+        for method, tolerances in methods:
+            try:
+                fit = MixedLM(values, x, groups=group, **options).fit(reml=True, method=method, **tolerances)
+                break
+            except np.linalg.LinAlgError:  # a step went to where the rest is 0
+                fit = None
     if fit is None or fit.scale < LEAST_REST:
         raise ValueError("does not vary beside people and conditions: a mixed model has no fit")
     found = [float(np.squeeze(fit.cov_re)), *map(float, fit.vcomp)]
