@@ -5,13 +5,12 @@
 
 import pathlib
 import re
-import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
-PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
+from program import PROGRAM, install_program
+
 OFFLINE = PROGRAM.with_name("hapticgiant-offline")
 
 
@@ -43,7 +42,7 @@ class Offline(unittest.TestCase):
 
     def test_a_program_that_is_not_built_is_named_in_one_line(self):
         with tempfile.TemporaryDirectory() as folder:
-            alone = shutil.copy(PROGRAM, folder)
+            alone = install_program(pathlib.Path(folder))
             for words in (["export", "x.mcap"], ["bridge", "ros2"]):
                 out, err = run(alone, *words, code=2)
                 self.assertEqual((out, err.count("\n")), ("", 1))
