@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector2d;
 
 // models/twins/door: placement and shapes of the URDF, as the eye sees them; x along the shut leaf
-const Vector2d kHingePlace(-0.30, -0.20);                 // in B
+const Vector2d kHingePlace(-0.30, -0.20);            // in B
 constexpr double kLeafFrom = 0.01, kLeafTo = 0.92;   // m, along the leaf
 constexpr double kLeafHalf = 0.02;                   // m, of its thickness
 constexpr double kOpenFrom = -0.01, kOpenTo = 0.93;  // m, between the posts
