@@ -194,7 +194,7 @@ TEST(Twin, ACamKeepsTheJointThatFollowsWithinItsLimits) {
   EXPECT_EQ(crank.type, model::JointType::kContinuous);
   EXPECT_FALSE(crank.position.bounded());
   EXPECT_LT(crank.velocity_max, 4.0 * 10.0);
-  EXPECT_EQ(message_of([&] { press("0.07"); }).substr(0, 107),
+  EXPECT_EQ(message_of([&] { press("0.07"); }).substr(0, 106),
             "twin.yaml:5:72: cams[0].points: the joint that follows must stay within its limits, "
             "-0.005 .. 0.06, got -0");
 }
