@@ -1,4 +1,4 @@
-"""Tables and pictures of studies and of computing times.
+"""Tables and pictures of experiments and of computing times.
 
 Usage: series_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
@@ -76,7 +76,7 @@ class Contact(Reports):
         cases = [contact_case(hit_by=f"a link with the long name {link}", speed_m_per_s=speed)
                  for link in range(16) for speed in (0.25, 0.5, 1.0)]
         with matplotlib.rc_context(figures.SETTINGS):
-            self.assertEqual(overlapping(studies.contact_figure({"settled_s": 0.5, "cases": cases})), [])
+            self.assertEqual(overlapping(series.contact_figure({"settled_s": 0.5, "cases": cases})), [])
 
     def test_what_is_too_much_is_marked_and_counted(self):
         case = contact_case()
@@ -178,7 +178,7 @@ class Stability(Reports):
 
     def test_the_map_has_no_overlaps(self):
         with matplotlib.rc_context(figures.SETTINGS):
-            self.assertEqual(overlapping(studies.stability_figure(stability())), [])
+            self.assertEqual(overlapping(series.stability_figure(stability())), [])
 
 
 class Timing(Reports):
