@@ -9,7 +9,6 @@
 #include "apps/hapticgiant/report.h"
 #include "hg/check/capability_map.h"
 #include "hg/core/error.h"
-#include "hg/core/scratch_folder.h"
 
 namespace hg::apps {
 
@@ -18,16 +17,15 @@ int run_check(const CheckArguments& arguments) {
   check_writable(arguments.map, kSvg);
   const check::CheckReport report = check::check_files(arguments.files);
   print(report);
+  const int code = count(report, check::Severity::kFault) > 0 ? 2 : 0;
   if (!arguments.json.empty()) write_output(arguments.json, to_json(report));
   if (!arguments.map.empty()) {
     if (!report.first_device) throw SetupError("--map: needs a device that could be read");
-    check_report_program();
-    const ScratchFolder scratch;
-    write_output(
-        arguments.map,
-        report_text(scratch.path(), check::capability_map(*report.first_device), "map.svg"));
+    return become_reports({{.results = check::capability_map(*report.first_device),
+                            .files = {{"map.svg", arguments.map}},
+                            .exit_code = code}});
   }
-  return count(report, check::Severity::kFault) > 0 ? 2 : 0;
+  return code;
 }
 
 void add_check(Command app, int& exit_code) {

@@ -3,11 +3,14 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
@@ -33,6 +36,17 @@ std::string read_all(int descriptor) {
     text.append(part, count);
   }
 }
+
+// for C, with a null at the end
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+// returns only where it fails, with errno
+void execute(std::vector<std::string>& words) { execvp(words[0].c_str(), pointers_to(words).data()); }
 
 }  // namespace
 
@@ -71,17 +85,26 @@ std::vector<std::string> python_program_that_runs_us(const std::string& part) {
 void become_python_program(const std::string& part, const std::vector<std::string>& arguments) {
   std::vector<std::string> words = python_program_that_runs_us(part);
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  execvp(pointers[0], pointers.data());
+  execute(words);
   throw SetupError(fmt::format("{}: {} cannot be started", part, words[0]));
 }
 
+void become_program(std::vector<std::string> words, std::string_view input) {
+  const int file = memfd_create("input", MFD_CLOEXEC);
+  while (file >= 0 && !input.empty()) {
+    const ssize_t written = write(file, input.data(), input.size());
+    if (written < 0 && errno != EINTR) break;
+    input.remove_prefix(std::max<ssize_t>(written, 0));
+  }
+  if (input.empty() && lseek(file, 0, SEEK_SET) == 0 && dup2(file, STDIN_FILENO) >= 0 &&
+      chdir("/") == 0) {  // no module of the working directory runs
+    execute(words);
+  }
+  throw SetupError(fmt::format("{}: cannot be started: {}", words[0], std::strerror(errno)));
+}
+
 pid_t start_program(std::vector<std::string>& words, int end, int stream) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  std::vector<char*> arguments = pointers_to(words);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   if (stream != STDIN_FILENO) {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hg::apps {
@@ -22,6 +23,10 @@ struct Ended {
 /// Runs a program to its end, in the root folder: Python would take modules from the working
 /// directory. It has no input, and the error output of this process.
 Ended run_program(std::vector<std::string> words);
+
+/// Replaces this process, in the root folder, by a program whose standard input is `input`. Does not
+/// return; throws SetupError where it cannot be started.
+[[noreturn]] void become_program(std::vector<std::string> words, std::string_view input);
 
 /// Starts a program with one end of a pipe as its standard input or output (`stream`), which is
 /// closed here; returns its process, 0 where it does not start. Without input it reads nothing.

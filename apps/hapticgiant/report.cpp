@@ -6,22 +6,19 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "apps/command_line/output.h"
-#include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/python_program.h"
 #include "hg/core/error.h"
-#include "hg/core/open_file.h"
 
 namespace hg::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
-// exit codes of the report program: a library is missing; its verdict is this plus 1 or 3
-constexpr int kMissing = 69, kVerdict = 100, kLargestVerdict = 3;
+constexpr int kMissing = 69;  // exit code of the report program: a library is missing
+
 std::vector<std::string> export_program(const std::string& format) {
   std::vector<std::string> words = python_program("report");
   words.insert(words.end(), {"--export", format});
@@ -36,6 +33,26 @@ std::vector<std::string> export_program(const std::string& format) {
       interpreter));
 }
 
+// null: none
+nlohmann::ordered_json absolute(const std::string& path) {
+  if (path.empty()) return nullptr;
+  return fs::absolute(path).string();
+}
+
+nlohmann::ordered_json json_of(const Report& report) {
+  nlohmann::ordered_json files = nlohmann::ordered_json::object();
+  for (const auto& [name, file] : report.files) {
+    if (!file.empty()) files[name] = absolute(file);
+  }
+  return {{"results", report.results},
+          {"folder", absolute(report.folder)},
+          {"docs", absolute(report.docs)},
+          {"files", files},
+          {"last_line", report.last_line},
+          {"kept", report.kept},
+          {"exit_code", report.exit_code}};
+}
+
 }  // namespace
 
 void check_report_program() {
@@ -44,26 +61,23 @@ void check_report_program() {
   if (run_program(words).code != 0) refuse(words[0]);
 }
 
-int write_report(const fs::path& folder, const std::string& docs,
-                 const std::vector<fs::path>& runs) {
-  std::vector<std::string> words = python_program("report");
-  words.push_back(fs::absolute(folder).string());
-  for (const fs::path& run : runs) words.push_back(fs::absolute(run).string());
-  if (!docs.empty()) words.insert(words.end(), {"--docs", fs::absolute(docs).string()});
-  const auto [code, said] = run_program(words);
-  if (code == Ended::kNotStarted || code == kMissing) refuse(words[0]);
-  print_out(said);
-  if (code == 0) return 0;
-  if (code > kVerdict && code <= kVerdict + kLargestVerdict) return code - kVerdict;
-  const std::string& program = words[words[2] == "-m" ? 3 : 2];
-  throw SetupError(fmt::format("{}: no report: {} of {} ended with {}", folder.string(), program,
-                               words[0], code));
-}
-
-int report_on(const fs::path& folder, const nlohmann::ordered_json& results,
-              const std::string& docs) {
-  write_output((folder / "results.json").string(), results.dump() + "\n");
-  return write_report(folder, docs);
+int become_reports(const std::vector<Report>& reports) {
+  nlohmann::ordered_json document;
+  std::string kept;
+  for (const Report& report : reports) {
+    document["reports"].push_back(json_of(report));
+    kept += report.kept;
+  }
+  try {
+    check_report_program();
+    // a recording may hold texts that are no UTF-8
+    become_program(python_program("report"),
+                   document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  } catch (const SetupError& error) {
+    if (kept.empty()) throw;
+    print_error("{}\n{}", error.what(), kept);
+    return kNotWritten;
+  }
 }
 
 std::string python_package_folder(const std::string& package) {
@@ -123,12 +137,6 @@ void ExportProgram::finish() {
   const bool has_ended = child > 0 && waitpid(child, &status, 0) == child;
   if (has_ended && WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   throw SetupError(fmt::format("{} could not write the export", words_[0]));
-}
-
-std::string report_text(const fs::path& folder, const nlohmann::ordered_json& results,
-                        const char* name, const std::string& docs) {
-  report_on(folder, results, docs);
-  return read_file(folder / name);
 }
 
 }  // namespace hg::apps

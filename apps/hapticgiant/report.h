@@ -1,35 +1,36 @@
-/// Reports whose numbers are the program's and whose text and pictures are Python's
-/// (python/hapticgiant/report).
+/// Reports: the program measures, then becomes the Python program that computes, draws, prints and
+/// writes (python/hapticgiant/report). Nothing comes back.
 #pragma once
 
 #include <sys/types.h>
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace hg::apps {
 
-/// Throws SetupError, with what to install, unless write_report() can work.
+/// What a report is made of, and where it goes.
+struct Report {
+  nlohmann::ordered_json results;            ///< their "kind" names the writer of the report
+  std::string folder;                        ///< of all files of the report; empty = none is kept
+  std::string docs;                          ///< documentation to refresh; empty = none
+  std::map<std::string, std::string> files;  ///< files of the report, and where each is written
+  std::string last_line;                     ///< printed at the end
+  std::string kept;   ///< who has the data, printed where there can be no report; empty = no one
+  int exit_code = 0;  ///< of the measurements
+};
+
+/// Throws SetupError, with what to install, unless become_reports() can work.
 void check_report_program();
 
-/// Writes the report on `folder`/results.json into the folder, or that on the runs in `runs`, each
-/// a folder with run.json and signals.npy. Prints what the report says, and refreshes the page of
-/// this report in `docs`; empty = none. Returns the exit code that the report asks for: 0, 1 not as
-/// expected, 3 a fault. Throws SetupError when there is no report.
-int write_report(const std::filesystem::path& folder, const std::string& docs,
-                 const std::vector<std::filesystem::path>& runs = {});
-
-/// Writes `results` as results.json to `folder` and then the report on it, as write_report().
-/// Without a report results.json remains.
-int report_on(const std::filesystem::path& folder, const nlohmann::ordered_json& results,
-              const std::string& docs = {});
-
-/// The same, and returns the text of the report's file `name`.
-std::string report_text(const std::filesystem::path& folder, const nlohmann::ordered_json& results,
-                        const char* name, const std::string& docs = {});
+/// Becomes the program that makes these reports and ends with the worst of their exit codes: 0, 1
+/// not as expected, 3 a fault, kNotWritten. Where it cannot be started: prints why and who has the
+/// data, and returns kNotWritten, or throws SetupError if that is lost.
+int become_reports(const std::vector<Report>& reports);
 
 /// Folder of a package that the interpreter has; empty = it has none.
 std::string python_package_folder(const std::string& package);

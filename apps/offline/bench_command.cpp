@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "apps/command_line/command.h"
@@ -20,8 +19,6 @@
 #include "bench/machine.h"
 #include "bench/scenario.h"
 #include "hg/config/shipped_files.h"
-#include "hg/core/open_file.h"
-#include "hg/core/scratch_folder.h"
 
 namespace hg::apps {
 namespace {
@@ -156,11 +153,10 @@ int bench(const BenchArguments& arguments) {
   }
   check_writable(arguments.json, kJson);
   check_report_program();  // before minutes of measurements
-  std::optional<ScratchFolder> scratch;
-  if (arguments.out.empty()) scratch.emplace();
-  const std::filesystem::path folder = scratch ? scratch->path() : arguments.out;
-  make_folder(folder.string());
-  check_writable((folder / "results.json").string());
+  const std::string file =
+      arguments.out.empty() ? "" : (std::filesystem::path(arguments.out) / "results.json").string();
+  if (!file.empty()) make_folder(arguments.out);
+  check_writable(file);
 
   bench::BenchResults results = {.machine = bench::describe_machine(),
                                  .passes = effort.passes,
@@ -177,9 +173,13 @@ int bench(const BenchArguments& arguments) {
   const bool is_well = play_laws(scenarios, results);
 
   if (isatty(STDERR_FILENO) != 0) draw_error("");
-  print_out(report_text(folder, to_json(results), "README.md"));
-  if (!arguments.json.empty()) write_output(arguments.json, read_file(folder / "bench.json"));
-  return is_right && is_solved && is_well ? 0 : 1;
+  const nlohmann::ordered_json measured = to_json(results);
+  if (!file.empty()) write_output(file, measured.dump() + "\n");
+  return become_reports({{.results = measured,
+                          .folder = arguments.out,
+                          .files = {{"bench.json", arguments.json}},
+                          .kept = file.empty() ? "" : file + " has the results\n",
+                          .exit_code = is_right && is_solved && is_well ? 0 : 1}});
 }
 
 void add_bench(Command app, int& exit_code) {

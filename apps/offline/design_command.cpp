@@ -20,7 +20,6 @@
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
-#include "hg/core/scratch_folder.h"
 #include "hg/design/device_metrics.h"
 #include "hg/design/human_arm.h"
 #include "hg/design/human_capability.h"
@@ -119,14 +118,14 @@ std::string person_text(const design::HumanArm& arm) {
                      arm.upper_arm + arm.forearm + arm.hand);
 }
 
-void write_picture(const std::string& file, const ordered_json& json) {
-  if (file.empty()) return;
-  check_report_program();
-  const ScratchFolder scratch;
-  write_output(file, report_text(scratch.path(), json, "picture.svg"));
+// Writes the results to the file and draws the picture that were asked for; the exit code.
+int write_and_draw(const ordered_json& json, const DesignArguments& arguments) {
+  write_json(arguments.json, json);
+  if (arguments.picture.empty()) return 0;
+  return become_reports({{.results = json, .files = {{"picture.svg", arguments.picture}}}});
 }
 
-void run_arm(const DesignArguments& arguments) {
+int run_arm(const DesignArguments& arguments) {
   check_writable(arguments.json, kJson);
   check_writable(arguments.picture, kSvg);
   design::CapabilityOptions options = arguments.capability;
@@ -145,7 +144,7 @@ void run_arm(const DesignArguments& arguments) {
             human.volume, options.voxel, human.cells);
   print_out("  {} joint vectors (seed {}), {} of them without entering the body\n", options.samples,
             options.seed, percent(human.share_clear));
-  if (arguments.json.empty() && arguments.picture.empty()) return;
+  if (arguments.json.empty() && arguments.picture.empty()) return 0;
   ordered_json json = {{"kind", "human_arm"}, {"arm", arm_json(arm)}};
   json["capability"] = capability_json(human);
   json["poses"] = ordered_json::array();
@@ -159,8 +158,7 @@ void run_arm(const DesignArguments& arguments) {
     item["torque"] = array_of(hand.torque);
     json["poses"].push_back(std::move(item));
   }
-  write_picture(arguments.picture, json);
-  write_json(arguments.json, json);
+  return write_and_draw(json, arguments);
 }
 
 ordered_json quantiles_json(const design::Quantiles& quantiles) {
@@ -242,7 +240,7 @@ void print_metrics(const design::DeviceMetrics& m, const design::MetricOptions& 
   }
 }
 
-void run_measure(const DesignArguments& arguments) {
+int run_measure(const DesignArguments& arguments) {
   check_writable(arguments.json, kJson);
   check_writable(arguments.picture, kSvg);
   const config::DeviceConfig device =
@@ -268,7 +266,7 @@ void run_measure(const DesignArguments& arguments) {
       "docs/concepts/human_arm.md\n",
       human.cells, capability.seed,
       options.grip == design::Grip::kAcross ? "across the handle" : "along the handle");
-  if (!options.keeps_poses) return;
+  if (!options.keeps_poses) return 0;
   ordered_json json = {{"kind", "device_metrics"}, {"device", device.name}};
   json["arm"] = arm_json(human.arm);
   json["capability"] = capability_json(human);
@@ -283,8 +281,7 @@ void run_measure(const DesignArguments& arguments) {
     item["device"] = pose_metrics_json(metrics.each[i]);
     json["poses"].push_back(std::move(item));
   }
-  write_picture(arguments.picture, json);
-  write_json(arguments.json, json);
+  return write_and_draw(json, arguments);
 }
 
 void add_person(Command command, DesignArguments& arguments) {
@@ -314,7 +311,7 @@ void refuse_search_words(Command design) {
                   design.remaining().front()));
 }
 
-void add_arm(Command design, const std::shared_ptr<DesignArguments>& arguments) {
+void add_arm(Command design, const std::shared_ptr<DesignArguments>& arguments, int& exit_code) {
   const Command arm = design.add_subcommand("arm", "The arm of a person: joints, reach, poses.");
   add_person(arm, *arguments);
   arm.add_option("--poses", arguments->poses, "poses of the hand in the file and the picture")
@@ -323,13 +320,14 @@ void add_arm(Command design, const std::shared_ptr<DesignArguments>& arguments) 
   arm.add_option("--picture", arguments->picture,
                  "draw reach, speeds and ranges of the joints to this SVG file");
   arm.footer("Example:\n  hapticgiant design arm --person female,5 --picture arm.svg");
-  arm.callback([arguments, design] {
+  arm.callback([arguments, design, &exit_code] {
     refuse_search_words(design);
-    run_arm(*arguments);
+    exit_code = run_arm(*arguments);
   });
 }
 
-void add_measure(Command design, const std::shared_ptr<DesignArguments>& arguments) {
+void add_measure(Command design, const std::shared_ptr<DesignArguments>& arguments,
+                 int& exit_code) {
   const Command measure = design.add_subcommand(
       "measure", "How well a device serves a person's arm: coverage, force, mass, first mode.");
   measure.add_option("device", arguments->device, "device file, or the name of a shipped one")
@@ -353,15 +351,15 @@ void add_measure(Command design, const std::shared_ptr<DesignArguments>& argumen
       "Examples:\n"
       "  hapticgiant design measure haptic_giant\n"
       "  hapticgiant design measure my_device.yaml --person female,5 --json measures.json");
-  measure.callback([arguments, design] {
+  measure.callback([arguments, design, &exit_code] {
     refuse_search_words(design);
-    run_measure(*arguments);
+    exit_code = run_measure(*arguments);
   });
 }
 
 }  // namespace
 
-void add_design(Command app) {
+void add_design(Command app, int& exit_code) {
   const Command command = add_offline(app, "design");
   command.footer(
       "`hapticgiant design FILE` searches for a device, from requirements to one that runs:\n"
@@ -377,8 +375,8 @@ void add_design(Command app) {
         "models/design/haptic_giant.yaml");
   });
   const auto arguments = std::make_shared<DesignArguments>();
-  add_arm(command, arguments);
-  add_measure(command, arguments);
+  add_arm(command, arguments, exit_code);
+  add_measure(command, arguments, exit_code);
 }
 
 }  // namespace hg::apps

@@ -6,6 +6,6 @@ namespace hg::apps {
 class Command;
 
 /// Adds `design arm` and `design measure` to the program.
-void add_design(Command app);
+void add_design(Command app, int& exit_code);
 
 }  // namespace hg::apps

@@ -25,8 +25,6 @@
 #include "hg/config/simulation/scenario.h"
 #include "hg/config/simulation/script_schema.h"
 #include "hg/core/error.h"
-#include "hg/core/open_file.h"
-#include "hg/core/scratch_folder.h"
 #include "hg/experiments/changes.h"
 #include "hg/experiments/contact.h"
 #include "hg/experiments/haptify/benchmark.h"
@@ -146,23 +144,16 @@ void check_output(const std::string& json) {
   if (json.empty()) check_report_program();
 }
 
-// Writes the results to `json`, prints the report on them and writes its file `name` to `file`;
-// each may be empty. Returns the exit code of the report, or kNotWritten without one.
+// Writes the results to `json` and makes the report on them, whose file `name` is written to `file`;
+// each may be empty. The exit code.
 int report(nlohmann::ordered_json results, const std::string& kind, const std::string& json,
            const std::string& docs = "", const char* name = "", const std::string& file = "") {
   write_json(json, results);
   results["kind"] = kind;
-  const ScratchFolder scratch;
-  const std::filesystem::path folder = scratch.path();
-  try {
-    const int code = report_on(folder, results, docs);
-    if (!file.empty()) write_output(file, read_file(folder / name));
-    return code;
-  } catch (const SetupError& error) {
-    if (json.empty()) throw;
-    print_error("{}\n{} has the results\n", error.what(), json);
-    return kNotWritten;
-  }
+  return become_reports({{.results = results,
+                          .docs = docs,
+                          .files = {{name, file}},
+                          .kept = json.empty() ? "" : json + " has the results\n"}});
 }
 
 // What a hand feels with encoders alone, and with units on all links that the control uses.

@@ -16,7 +16,6 @@
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/subcommand.h"
 #include "hg/core/error.h"
-#include "hg/core/open_file.h"
 #include "hg/core/scratch_folder.h"
 #include "hg/experiments/moved_scenario.h"
 #include "hg/scenario/assembly.h"
@@ -24,15 +23,6 @@
 
 namespace hg::apps {
 namespace {
-
-// Prints the table, which Python makes, and writes the files that were asked for.
-void report(const FaultsArguments& arguments, const nlohmann::ordered_json& json) {
-  write_json(arguments.json, json);
-  const ScratchFolder scratch;
-  print_out(report_text(scratch.path(), json, "report.txt"));
-  if (arguments.markdown.empty()) return;
-  write_output(arguments.markdown, read_file(std::filesystem::path(scratch.path()) / "report.md"));
-}
 
 // The scenarios with their options.
 struct Played {
@@ -110,8 +100,11 @@ int faults(FaultsArguments arguments) {
   };
   const std::size_t parts = 1 + (arguments.campaign.cases - 1) / kCasesOfAPart;
   if (play_campaign({command_of(arguments), parts, scenarios, play}, arguments.played)) return 0;
-  report(arguments, to_json(campaign));
-  return experiments::is_passed(campaign) ? 0 : 1;
+  const nlohmann::ordered_json results = to_json(campaign);
+  write_json(arguments.json, results);
+  return become_reports({{.results = results,
+                          .files = {{"report.md", arguments.markdown}},
+                          .kept = arguments.json.empty() ? "" : arguments.json + " has the results\n"}});
 }
 
 void add_faults(Command app, int& exit_code) {

@@ -15,7 +15,6 @@
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/subcommand.h"
 #include "hg/core/error.h"
-#include "hg/core/open_file.h"
 #include "hg/experiments/haptify/benchmark.h"
 #include "hg/scenario/options.h"
 
@@ -107,10 +106,17 @@ int run_haptify(const HaptifyArguments& arguments) {
     };
   }
   if (play_campaign(campaign, arguments.played)) return 0;
-  print_out(report_text(folder, results_json(arguments, measured), "report.txt", arguments.docs));
-  print_out(fmt::format("\nreport      {}\n",
-                        (folder / (arguments.only_goals ? "goals.md" : "report.html")).string()));
-  return measured.has_failures ? 1 : 0;
+  const nlohmann::ordered_json results = results_json(arguments, measured);
+  const fs::path file = folder / "results.json";
+  write_output(file.string(), results.dump() + "\n");
+  return become_reports(
+      {{.results = results,
+        .folder = folder.string(),
+        .docs = arguments.docs,
+        .last_line =
+            fmt::format("\nreport      {}\n",
+                        (folder / (arguments.only_goals ? "goals.md" : "report.html")).string()),
+        .kept = file.string() + " has the results\n"}});
 }
 
 void add_haptify(Command app, int& exit_code) {

@@ -24,6 +24,6 @@ int main(int argc, char** argv) {
     apps::add_faults(program, exit_code);
     apps::add_haptify(program, exit_code);
     apps::add_tune(program, exit_code);
-    apps::add_design(program);
+    apps::add_design(program, exit_code);
   });
 }

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,10 +40,11 @@ std::string command_of(const PaperExperimentArguments& arguments, std::string_vi
   return command;
 }
 
-int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& arguments) {
+// Plays an experiment; what its report is made of.
+Report run_one(const PaperExperiment& experiment, const PaperExperimentArguments& arguments) {
   print_out(fmt::format("\n{} ({})\n", experiment.title, experiment.source));
   const auto folder_of = [&](std::string_view name) { return fs::path(arguments.out) / name; };
-  std::vector<fs::path> runs;
+  std::vector<std::string> runs;
   for (const std::string& law : arguments.law == "both" ? std::vector<std::string>{"gauss", "paper"}
                                                         : std::vector{arguments.law}) {
     ExperimentRun run;
@@ -52,9 +53,9 @@ int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& a
     run.duration_s = arguments.duration_s;
     const auto play = [&](const PaperExperiment& played) {
       const fs::path folder = folder_of(played.name);
-      runs.push_back(arguments.law == "both" ? folder / law : folder);
+      run.folder = (arguments.law == "both" ? folder / law : folder).string();
+      runs.push_back(fs::absolute(run.folder).string());
       run.world.scenario = played.scenario;
-      run.folder = runs.back().string();
       make_folder(run.folder);
       play_experiment(played, run, command_of(arguments, experiment.name));
     };
@@ -63,7 +64,8 @@ int run_one(const PaperExperiment& experiment, const PaperExperimentArguments& a
       play({experiment.also, experiment.also, experiment.title, experiment.source});
     }
   }
-  return report_on_folder(folder_of(experiment.name).string(), arguments.docs, runs);
+  return report_in(folder_of(experiment.name).string(), arguments.docs,
+                   {{"kind", experiment.name}, {"runs", runs}});
 }
 
 // The worst code of all.
@@ -77,11 +79,11 @@ int run_paper_experiments(const PaperExperimentArguments& arguments,
   }
   print_out(
       fmt::format("HapticGiant {}  the paper's experiments, on a simulated machine\n", kVersion));
-  int code = 0;
+  std::vector<Report> reports;
   for (const PaperExperiment& experiment : experiments) {
-    code = std::max(code, run_one(experiment, arguments));
+    reports.push_back(run_one(experiment, arguments));
   }
-  return code;
+  return become_reports(reports);
 }
 
 void add_options(Command command, PaperExperimentArguments& arguments) {
@@ -100,16 +102,14 @@ void add_options(Command command, PaperExperimentArguments& arguments) {
 
 }  // namespace
 
-int report_on_folder(const std::string& folder, const std::string& docs,
-                     const std::vector<fs::path>& runs) {
-  try {
-    const int code = write_report(folder, docs, runs);
-    print_out(fmt::format("report      {}\n", (fs::path(folder) / "report.html").string()));
-    return code;
-  } catch (const SetupError& error) {
-    print_error("{}\n{} has the data\n", error.what(), folder);
-    return kNotWritten;
-  }
+Report report_in(const std::string& folder, const std::string& docs,
+                 const nlohmann::ordered_json& results) {
+  return {
+      .results = results,
+      .folder = folder,
+      .docs = docs,
+      .last_line = fmt::format("report      {}\n", (fs::path(folder) / "report.html").string()),
+      .kept = folder + " has the data\n"};
 }
 
 void add_paper_experiments(Command experiment, int& exit_code) {

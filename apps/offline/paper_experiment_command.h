@@ -5,10 +5,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "apps/hapticgiant/report.h"
 
 namespace hg::apps {
 
@@ -26,13 +28,12 @@ struct PaperExperimentArguments {
   std::vector<double> rates_Hz = {1000.0, 2000.0, 5000.0, 10000.0};
 };
 
-/// Measures the computation time of a cycle; exit code 0, or 4 (kNotWritten) without report.
+/// Measures the computation time of a cycle and makes the report; the exit code.
 int timing_experiment(const PaperExperimentArguments& arguments);
 
-/// The report on what is in `folder`, as write_report(), and a line that says where it is. Without
-/// a report it prints why, and that the data is kept: kNotWritten.
-int report_on_folder(const std::string& folder, const std::string& docs,
-                     const std::vector<std::filesystem::path>& runs = {});
+/// The report on `results`, written into `folder`, which has the data.
+Report report_in(const std::string& folder, const std::string& docs,
+                 const nlohmann::ordered_json& results);
 
 /// Adds cartesian, excavator, door, path, all and timing to the command `experiment`.
 void add_paper_experiments(Command experiment, int& exit_code);

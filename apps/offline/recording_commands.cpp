@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,7 +20,6 @@
 #include "apps/offline/subcommand.h"
 #include "hg/analysis/summary.h"
 #include "hg/core/error.h"
-#include "hg/core/scratch_folder.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/names.h"
@@ -64,9 +65,8 @@ class Reader final : public recording::RecordingListener {
     columns_.append(sample);
   }
 
-  // Writes run.json and signals.npy of the recording into a folder.
-  void write(const fs::path& folder, const std::string& file, const char* kind,
-             const recording::ReadResult& read) {
+  // What python/hapticgiant/report/runs.py reads of the recording, besides its columns.
+  Json facts(const std::string& file, const char* kind, const recording::ReadResult& read) const {
     Json run = describe(*scenario_);
     run["kind"] = kind;
     run["note"] = fs::weakly_canonical(file).filename().string();
@@ -81,11 +81,24 @@ class Reader final : public recording::RecordingListener {
     for (const recording::NamedText& text : configuration_) {
       run["configuration"][text.name] = text.text;
     }
-    analysis::RunFacts facts = scenario::facts_of_scenario(*scenario_);
-    facts.rate_Hz = scenario_->device.model.rate_Hz;
-    run["summary"] = summary_->to_json(facts, {});
-    make_folder(folder.string());
-    write_run(folder, run, columns_);
+    analysis::RunFacts known = scenario::facts_of_scenario(*scenario_);
+    known.rate_Hz = scenario_->device.model.rate_Hz;
+    run["summary"] = summary_->to_json(known, {});
+    return run;
+  }
+
+  const recording::Columns& columns() const noexcept { return columns_; }
+
+  // The columns by their names; each has one whole number of 8 bytes per row.
+  Json whole_numbers() const {
+    Json numbers = Json::object();
+    for (const recording::Column& column : columns_.all()) {
+      if (!column.is_kept) continue;
+      std::vector<std::uint64_t> values(column.data.size() / sizeof(std::uint64_t));
+      std::memcpy(values.data(), column.data.data(), values.size() * sizeof(std::uint64_t));
+      numbers[column.name] = values;
+    }
+    return numbers;
   }
 
  private:
@@ -97,13 +110,6 @@ class Reader final : public recording::RecordingListener {
   Json events_ = Json::array();
 };
 
-void write_recording(const std::string& file, const char* kind, const fs::path& folder,
-                     const std::vector<std::string>& names, double period_s) {
-  Reader reader(names, period_s);
-  const recording::ReadResult read = recording::read_recording(file, reader);
-  reader.write(folder, file, kind, read);
-}
-
 // Without matplotlib only run.json and signals.npy are written, and a line says how to get
 // figures.
 int plot(const PlotArguments& arguments) {
@@ -114,29 +120,39 @@ int plot(const PlotArguments& arguments) {
     // one run: into the folder itself; of several each has a folder of its own
     const std::string name = fmt::format("{}_{}", runs.size() + 1, fs::path(file).stem().string());
     runs.push_back(arguments.files.size() == 1 ? out : out / name);
-    write_recording(file, "any", runs.back(), signal_names(), kFigurePeriod_s);
+    Reader reader(signal_names(), kFigurePeriod_s);
+    const recording::ReadResult read = recording::read_recording(file, reader);
+    make_folder(runs.back().string());
+    write_run(runs.back(), reader.facts(file, "any", read), reader.columns());
   }
-  std::string signals = "signals.npy";
+  Json folders = Json::array();
+  for (const fs::path& run : runs) folders.push_back(fs::absolute(run).string());
+  const auto signals_in = [&](const char* name) {
+    return fmt::format("signals     {}\n", (runs.front() / name).string());
+  };
   try {
-    write_report(out, {}, runs);
-    print_out(fmt::format("figures     {0}/figure.svg, {0}/figure.png\n", arguments.out));
-    signals = "signals.csv";
+    check_report_program();
   } catch (const SetupError& error) {
-    print_out(fmt::format("no figures: {}\n", error.what()));
+    print_out(fmt::format("no figures: {}\n{}", error.what(), signals_in("signals.npy")));
+    return 0;
   }
-  print_out(fmt::format("signals     {}\n", (runs.front() / signals).string()));
-  return 0;
+  return become_reports(
+      {{.results = {{"kind", "any"}, {"runs", folders}},
+        .folder = arguments.out,
+        .last_line = fmt::format("figures     {0}/figure.svg, {0}/figure.png\n{1}", arguments.out,
+                                 signals_in("signals.csv"))}});
 }
 
 int compare(const CompareArguments& arguments) {
   check_report_program();
-  const ScratchFolder scratch;
-  const fs::path folder = scratch.path();
-  const std::vector<fs::path> runs = {folder / "first", folder / "second"};
-  const std::vector<std::string> names = {"time_s", "cycle", "state_hash"};
-  write_recording(arguments.a, "compare", runs[0], names, 0.0);
-  write_recording(arguments.b, "compare", runs[1], names, 0.0);
-  return write_report(folder, {}, runs);
+  Json results = {{"kind", "compare"}};
+  for (const std::string& file : {arguments.a, arguments.b}) {
+    Reader reader({"cycle", "state_hash"}, 0.0);
+    const recording::ReadResult read = recording::read_recording(file, reader);
+    results["runs"].push_back({{"facts", reader.facts(file, "compare", read)},
+                               {"columns", reader.whole_numbers()}});
+  }
+  return become_reports({{.results = results}});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/paper_experiment_command.h"
 #include "bench/bench_results.h"
@@ -76,7 +77,7 @@ int timing_experiment(const PaperExperimentArguments& arguments) {
   }
   if (isatty(STDERR_FILENO) != 0) draw_error("");
   write_output((folder / "results.json").string(), results.dump() + "\n");
-  return report_on_folder(folder.string(), arguments.docs);
+  return become_reports({report_in(folder.string(), arguments.docs, results)});
 }
 
 }  // namespace hg::apps

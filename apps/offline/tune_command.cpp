@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "apps/command_line/command.h"
 #include "apps/command_line/option_checks.h"
@@ -19,7 +18,6 @@
 #include "hg/config/control_cycle.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
-#include "hg/core/scratch_folder.h"
 #include "hg/scenario/assembly.h"
 #include "hg/tune/tuned_device.h"
 
@@ -77,28 +75,15 @@ int run_tune(const TuneArguments& arguments) {
                              .name = device.name,
                              .command = command_of(arguments)};
 
-  std::optional<ScratchFolder> scratch;
-  if (arguments.only_checks) scratch.emplace();
-  const std::filesystem::path folder = scratch ? scratch->path() : arguments.out;
-  print_out(report_text(folder, tune_json(report), "report.txt"));
-  if (arguments.only_checks) return result.proof_before.holds() ? 0 : 1;
-  print_out(fmt::format("\nreport      {}\n", (folder / "report.md").string()));
-  const tune::Figures& found = result.front.front().figures;
-  constexpr double kTolerated = 1.01;  // of limits that the search approaches from both sides
-  if (!result.proofs.front().holds()) {
-    print_error(
-        "not proven: do not use these lines; more vibration (--vibration) leaves more room\n");
-    return 1;
-  }
-  if (found.vibration > kTolerated * limit ||
-      found.friction_N > kTolerated * problem.friction_most_N) {
-    print_error(
-        "missed: vibration {:.4f} m/s^2, at most {:.4f}; unexpected friction {:.3f} N, at most "
-        "{:.3f}\n",
-        found.vibration, limit, found.friction_N, problem.friction_most_N);
-    return 1;
-  }
-  return 0;
+  const nlohmann::ordered_json results = tune_json(report);
+  if (arguments.only_checks) return become_reports({{.results = results}});
+  const std::filesystem::path folder = arguments.out;
+  write_output((folder / "results.json").string(), results.dump() + "\n");
+  return become_reports(
+      {{.results = results,
+        .folder = folder.string(),
+        .last_line = fmt::format("\nreport      {}\n", (folder / "report.md").string()),
+        .kept = (folder / "results.json").string() + " has the results\n"}});
 }
 
 void add_tune(Command app, int& exit_code) {

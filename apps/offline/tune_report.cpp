@@ -85,6 +85,7 @@ Json tune_json(const TuneReport& report) {
                {"felt_postures", std::min(problem.felt_postures, postures)},
                {"cases", postures * report.demands.cases(0).size()},
                {"held_before", std::ranges::count_if(result.everywhere_before, &Proof::holds)},
+               {"friction_most_N", problem.friction_most_N},
                {"arm_limit", tune::kArmRadius},
                {"hand_limit", tune::kHandRadius}};
   for (const tune::Knob& knob : tune::knobs()) {

@@ -17,7 +17,7 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from hapticgiant.figures import SETTINGS
 from hapticgiant.report import bench
-from report_test import overlapping
+from report_test import overlapping, said
 
 STAGES = ["supervision", "estimation", "prepositioning", "rendering set-up", "solver", "reactions"]
 
@@ -116,13 +116,12 @@ class Report(unittest.TestCase):
         for _ in range(2):
             with tempfile.TemporaryDirectory() as name:
                 folder = pathlib.Path(name)
-                (folder / "results.json").write_text(json.dumps(results()))
-                bench.write(folder)
+                said(bench.write, results(), folder)
                 texts.append({file.name: file.read_text() for file in folder.iterdir()})
                 with open(folder / "solver.csv", newline="") as file:
                     rows = list(csv.DictReader(file, strict=True))
         self.assertEqual(texts[0], texts[1])
-        self.assertEqual(len(texts[0]), 14)
+        self.assertEqual(len(texts[0]), 13)
         for name, text in texts[0].items():
             if name.endswith(".svg"):
                 xml.etree.ElementTree.fromstring(text)
@@ -147,8 +146,7 @@ class Report(unittest.TestCase):
         empty = results(solver=[], cycles=[], growth=[], laws=[], remarks=[])
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            (folder / "results.json").write_text(json.dumps(empty))
-            bench.write(folder)
+            said(bench.write, empty, folder)
             self.assertEqual((folder / "solver.csv").read_text(), "")
 
 

@@ -4,7 +4,6 @@ Usage: device_report_test.py   (from anywhere; needs scipy, matplotlib and jinja
 """
 
 import csv
-import json
 import pathlib
 import sys
 import tempfile
@@ -18,7 +17,7 @@ from matplotlib.figure import Figure
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from hapticgiant.figures import SETTINGS
 from hapticgiant.report import capability, tuning
-from report_test import overlapping
+from report_test import overlapping, said
 
 
 def reached(**more):
@@ -54,8 +53,7 @@ class Capability(unittest.TestCase):
         for points in (reached(), reached(points=unlimited), reached(points=[])):
             with tempfile.TemporaryDirectory() as name:
                 folder = pathlib.Path(name)
-                (folder / "results.json").write_text(json.dumps(points))
-                capability.write(folder)
+                capability.write(points, folder)
                 text = (folder / "map.svg").read_text()
             self.assertTrue(text.startswith("<svg"))
             xml.etree.ElementTree.fromstring(text)
@@ -80,7 +78,7 @@ def tuned(**more):
             "knobs": [{"section": "estimation", "key": "wrench_Hz"},
                       {"section": "control", "key": "follower_Hz"},
                       {"section": "control", "key": "lead_s"}],
-            "before": loop(1.0, is_proven=False), "front": [loop(1.2), loop(0.7, is_proven=False)],
+            "friction_most_N": 0.2, "before": loop(1.0, is_proven=False), "front": [loop(1.2), loop(0.7, is_proven=False)],
             "felt_before": felt, "felt": felt, "radii_before": radii, "radii": radii, **more}
 
 
@@ -88,8 +86,7 @@ class Tuning(unittest.TestCase):
     def write(self, results):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            (folder / "results.json").write_text(json.dumps(results))
-            tuning.write(folder)
+            self.verdict, self.shown = said(tuning.write, results, folder)
             return {file.name: file.read_bytes() for file in folder.iterdir()}
 
     def test_lines_for_device_yaml_are_the_same_everywhere(self):
@@ -117,9 +114,20 @@ class Tuning(unittest.TestCase):
         self.assertEqual([row["is_proven"] for row in rows], ["0", "1", "0"])
         self.assertEqual([float(row["wrench_Hz"]) for row in rows], [100.0, 120.0, 70.0])
 
+    def test_lines_that_must_not_be_used_are_1(self):
+        self.write(tuned())
+        self.assertEqual((self.verdict, tuning.lack_of(tuned())), (0, ""))
+        for lack, loop_ in (("not proven", loop(1.2, is_proven=False)), ("missed: vibration 0.0430", loop(
+                1.2, vibration_m_per_s2=0.043)), ("friction 0.210 N, at most 0.200", loop(1.2, friction_N=0.21))):
+            self.write(tuned(front=[loop_]))
+            self.assertEqual(self.verdict, 1)
+            self.assertIn(lack, tuning.lack_of(tuned(front=[loop_])))
+        self.write(tuned(front=[], before=loop(1.0, is_proven=False)))
+        self.assertEqual(self.verdict, 1)
+
     def test_a_check_is_only_text(self):
         files = self.write(tuned(front=[]))
-        self.assertEqual(set(files), {"results.json", "report.txt"})
+        self.assertEqual(set(files), {"report.txt"})
         self.assertIn(b"holds in 1 of 2 postures", files["report.txt"])
 
     def test_the_figure_has_no_overlaps(self):

@@ -3,10 +3,11 @@
 Usage: faults_report_test.py   (from anywhere; no compiled part)
 """
 
-import json
 import pathlib
 import tempfile
 import unittest
+
+from report_test import said
 
 from hapticgiant.report import faults, tables
 
@@ -78,8 +79,7 @@ class Faults(unittest.TestCase):
     def test_the_page_of_the_documents_links_to_its_tables(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            (folder / "results.json").write_text(json.dumps(results(case())))
-            faults.write(folder, docs=folder)
+            said(faults.write, results(case()), folder, docs=folder)
             page = (folder / "fault_campaign.md").read_text()
             self.assertIn("\n[Table: fault_campaign_kinds.csv](fault_campaign_kinds.csv)\n", page)
             self.assertIn("\nmotor_dead,no torque,-\n", (folder / "fault_campaign_kinds.csv").read_text())

@@ -3,6 +3,8 @@
 Usage: report_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
+import contextlib
+import io
 import pathlib
 import unittest
 
@@ -30,6 +32,13 @@ def tick_labels_outside(figure):
                     if label not in drawn or not low <= tick.get_loc() <= high:
                         hidden.add(label)
     return hidden
+
+
+def said(write, *arguments, **options):
+    """What a writer of reports returns, and what it prints."""
+    with contextlib.redirect_stdout(io.StringIO()) as text:
+        result = write(*arguments, **options)
+    return result, text.getvalue()
 
 
 def overlapping(figure):

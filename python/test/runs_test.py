@@ -3,8 +3,6 @@
 Usage: runs_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
-import contextlib
-import io
 import json
 import math
 import pathlib
@@ -12,7 +10,7 @@ import tempfile
 import unittest
 
 import numpy as np
-import report_test  # noqa: F401  finds the package
+from report_test import said  # also finds the package
 
 from hapticgiant.report import experiments, recordings, runs
 
@@ -88,11 +86,6 @@ class Folders(unittest.TestCase):
         (folder / "run.json").write_text(json.dumps(run))
         (folder / "timing.json").write_text(json.dumps(timing or summary()))
         return folder
-
-    def said(self, function, *arguments, **options):
-        with contextlib.redirect_stdout(io.StringIO()) as text:
-            result = function(*arguments, **options)
-        return result, text.getvalue()
 
 
 class Signals(Folders):
@@ -238,9 +231,9 @@ class Experiments(Folders):
         one = self.run_folder(table(), facts(), name="gauss")
         two = self.run_folder(table(), facts(times=DOOR_EVENTS | {"pulled": None}),
                               summary(law="paper"), name="paper")
-        verdict, said = self.said(experiments.write, self.folder, [one, two])
+        verdict, shown = said(experiments.write, {"runs": [one, two]}, self.folder)
         self.assertEqual(verdict, 1)
-        self.assertIn("NOT AS EXPECTED: pulled did not happen", said)
+        self.assertIn("NOT AS EXPECTED: pulled did not happen", shown)
         page = (self.folder / "report.html").read_text()
         self.assertIn("simulated, law gauss</th><th>simulated, law paper", page)
         self.assertIn("1500 / 2", page)
@@ -249,24 +242,25 @@ class Experiments(Folders):
         self.assertEqual(page.count("<svg"), 1)
         self.assertTrue((one / "results.json").exists())
         fault = self.run_folder(table(), facts(), summary(fault={"code": 5, "what": "x"}), "fault")
-        self.assertEqual(self.said(experiments.write, self.folder, [fault])[0], 3)
+        self.assertEqual(said(experiments.write, {"runs": [fault]}, self.folder)[0], 3)
 
 
-class Comparison(Folders):
+class Comparison(unittest.TestCase):
     def recorded(self, name, rows, **more):
         run = facts() | {"kind": "compare", "file": name, "is_complete": True, "losses": "",
                          "configuration": {"arguments": "", "door.yaml": "a"}, "summary": summary()}
-        return self.run_folder(rows, run | more, name=name)
+        return {"facts": run | more,
+                "columns": {name: rows[name].tolist() for name in ("cycle", "state_hash")}}
 
     def compare(self, rows, other_rows, **more):
-        return self.said(recordings.write, self.folder, [self.recorded("a", rows),
-                                                         self.recorded("b", other_rows, **more)])
+        both = [self.recorded("a", rows), self.recorded("b", other_rows, **more)]
+        return said(recordings.write, {"kind": "compare", "runs": both}, None)
 
     def test_the_same(self):
-        code, said = self.compare(table(), table())
+        code, text = self.compare(table(), table())
         self.assertEqual(code, 0)
-        self.assertIn("state          the same in every cycle", said)
-        self.assertIn("events         nothing changed", said)
+        self.assertIn("state          the same in every cycle", text)
+        self.assertIn("events         nothing changed", text)
 
     def test_what_changed(self):
         other = table(14.0)
@@ -275,7 +269,7 @@ class Comparison(Folders):
         changed = summary(force={"mean_N": 5.04, "max_N": 12.0, "max_torque_Nm": 1.0},
                           cycle_time_us={"median": 11.0, "p99_9": 20.1, "max": 5.0})
         changed["limits"]["hand x"]["worst_violation"] = 3e-4
-        code, said = self.compare(table(), other, events=events, summary=changed,
+        code, text = self.compare(table(), other, events=events, summary=changed,
                                   configuration={"arguments": "--seed 2\n", "new.yaml": "b"})
         self.assertEqual(code, 1)
         for line in ("options: none -> --seed 2", "door.yaml: only in the first",
@@ -283,22 +277,22 @@ class Comparison(Folders):
                      "1500 -> 1400 cycles", "pulled (6.000 s) is missing in the second",
                      "locked 20 ms later (2.000 -> 2.020 s)", "largest 9.0 -> 12.0 N",
                      "hand x exceeded by 0.12 -> 0.30 mm", "median 10.0 -> 11.0 us"):
-            self.assertIn(line, said)
+            self.assertIn(line, text)
         for line in ("mean 5", "99.9 %", "cycles are in", "largest 0.0"):
-            self.assertNotIn(line, said)
+            self.assertNotIn(line, text)
 
     def test_cycles_that_are_lost_in_one(self):
         rows = table()
-        code, said = self.compare(np.delete(rows, [3, 4]), np.delete(rows, [9]))
+        code, text = self.compare(np.delete(rows, [3, 4]), np.delete(rows, [9]))
         self.assertEqual(code, 1)
-        self.assertIn("1 cycles are in the first only, 2 in the second only", said)
-        self.assertNotIn("different from", said)
+        self.assertIn("1 cycles are in the first only, 2 in the second only", text)
+        self.assertNotIn("different from", text)
 
     def test_timing_alone_is_no_difference(self):
         other = summary(cycle_time_us={"median": 15.0, "p99_9": 20.0, "max": 0.0})
-        code, said = self.compare(table(), table(), summary=other)
+        code, text = self.compare(table(), table(), summary=other)
         self.assertEqual(code, 0)
-        self.assertIn("timing         median 10.0 -> 15.0 us", said)
+        self.assertIn("timing         median 10.0 -> 15.0 us", text)
 
 
 if __name__ == "__main__":

@@ -3,16 +3,13 @@
 Usage: series_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
-import contextlib
-import io
-import json
 import pathlib
 import tempfile
 import unittest
 
 import matplotlib
 import numpy as np
-from report_test import overlapping  # also finds the package
+from report_test import overlapping, said  # also finds the package
 
 from hapticgiant import figures
 from hapticgiant.report import series, timing
@@ -24,10 +21,7 @@ class Reports(unittest.TestCase):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         folder = pathlib.Path(scratch.name)
-        (folder / "results.json").write_text(json.dumps(results))
-        with contextlib.redirect_stdout(io.StringIO()) as text:
-            verdict = module.write(folder, docs=docs)
-        return verdict, text.getvalue(), folder
+        return *said(module.write, results, folder, docs=docs), folder
 
 
 def seeded(trial=0, excess=0.0, **more):

@@ -1,8 +1,8 @@
 """Reports of the program's commands: pages with pictures, Markdown, LaTeX, CSV and text.
 
-    python report FOLDER [RUN...] [--docs DOCS]      also: python -m hapticgiant.report ...
+    python report < DOCUMENT      also: python -m hapticgiant.report
 
-FOLDER holds results.json, which the program writes; or each folder RUN holds run.json and
-signals.npy. The report is written into FOLDER, and what a terminal shows is printed. The same
-results give the same files. Needs scipy, matplotlib and jinja2, not the package's compiled part.
+The program measures and then becomes this one, which reads the results from its standard input,
+computes, draws, prints, writes all files and ends with the exit code of the command; see __main__.py
+for the document. The same results give the same files. Needs scipy, matplotlib and jinja2, not the package's compiled part.
 """

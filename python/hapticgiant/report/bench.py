@@ -1,4 +1,4 @@
-"""Tables, figures and README.md of `hapticgiant bench`, from its times in results.json."""
+"""Tables, figures and README.md of `hapticgiant bench`, from its times."""
 
 import json
 
@@ -335,10 +335,9 @@ def readme(results, rows):
     return "".join(parts)
 
 
-def write(folder, docs=None):
-    """Writes the report beside results.json."""
+def write(results, folder, docs=None):
+    """Writes the report into `folder`."""
     del docs
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     growth = growth_rows(results)
     rows = {"solver": solver_rows(results), "cycle": cycle_rows(results), "growth": growth,
             "growth_exponents": exponent_rows(growth), "runs": law_rows(results)}
@@ -353,6 +352,7 @@ def write(folder, docs=None):
         "laws.csv": as_csv([flat(row) for row in rows["runs"]]),
         **{f"{name}.csv": as_csv(rows[name])
            for name in ("solver", "cycle", "growth", "growth_exponents")}}
+    print(texts["README.md"], end="")
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
     with matplotlib.rc_context(SETTINGS):

@@ -1,6 +1,5 @@
 """map.svg of `hapticgiant check --map`: the force over two sections of a device's workspace."""
 
-import json
 
 import matplotlib
 import numpy as np
@@ -89,10 +88,9 @@ def figure_of(results):
     return figure
 
 
-def write(folder, docs=None):
-    """Writes map.svg beside results.json."""
+def write(results, folder, docs=None):
+    """Writes map.svg."""
     del docs
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     with matplotlib.rc_context({**SETTINGS, "svg.fonttype": "none"}):
         text = pictures.to_svg(figure_of(results), "map")
     (folder / "map.svg").write_text(text, encoding="utf-8")

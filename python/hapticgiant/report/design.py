@@ -1,6 +1,5 @@
 """report.html of `hapticgiant design`: front, convergence, coverage maps, sensitivity."""
 
-import json
 
 import matplotlib
 import numpy as np
@@ -149,9 +148,8 @@ def verdicts(results):
     return rows
 
 
-def write(folder, docs=None):
+def write(results, folder, docs=None):
     del docs
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     with matplotlib.rc_context(SETTINGS):
         svg = pictures.to_svg(figure_of(results), "design")
     save(folder / "figure.svg", svg)

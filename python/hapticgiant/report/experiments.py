@@ -2,6 +2,7 @@
 
 import json
 import math
+import pathlib
 
 import numpy as np
 
@@ -462,9 +463,9 @@ def parts(runs):
             in zip(titles, files, rows, ("", COMMENT.get(kind, ""), ""))]
 
 
-def write(folder, run_folders, docs=None):
+def write(results, folder, docs=None):
     """Writes the report on runs of one experiment; returns 0, 1 not as expected, 3 a fault."""
-    runs = [Measured(run_folder) for run_folder in run_folders]
+    runs = [Measured(pathlib.Path(run_folder)) for run_folder in results["runs"]]
     for run in runs:
         write_data(run)
         say(run)

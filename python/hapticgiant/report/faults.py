@@ -1,7 +1,6 @@
 """Tables of `hapticgiant faults`: what the machine did about every kind of injected fault."""
 
 import collections
-import json
 import statistics
 
 from . import pages, tables
@@ -124,11 +123,11 @@ def page(results, form=pages.in_text):
             f"a\ntenth.\n\n{form(rows_of_kinds(results), 'kinds', most=0)}")
 
 
-def write(folder, docs=None):
-    """Writes report.txt and report.md beside results.json, and docs/reports/fault_campaign.md with its tables."""
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    (folder / "report.txt").write_text(text(results), encoding="utf-8")
+def write(results, folder, docs=None):
+    """Writes report.md, and docs/reports/fault_campaign.md with its tables."""
+    print(text(results), end="")
     (folder / "report.md").write_text(page(results), encoding="utf-8")
     if docs:
         file = docs / "fault_campaign.md"
         pages.save(file, page(results, pages.PageTables(file)))
+    return 0 if all(case["passed"] for case in results["cases"]) else 1

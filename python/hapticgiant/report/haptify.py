@@ -192,35 +192,38 @@ def haptify_text(results):
     return "".join(lines) + failures_text(results)
 
 
-def read_results(file):
-    """results.json, with NaN for the null that stands for infinite and undefined results."""
-    def with_numbers(entry):
-        return {key: math.nan if value is None else value for key, value in entry.items()}
-    return json.loads(file.read_text(encoding="utf-8"), object_hook=with_numbers)
+def with_numbers(entry):
+    """`entry` with NaN for the null that stands for infinite and undefined results."""
+    if isinstance(entry, dict):
+        return {key: math.nan if value is None else with_numbers(value) for key, value in entry.items()}
+    return [with_numbers(value) for value in entry] if isinstance(entry, list) else entry
 
 
-def write(folder, docs=None):
-    """Writes the report beside results.json, and into the pages of `docs`."""
-    measured = read_results(folder / "results.json")
+def write(results, folder, docs=None):
+    """Writes the report into `folder` and into the pages of `docs`; returns 1 where a run has failed."""
+    measured = with_numbers(results)
     name = measured["kind"]
     results = Results((goals if name == "goals" else benchmark).figures(measured))
     save(folder / "figures.json", json.dumps(results.facts, allow_nan=False) + "\n")
     if name == "goals":
         text = goals_markdown(results)
-        save(folder / "report.txt", goals_text(results))
+        shown = goals_text(results)
         save(folder / "goals.md", f"# Goals: {results['device']}\n\n{text}")
         save(folder / "goals_runs.csv", repetitions_csv(results))
     else:
         text = markdown(results)
-        save(folder / "report.txt", haptify_text(results))
+        shown = haptify_text(results)
         save(folder / "report.html", html(results))
         save(folder / "report.md", f"# Haptify: {results['device']}\n\n{text}")
         save(folder / "table.tex", latex(results))
         save(folder / "haptify.csv", figures_csv(results))
         save(folder / "repetitions.csv", repetitions_csv(results))
+    save(folder / "report.txt", shown)
+    print(shown, end="")
     for table in results["tables"]:
         save(folder / f"{table['id']}.csv", tables.as_csv(rows_of(table)))
     if docs:
         page = docs / f"{name}.md"
         write_text = goals_markdown if name == "goals" else markdown
         refresh(page, write_text(results, PageTables(page)))
+    return 1 if results["failures"] else 0

@@ -1,6 +1,5 @@
 """picture.svg of `hapticgiant design arm --picture`: reach, speeds and joint ranges of a person's arm."""
 
-import json
 
 import matplotlib
 import numpy as np
@@ -110,10 +109,9 @@ def figure_of(results):
     return figure
 
 
-def write(folder, docs=None):
-    """Writes picture.svg beside results.json."""
+def write(results, folder, docs=None):
+    """Writes picture.svg."""
     del docs
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     with matplotlib.rc_context({**SETTINGS, "svg.fonttype": "none"}):
         text = pictures.to_svg(figure_of(results), "arm")
     (folder / "picture.svg").write_text(text, encoding="utf-8")

@@ -1,5 +1,7 @@
 """`hapticgiant plot` and `hapticgiant compare`: figures of recordings, and what differs in two."""
 
+import pathlib
+
 import numpy as np
 
 from .. import figures
@@ -9,6 +11,14 @@ from .runs import Run, label_of
 # smallest reported differences: half a cycle, a force that is not felt, a fraction of the allowed
 # excess, a share of a computing time
 TIME_S, FORCE_N, EXCESS, SHARE = 5e-4, 0.05, 5e-5, 0.02
+
+
+class Recorded(dict):
+    """One recording of a comparison: its facts, and the columns "cycle" and "state_hash" of all cycles."""
+
+    def __init__(self, recorded):
+        super().__init__(recorded["facts"])
+        self.table = {name: np.array(column, dtype=np.uint64) for name, column in recorded["columns"].items()}
 
 
 def plot(folder, runs):
@@ -139,6 +149,9 @@ def compare(first, second):
     return 1 if any(findings.values()) else 0
 
 
-def write(folder, run_folders, docs=None):
-    runs = [Run(run_folder) for run_folder in run_folders]
-    return compare(*runs) if runs[0]["kind"] == "compare" else plot(folder, runs)
+def write(results, folder, docs=None):
+    """Compares recordings, whose facts and columns are in the results, or plots those in folders."""
+    del docs
+    if results["kind"] == "compare":
+        return compare(*map(Recorded, results["runs"]))
+    return plot(folder, [Run(pathlib.Path(run)) for run in results["runs"]])

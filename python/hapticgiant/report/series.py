@@ -1,7 +1,6 @@
 """What `hapticgiant experiment contact|free-space|impedance|inertial|seeds|stability-map` shows: series of runs."""
 
 import itertools
-import json
 import statistics
 
 import matplotlib
@@ -382,6 +381,5 @@ STUDIES = {"contact": contact, "free-space": free_space, "impedance": impedance,
            "seeds": seeds, "stability-map": stability_map}
 
 
-def write(folder, docs=None):
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+def write(results, folder, docs=None):
     return STUDIES[results["kind"]](folder, results, docs)

@@ -1,6 +1,5 @@
 """The report of `hapticgiant experiment timing`: computing times of a cycle beside the paper's."""
 
-import json
 
 from .. import figures
 from . import bench, pages, tables
@@ -16,7 +15,7 @@ HOW = ("Each cycle of the Cartesian experiment is played twice and its faster ti
 
 
 def with_times(row):
-    """A row of results.json with its times in us and its histogram."""
+    """A row of the results with its times in us and its histogram."""
     stages = {name: bench.mean(ns) for name, ns in row["stages"].items()}
     edges, counts = bench.histogram(row["total"])
     return row | bench.distribution(row["total"]) | {
@@ -59,8 +58,7 @@ def figure_facts(results):
     return {"has_two_laws": results["has_two_laws"], "paper_us": PAPER_US, "series": series}
 
 
-def write(folder, docs=None):
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+def write(results, folder, docs=None):
     results["rows"] = [with_times(row) for row in results["rows"]]
     rows, machine = rows_of(results), results["machine"]
     print(tables.markdown(rows))

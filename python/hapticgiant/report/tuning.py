@@ -1,6 +1,6 @@
 """The report of `hapticgiant tune`: figures, proofs and values before and after, and the front."""
 
-import json
+import sys
 
 import matplotlib
 import numpy as np
@@ -154,17 +154,33 @@ def draw(figure, facts):
         panel.set_title(f"({text})", loc="left", fontsize=8, fontweight="bold")
 
 
-def write(folder, docs=None):
-    """Writes report.txt beside results.json; with a front also report.md, front.csv and figures."""
+def lack_of(results):
+    """What forbids to use the first loop of the front, in a sentence; empty: nothing does."""
+    found, friction_N = results["front"][0], results["friction_most_N"]
+    if not found["is_proven"]:
+        return "not proven: do not use these lines; more vibration (--vibration) leaves more room"
+    tolerated = 1.01  # of limits that the search approaches from both sides
+    if (found["vibration_m_per_s2"] > tolerated * found["limit_m_per_s2"]
+            or found["friction_N"] > tolerated * friction_N):
+        return (f"missed: vibration {found['vibration_m_per_s2']:.4f} m/s^2, at most "
+                f"{found['limit_m_per_s2']:.4f}; unexpected friction {found['friction_N']:.3f} N, at most "
+                f"{friction_N:.3f}")
+    return ""
+
+
+def write(results, folder, docs=None):
+    """Writes report.txt; with a front also report.md, front.csv and figures. Returns 1 unless what the
+    device has, or the first loop of the front, is proven and within its limits."""
     del docs
-    results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
 
     def save(name, content):
         (folder / name).write_text(content, encoding="utf-8")
 
+    shown = text(results) if results["front"] else check_text(results)
+    save("report.txt", shown)
+    print(shown, end="")
     if not results["front"]:
-        return save("report.txt", check_text(results))
-    save("report.txt", text(results))
+        return 0 if results["before"]["is_proven"] else 1
     save("report.md", markdown(results))
     save("front.csv", as_csv(results))
     with matplotlib.rc_context(SETTINGS):
@@ -174,3 +190,6 @@ def write(folder, docs=None):
                        bbox_inches="tight", pad_inches=0.04)
         figure.savefig(folder / "figure.png", dpi=200, metadata={"Software": None},
                        bbox_inches="tight", pad_inches=0.04)
+    lack = lack_of(results)
+    print(lack, end="\n" if lack else "", file=sys.stderr)
+    return 1 if lack else 0
