@@ -46,7 +46,9 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
 }
 
 // returns only where it fails, with errno
-void execute(std::vector<std::string>& words) { execvp(words[0].c_str(), pointers_to(words).data()); }
+void execute(std::vector<std::string>& words) {
+  execvp(words[0].c_str(), pointers_to(words).data());
+}
 
 }  // namespace
 

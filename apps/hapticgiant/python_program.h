@@ -24,8 +24,8 @@ struct Ended {
 /// directory. It has no input, and the error output of this process.
 Ended run_program(std::vector<std::string> words);
 
-/// Replaces this process, in the root folder, by a program whose standard input is `input`. Does not
-/// return; throws SetupError where it cannot be started.
+/// Replaces this process, in the root folder, by a program whose standard input is `input`. Does
+/// not return; throws SetupError where it cannot be started.
 [[noreturn]] void become_program(std::vector<std::string> words, std::string_view input);
 
 /// Starts a program with one end of a pipe as its standard input or output (`stream`), which is

@@ -44,12 +44,9 @@ nlohmann::ordered_json json_of(const Report& report) {
   for (const auto& [name, file] : report.files) {
     if (!file.empty()) files[name] = absolute(file);
   }
-  return {{"results", report.results},
-          {"folder", absolute(report.folder)},
-          {"docs", absolute(report.docs)},
-          {"files", files},
-          {"last_line", report.last_line},
-          {"kept", report.kept},
+  return {{"results", report.results},     {"folder", absolute(report.folder)},
+          {"docs", absolute(report.docs)}, {"files", files},
+          {"last_line", report.last_line}, {"kept", report.kept},
           {"exit_code", report.exit_code}};
 }
 

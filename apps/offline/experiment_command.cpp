@@ -144,8 +144,8 @@ void check_output(const std::string& json) {
   if (json.empty()) check_report_program();
 }
 
-// Writes the results to `json` and makes the report on them, whose file `name` is written to `file`;
-// each may be empty. The exit code.
+// Writes the results to `json` and makes the report on them, whose file `name` is written to
+// `file`; each may be empty. The exit code.
 int report(nlohmann::ordered_json results, const std::string& kind, const std::string& json,
            const std::string& docs = "", const char* name = "", const std::string& file = "") {
   write_json(json, results);

@@ -102,9 +102,10 @@ int faults(FaultsArguments arguments) {
   if (play_campaign({command_of(arguments), parts, scenarios, play}, arguments.played)) return 0;
   const nlohmann::ordered_json results = to_json(campaign);
   write_json(arguments.json, results);
-  return become_reports({{.results = results,
-                          .files = {{"report.md", arguments.markdown}},
-                          .kept = arguments.json.empty() ? "" : arguments.json + " has the results\n"}});
+  return become_reports(
+      {{.results = results,
+        .files = {{"report.md", arguments.markdown}},
+        .kept = arguments.json.empty() ? "" : arguments.json + " has the results\n"}});
 }
 
 void add_faults(Command app, int& exit_code) {

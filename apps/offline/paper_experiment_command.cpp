@@ -104,12 +104,11 @@ void add_options(Command command, PaperExperimentArguments& arguments) {
 
 Report report_in(const std::string& folder, const std::string& docs,
                  const nlohmann::ordered_json& results) {
-  return {
-      .results = results,
-      .folder = folder,
-      .docs = docs,
-      .last_line = fmt::format("report      {}\n", (fs::path(folder) / "report.html").string()),
-      .kept = folder + " has the data\n"};
+  return {.results = results,
+          .folder = folder,
+          .docs = docs,
+          .last_line = fmt::format("report      {}\n", (fs::path(folder) / "report.html").string()),
+          .kept = folder + " has the data\n"};
 }
 
 void add_paper_experiments(Command experiment, int& exit_code) {

@@ -149,8 +149,8 @@ int compare(const CompareArguments& arguments) {
   for (const std::string& file : {arguments.a, arguments.b}) {
     Reader reader({"cycle", "state_hash"}, 0.0);
     const recording::ReadResult read = recording::read_recording(file, reader);
-    results["runs"].push_back({{"facts", reader.facts(file, "compare", read)},
-                               {"columns", reader.whole_numbers()}});
+    results["runs"].push_back(
+        {{"facts", reader.facts(file, "compare", read)}, {"columns", reader.whole_numbers()}});
   }
   return become_reports({{.results = results}});
 }
