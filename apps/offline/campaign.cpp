@@ -6,15 +6,14 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/command_line/command.h"
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/progress.h"
 #include "apps/hapticgiant/python_program.h"
 #include "hg/core/error.h"
-#include "hg/core/scratch_folder.h"
 #include "hg/scenario/options.h"
 
 namespace hg::apps {
@@ -75,7 +74,8 @@ void add_campaign_options(Command command, CampaignOptions& options) {
                      "I/N: play each N-th run from the I-th on, and print the results as JSON");
 }
 
-void check_sweep_program() {
+void check_sweep_program(const CampaignOptions& options) {
+  if (options.folder.empty()) return;
   std::vector<std::string> words = python_program_that_runs_us("sweep");
   words.emplace_back("--check");
   if (run_program(words).code == 0) return;
@@ -94,8 +94,12 @@ bool play_campaign(const Campaign& campaign, const CampaignOptions& options) {
     print_out("\n" + json{{"results", results}}.dump(1) + "\n");
     return true;
   }
-  const auto scratch = options.folder.empty() ? std::make_unique<ScratchFolder>() : nullptr;
-  const fs::path folder = fs::absolute(scratch ? scratch->path() : options.folder);
+  if (options.folder.empty()) {
+    experiments::Runs runs(progress_of("runs"));
+    campaign.play(runs);
+    return false;
+  }
+  const fs::path folder = fs::absolute(options.folder);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());

@@ -1,4 +1,5 @@
-/// Commands that consist of many independent runs: they are played by `hapticgiant sweep`.
+/// Commands that consist of many independent runs: played in this process, or by `hapticgiant
+/// sweep`.
 #pragma once
 
 #include <functional>
@@ -14,7 +15,7 @@ class Command;
 
 struct CampaignOptions {
   std::string part;    ///< "I/N": plays this share only; empty = all
-  std::string folder;  ///< where the sweep is kept and continued; empty = nowhere
+  std::string folder;  ///< where a sweep is kept and continued; empty = no sweep
 };
 
 /// Adds --part and --sweep.
@@ -30,12 +31,12 @@ struct Campaign {
 };
 
 /// With --part: plays that share and prints its results for `sweep`; returns true, and the command
-/// is done. Otherwise plays all parts as processes and calls play() with their results. Throws
-/// SetupError where a part has none, or Python or PyYAML are missing.
+/// is done. With --sweep: plays all parts as processes and calls play() with their results; throws
+/// SetupError where a part has none. Otherwise plays all runs in this process, on all processors.
 bool play_campaign(const Campaign& campaign, const CampaignOptions& options);
 
-/// Throws SetupError, with what to install, where a campaign cannot be played.
-void check_sweep_program();
+/// Throws SetupError, with what to install, where --sweep cannot be played.
+void check_sweep_program(const CampaignOptions& options);
 
 /// A value of an option for a process that is started elsewhere: the path of a file is made
 /// absolute, other names stay.

@@ -190,7 +190,7 @@ int experiment_stability_map(const ExperimentArguments& arguments) {
   const bool is_part = !arguments.played.part.empty();
   if (!is_part) {
     check_output(arguments.json);
-    check_sweep_program();
+    check_sweep_program(arguments.played);
     begin(arguments,
           fmt::format("Stability: a kick of {:g} N for {:g} ms on a free body held by a hand\n\n",
                       config.kick.force, 1e3 * config.kick.duration));

@@ -82,7 +82,7 @@ int faults(FaultsArguments arguments) {
   check_writable(arguments.markdown, kMarkdown);
   const bool is_part = !arguments.played.part.empty();
   if (arguments.json.empty() && !is_part) check_report_program();  // before minutes of runs
-  if (!is_part) check_sweep_program();
+  if (!is_part) check_sweep_program(arguments.played);
   const ScratchFolder scratch;
   std::vector<recording::RecordingInfo> recordings;
   if (recording::recording_available()) {

@@ -85,7 +85,7 @@ int run_haptify(const HaptifyArguments& arguments) {
     fs::create_directories(folder, error);
     if (error) throw SetupError(folder.string() + ": cannot be made: " + error.message());
     check_report_program();  // before minutes of measurements
-    check_sweep_program();
+    check_sweep_program(arguments.played);
     print_out(fmt::format(
         "HapticGiant {}  Haptify benchmark, Table III of the paper, on a simulated machine\n\n",
         kVersion));
