@@ -20,7 +20,7 @@ struct Report {
   std::string docs;                          ///< documentation to refresh; empty = none
   std::map<std::string, std::string> files;  ///< files of the report, and where each is written
   std::string last_line;                     ///< printed at the end
-  std::string kept;   ///< who has the data, printed where there can be no report; empty = no one
+  std::string kept;   ///< what has the data, in a line; printed where there can be no report
   int exit_code = 0;  ///< of the measurements
 };
 
@@ -28,8 +28,8 @@ struct Report {
 void check_report_program();
 
 /// Becomes the program that makes these reports and ends with the worst of their exit codes: 0, 1
-/// not as expected, 3 a fault, kNotWritten. Where it cannot be started: prints why and who has the
-/// data, and returns kNotWritten, or throws SetupError if that is lost.
+/// not as expected, 3 a fault, kNotWritten. Where it cannot be started: prints why and what has the
+/// data, and returns kNotWritten, or throws SetupError if nothing has.
 int become_reports(const std::vector<Report>& reports);
 
 /// Folder of a package that the interpreter has; empty = it has none.

@@ -6,7 +6,7 @@ namespace detail {
 
 struct Anything {
   template <typename T>
-  operator T() const;
+  operator T() const;  // NOLINT(google-explicit-constructor): any member is made of it
 };
 
 }  // namespace detail

@@ -1,6 +1,8 @@
 /// Description of the injected faults in a scenario.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hg/config/schema.h"
+#include "hg/config/sources.h"
 #include "hg/controller/rendering/surfaces/environment.h"
 #include "hg/core/index.h"
 

@@ -6,7 +6,7 @@ Standard input has one JSON document, {"reports": [REPORT...]}. A REPORT has
   docs       folder of documentation whose page of this report is refreshed; null: none
   files      files of the report by their names, and where each is written
   last_line  what is printed at the end
-  kept       who has the data, printed where the report cannot be written
+  kept       what has the data, in a line; printed where the report cannot be written
   exit_code  of the measurements
 Exit codes: the worst of these and of the reports (0 as expected, 1 not, 3 a fault), 4 a file or standard
 output could not be written; with --check 69: a library is missing.
@@ -67,9 +67,14 @@ class Output:
                 return self.show(text)
         is_replaced = not os.path.lexists(file) or (os.path.isfile(file) and not os.path.islink(file))
         written = f"{file}.partial" if is_replaced else file
-        pathlib.Path(written).write_text(text, encoding="utf-8")
-        if is_replaced:
-            os.replace(written, file)
+        try:
+            pathlib.Path(written).write_text(text, encoding="utf-8")
+            if is_replaced:
+                os.replace(written, file)
+        except OSError:
+            if is_replaced:
+                pathlib.Path(written).unlink(missing_ok=True)
+            raise
         return None
 
     def code(self, code):
