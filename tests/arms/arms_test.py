@@ -19,7 +19,7 @@ import mechanisms
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()
 TRIES_ALL = "--all" in sys.argv and not sys.argv.remove("--all")
-PER_ARM = 1  # mechanism per arm, another for every arm
+PER_ARM = 2  # mechanisms per arm, others for every arm
 TOO_LARGE = {("iiwa14", "gate")}  # a door of 0.6 m in the box of this hand: not possible at all, a warning is right
 ARMS = {path.parent.name: path for path in sorted((ROOT / "models/arms").glob("*/device.yaml"))}
 

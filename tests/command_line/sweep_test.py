@@ -318,7 +318,8 @@ class Sweep(TemporaryFolder):
         bare.write_text(f"#!/bin/sh\nexec {sys.executable} -S -I \"$@\"\n")
         bare.chmod(0o755)
         for python in (bare, "/bin/false-no-such-python"):
-            done = subprocess.run([PROGRAM, "faults", "--cases", "2", "--sweep", self.folder / "x"],
+            done = subprocess.run([PROGRAM, "faults", "--cases", "2", "--json", self.folder / "x",
+                                   "--sweep", self.folder / "y"],
                                   capture_output=True, text=True, timeout=60,
                                   env={**os.environ, "HAPTICGIANT_PYTHON": str(python)})
             self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
