@@ -255,7 +255,7 @@ docs: $(DOCS_VENV)/bin/mkdocs
 	@.venv/bin/python tools/pages/pages.py $(BUILD)/hg_pages
 	@.venv/bin/python tools/draw_rooms.py docs/images/rooms.svg
 	@cmake --install $(BUILD) --component python --prefix build/docs_python >/dev/null
-	@NO_MKDOCS_2_WARNING=1 $< build >build/docs.log 2>&1 || { grep -v ^INFO build/docs.log; exit 1; }
+	@NO_MKDOCS_2_WARNING=1 $(DOCS_VENV)/bin/python -m mkdocs build >build/docs.log 2>&1 || { grep -v ^INFO build/docs.log; exit 1; }
 	@echo "docs: build/site/index.html"
 
 format:
