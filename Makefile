@@ -123,7 +123,7 @@ define pack
 @tools/setup.sh wheel
 @tools/configure.sh $(PRESET) build
 @cmake --log-level=ERROR $(BUILD) >/dev/null  # finds what set-up has just fetched
-@cmake --build $(BUILD) --target hg_programs _core_stubs
+@cmake --build $(BUILD) --target hg_programs _core_stubs $(if $(filter deb,$(1)),programs)
 @tools/make_$(1).sh build/$(1)
 endef
 # test_package,wheel or deb,FILES: packs it again, compares, and uses it as its user does

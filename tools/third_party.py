@@ -13,6 +13,7 @@ not in ALLOWED, or an advisory.
 import argparse
 import importlib.metadata
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -158,13 +159,26 @@ def wheel_rows():
         yield "PyPI", name, version, licence or "unknown", how, text
 
 
+def cargos():
+    """Each cargo in PATH, then Debian's: one may be a proxy without a toolchain, or too old."""
+    folders = [*os.environ["PATH"].split(os.pathsep), "/usr/bin"]
+    return [path for path in dict.fromkeys(os.path.join(folder, "cargo") for folder in folders)
+            if os.access(path, os.X_OK)]
+
+
 def crate_packages():
     """What cargo says of each crate of others."""
-    done = subprocess.run(
-        ["cargo", "metadata", "--format-version", "1", "--offline", "--locked", "--manifest-path",
-         RUST / "Cargo.toml"], capture_output=True, text=True, check=True)
-    packages = [package for package in json.loads(done.stdout)["packages"] if package["source"]]
-    return sorted(packages, key=lambda package: (package["name"], package["version"]))
+    said = []
+    for cargo in cargos():
+        done = subprocess.run(
+            [cargo, "metadata", "--format-version", "1", "--offline", "--locked", "--manifest-path",
+             RUST / "Cargo.toml"], capture_output=True, text=True,
+            env=os.environ | {"RUSTC": os.path.join(os.path.dirname(cargo), "rustc")})
+        if done.returncode == 0:
+            packages = [package for package in json.loads(done.stdout)["packages"] if package["source"]]
+            return sorted(packages, key=lambda package: (package["name"], package["version"]))
+        said.append(f"{cargo}: {done.stderr.strip().partition(chr(10))[0]}")
+    sys.exit("\n".join(["third_party: no cargo that has the crates of rust/Cargo.lock", *said]))
 
 
 def crate_rows():
