@@ -63,6 +63,14 @@ safety::MonitoredParts parts_of(const CycleConfig& config, const DeviceModel& de
           .twin_mass = std::isfinite(heaviest) ? heaviest : 0.0};
 }
 
+// Where limits brake together, the gantry never trusts the arm to take back what it does.
+prepositioning::PrepositioningConfig gantry_config(const CycleConfig& config,
+                                                   const DeviceModel& device) {
+  prepositioning::PrepositioningConfig gantry = config.prepositioning;
+  if (rendering::brakes_together(device, config.rendering)) gantry.taken_back = 0.0;
+  return gantry;
+}
+
 // Whether a lost command link can cause this fault as a consequence.
 bool follows_from_link(FaultCode code) noexcept {
   switch (code) {
@@ -114,7 +122,7 @@ Cycle::Cycle(const CycleConfig& config, const DeviceModel& device, const renderi
                  surfaces::Environment(config.surfaces, dt_, rendering::felt_mass(twin).mass)),
       control_(config.control, device),
       gantry_target_(device),
-      prepositioning_(config.prepositioning, device),
+      prepositioning_(gantry_config(config, device), device),
       guard_(config.collision, collision::braking_of(device, config.prepositioning.ddq_max),
              device.chain),
       monitor_(config.monitor, device, parts_of(config, device, twin)),

@@ -91,6 +91,23 @@ std::vector<std::uint64_t> hashes_of(const config::Scenario& scenario, double se
   return hashes;
 }
 
+// The gantry carries the arm into corners at full speed, and a hand of 100 N pulls it along:
+// nothing but a common way to rest keeps all limits.
+TEST(ElasticThrow, LimitsThatBrakeTogetherHoldInCorners) {
+  for (const unsigned seed : {1U, 2U}) {
+    SCOPED_TRACE(seed);
+    config::Scenario scenario =
+        scenario::load({.scenario = "models/stress/throw.yaml", .law = "together"});
+    scenario.device.simulation.seed = scenario.device.simulation.sensors.seed = seed;
+    ScenarioRun run(scenario);
+    run.play();
+    EXPECT_EQ(run.summary().fault().code, FaultCode::kNone)
+        << to_string(run.summary().fault().code);
+    EXPECT_EQ(run.quality().allocations, 0u);
+    expect_limits_held_in_truth(run);
+  }
+}
+
 TEST(ElasticSeeds, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
   constexpr double kSeconds = 3.0;
   const Case first = {"door", 1000.0, {}, 1};

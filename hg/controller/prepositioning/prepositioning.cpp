@@ -8,8 +8,6 @@
 namespace hg::prepositioning {
 namespace {
 
-// m/s or rad/s, gantry speed that the arm compensates in front of a limit
-constexpr double kTakenBack = 0.25;
 constexpr double kLead = 0.1;  // m/s or rad/s, of the law beside the rule
 // s until the law may demand the full acceleration of the drives: it sees the effect late
 double onset(const DriveModel& drive) noexcept { return std::max(60e-3, 15.0 * drive.dead_time); }
@@ -32,6 +30,7 @@ Prepositioning::Prepositioning(const PrepositioningConfig& config, const DeviceM
   };
   require(std::isfinite(config.k_ppu) && config.k_ppu > 0.0, "k_ppu must be positive");
   require(config.dq_max > 0.0, "dq_max must be positive");
+  require(config.taken_back >= 0.0, "taken_back must not be negative");
   limits::check_drive_response(response_, "prepositioning");
 }
 
@@ -48,8 +47,8 @@ GantryCommand Prepositioning::step(const RobotState& robot, const VectorP& q_tar
     if (room.up.size() > 0) {
       const Interval alone =
           limits::braking_velocity_bounds({-room.down[i], room.up[i]}, response_, 0.0);
-      bounds.lb = std::max(bounds.lb, std::min(alone.lb, 0.0) - kTakenBack);
-      bounds.ub = std::min(bounds.ub, std::max(alone.ub, 0.0) + kTakenBack);
+      bounds.lb = std::max(bounds.lb, std::min(alone.lb, 0.0) - config_.taken_back);
+      bounds.ub = std::min(bounds.ub, std::max(alone.ub, 0.0) + config_.taken_back);
     }
     const double to_target = config_.k_ppu * (command.q_target[i] - robot.q_p[i]);  // [HG] (27)
     const double dq = away.size() > 0 ? away[i] : to_target;

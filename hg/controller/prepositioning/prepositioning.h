@@ -20,10 +20,12 @@ struct PrepositioningConfig {
   double dq_max = 1.5;   ///< Largest speed, m/s or rad/s
   double k_ppu = 4.0;    ///< Gain of (27), 1/s; below 1 / (4 lag) there is no overshoot
   double ddq_max = 2.0;  ///< Deceleration that can be relied on, m/s^2 or rad/s^2
+  /// Speed towards a limit, m/s or rad/s, that the arm is trusted to compensate in front of it.
+  double taken_back = 0.25;
 };
 
-/// Distance that each axis may move, the arm held stiff, before it carries a frame of the device
-/// over a limit; negative beyond one, m or rad. Empty: there are no such limits.
+/// Distance that each axis may move before it carries a frame of the device over a limit; negative
+/// beyond one, m or rad. Empty: there are no such limits.
 struct Room {
   VectorP down, up;
 };
@@ -47,8 +49,8 @@ class Prepositioning {
 
   /// Computes the velocity command. `robot` gives the gantry. `device_blocked` (a manipulator row
   /// could not be met) makes the command zero: a gantry that drags a blocked arm is a fault. No
-  /// axis is faster than `dq_max`, nor more than 0.25 m/s (rad/s) faster than lets it stop within
-  /// its `room`: an arm at its limits compensates no more. `away` replaces the motion to the
+  /// axis is faster than `dq_max`, nor more than `taken_back` faster than lets it stop within its
+  /// `room`: an arm at its limits compensates no more. `away` replaces the motion to the
   /// target: the velocity with which the gantry leaves a contact of the arm; empty: no contact.
   GantryCommand step(const RobotState& robot, const VectorP& q_target, bool device_blocked,
                      double dq_max = kInfinity, const Room& room = {},

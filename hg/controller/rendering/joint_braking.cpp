@@ -6,7 +6,6 @@
 namespace hg::rendering {
 namespace {
 
-constexpr double kReserve = 1.6;        // reserve kept for changes of posture and delays
 constexpr double kReactionTime = 0.02;  // s, from the demand until the motors brake
 constexpr double kShortest = 0.01;      // s of remaining way; nearer ends count as this far
 constexpr double kNear = 0.3;  // share of ddq_max; a smaller need leaves room to accelerate
@@ -36,7 +35,7 @@ Interval braking_bounds(const Approach& approach, double reserve, Interval bound
                         const limits::JointLimits& limits,
                         const limits::RecoverableOptions& options, double dq) noexcept {
   // The speed may still grow until the reserve is used up. Continuous where braking begins.
-  const double growth = std::max(std::sqrt(reserve / kReserve) - 1.0, 0.0);
+  const double growth = std::max(std::sqrt(reserve / kLeastReserve) - 1.0, 0.0);
   const double grows = growth * std::abs(dq) / options.tau_onset;
   const double hardest = options.ddq_rec_factor * limits.ddq_max;
   if (approach.need > 0.0) {
@@ -85,6 +84,7 @@ void JointBraking::copy(const hqp::Problem& tasks, int from, int to, double need
 
 double JointBraking::reserve(const hqp::Problem& tasks, std::span<const Interval> torque,
                              std::span<const Approach> approaches,
+                             std::span<const Interval> joint_room,
                              std::span<const double> known) noexcept {
   for (int i = 0; i < fixed_; ++i) {
     copy(tasks, i, i, 0.0);
@@ -99,7 +99,7 @@ double JointBraking::reserve(const hqp::Problem& tasks, std::span<const Interval
       continue;
     }
     copy(tasks, fixed_ + limit, row, approaches[limit].need);
-    const Interval room = approaches[limit].room;
+    const Interval room = limit < first_motor_ ? joint_room[limit] : approaches[limit].room;
     problem_.set_bounds(row++, {room.lb - known[limit], room.ub - known[limit]});
   }
   hqp::ActiveSet active;

@@ -21,6 +21,7 @@
 namespace hg::rendering {
 
 inline constexpr double kMostReserve = 100.0;  ///< Largest reserve that is reported
+inline constexpr double kLeastReserve = 1.6;   ///< Reserve for changes of posture, hand and delays
 
 /// A coordinate on its way to an end of its limits.
 struct Approach {
@@ -50,9 +51,11 @@ class JointBraking {
 
   /// Returns the reserve: at most kMostReserve, 0 where there is no such motion. `tasks` has this
   /// cycle's rows; `torque` holds the bounds of the motors' rows, `approaches` those of all limits
-  /// (motors: not read), `known` the limits' accelerations without x.
+  /// (motors: not read), `joint_room` the room of those before the motors, in place of that in
+  /// `approaches`, `known` the limits' accelerations without x.
   double reserve(const hqp::Problem& tasks, std::span<const Interval> torque,
-                 std::span<const Approach> approaches, std::span<const double> known) noexcept;
+                 std::span<const Approach> approaches, std::span<const Interval> joint_room,
+                 std::span<const double> known) noexcept;
 
  private:
   void copy(const hqp::Problem& tasks, int from, int to, double need) noexcept;

@@ -494,13 +494,20 @@ bool Rendering::is_blocked() const noexcept {
 
 void Rendering::gantry_room(VectorP& down, VectorP& up) const noexcept {
   down = up = VectorP::Constant(device_.n_p, kInfinity);
+  // The law leads the handle. Where limits brake together, the gantry has to stop it as far as the
+  // arm cannot: the handle's room is multiplied by what the arm has beyond the least reserve.
+  const double arm = brakes_together(device_, options_)
+                         ? std::max(1.0, tasks_.braking_reserve() / kLeastReserve)
+                         : kInfinity;
   for (const CartesianLimit& frame : device_.cartesian_limits) {
-    if (frame.frame == device_.handle) continue;
+    const double share = frame.frame == device_.handle ? arm : 1.0;
+    if (!std::isfinite(share)) continue;
     const model::Jacobian& J = device_now_.jacobian(frame.frame);
     const Eigen::Vector3d position = device_now_.pose(frame.frame).p;
     for (int axis = 0; axis < 3; ++axis) {
       const limits::JointLimits& range = frame.axes[axis];
-      const double to_lower = position[axis] - range.q_min, to_upper = range.q_max - position[axis];
+      const double to_lower = share * (position[axis] - range.q_min);
+      const double to_upper = share * (range.q_max - position[axis]);
       for (int i = 0; i < device_.n_p; ++i) {
         const double per = J(axis, i);  // of the frame, per motion of the gantry
         if (std::abs(per) < 1e-3) continue;

@@ -68,9 +68,10 @@ class Rendering {
   /// Whether in the last step a joint or virtual joint of the device could not be kept within its
   /// limits: the motion of the gantry at a held twin has priority over them.
   bool is_blocked() const noexcept;
-  /// Distance that each gantry axis may move down and up, the arm held stiff, until a frame other
-  /// than the handle, which the law leads, is at a Cartesian limit: by the positions of the last
-  /// step, to first order, m or rad.
+  /// Distance that each gantry axis may move down and up, the arm held stiff, until a frame is at a
+  /// Cartesian limit: by the positions of the last step, to first order, m or rad. The handle,
+  /// which the law leads, counts only where limits brake together, and there the less the more the
+  /// arm can brake it.
   void gantry_room(VectorP& down, VectorP& up) const noexcept;
 
   /// Twist of the handle at the measured joint speeds in the posture of the last step(), resolved

@@ -84,6 +84,13 @@ LimitRow make_row(const limits::JointLimits& limits, double margin, double dt) {
   return row;
 }
 
+// Constant accelerations with which a joint is within its ends `time` s from now; holds 0.
+Interval lasting_room(const LimitRow& row, double time) noexcept {
+  const double drift = row.q + row.dq * time, share = 2.0 / (time * time);
+  return {std::min(share * (row.limits.q_min - drift), 0.0),
+          std::max(share * (row.limits.q_max - drift), 0.0)};
+}
+
 }  // namespace
 
 double stop_rating(const DeviceModel& device) {
@@ -136,6 +143,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
     lasting_.resize(device.motors().size());
     joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
     approaches_.resize(limits);
+    joint_room_.resize(first_motor_);
     known_.resize(limits);
   }
   if (paper_) {
@@ -401,17 +409,29 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
 
 // Makes the limits that need it brake together, early enough.
 void Tasks::brake_together() noexcept {
+  constexpr double kFirm = 0.25;  // share of the rating with which far walls are assumed to be met
   braking_reserve_ = kMostReserve;
   bool has_near = false;
+  double horizon = 0.0;  // s, until the device stands in front of the walls that are near
   for (std::size_t i = 0; i < approaches_.size(); ++i) {
     const LimitRow& row = limit_rows_[i];
     if (row.is_motor) continue;
     approaches_[i] = approach(row.limits, row.options, row.q, row.dq, dt_);
     known_[i] = row.known;
-    has_near = has_near || is_near(approaches_[i], row.limits);
+    if (!is_near(approaches_[i], row.limits)) continue;
+    has_near = true;
+    const bool is_wall = static_cast<int>(i) >= first_motor_ + n_m_;
+    if (!is_wall) continue;
+    const double deceleration = std::max(std::abs(approaches_[i].need), kFirm * row.limits.ddq_max);
+    horizon = std::max(horizon, std::abs(row.dq) / deceleration);
   }
   if (!has_near || !are_torques_known_) return;
-  braking_reserve_ = joint_braking_->reserve(problem_, lasting_, approaches_, known_);
+  for (int i = 0; i < first_motor_; ++i) {
+    joint_room_[i] = approaches_[i].room;
+    if (horizon > 0.0)
+      joint_room_[i] = intersect(joint_room_[i], lasting_room(limit_rows_[i], horizon));
+  }
+  braking_reserve_ = joint_braking_->reserve(problem_, lasting_, approaches_, joint_room_, known_);
   for (std::size_t i = 0; i < approaches_.size(); ++i) {
     LimitRow& row = limit_rows_[i];
     if (row.is_motor) continue;

@@ -115,7 +115,7 @@ TEST(Prepositioning, StopsBeforeItCarriesAFrameOverItsLimit) {
   EXPECT_EQ(in(10.0, 10.0), free) << "far away";
   EXPECT_EQ(in(0.1, 10.0)[0], free[0]) << "only towards a limit";
   EXPECT_EQ(in(10.0, 0.1)[1], free[1]);
-  constexpr double kTakenBack = 0.25;  // by the arm
+  constexpr double kTakenBack = PrepositioningConfig{}.taken_back;
   for (const double left : {0.4, 0.2, 0.1}) {
     const VectorP dq = in(left, left);
     for (const double v : {dq[0] - kTakenBack, -dq[1] - kTakenBack}) {
@@ -128,6 +128,21 @@ TEST(Prepositioning, StopsBeforeItCarriesAFrameOverItsLimit) {
   for (const double left : {0.0, -0.02}) {
     EXPECT_EQ(in(10.0, left)[0], kTakenBack) << "slowly on";
     EXPECT_EQ(in(left, 10.0)[1], -kTakenBack);
+  }
+}
+
+TEST(Prepositioning, StopsWithinItsRoomWhereTheArmTakesNothingBack) {
+  const Prepositioning gantry({.taken_back = 0.0}, device());
+  RobotState robot;
+  robot.q_p = Eigen::Vector2d(0.0, 0.0);
+  const VectorP target = Eigen::Vector2d(1.0, -1.0);
+  for (const double left : {0.4, 0.1, 0.0, -0.02}) {
+    const Room room = {VectorP::Constant(2, 10.0), VectorP::Constant(2, left)};
+    const double v = gantry.step(robot, target, false, kInfinity, room).dq[0];
+    constexpr double kBraking = PrepositioningConfig{}.ddq_max;
+    const double tau = device().drive.dead_time + device().drive.lag + kDt;
+    EXPECT_GE(v, 0.0) << left;
+    EXPECT_LE(v * v / (2.0 * kBraking) + v * tau, std::max(left, 0.0) + 1e-12) << left;
   }
 }
 

@@ -123,10 +123,15 @@ struct Arm {
     }
     return problem;
   }
+  std::array<Interval, kJoints> joint_room() const {
+    std::array<Interval, kJoints> room;
+    for (int i = 0; i < kJoints; ++i) room[i] = approaches[i].room;
+    return room;
+  }
   double reserve() const {
     const hqp::Problem problem = tasks();
     JointBraking braking(problem, 0, kLimits, kJoints, kJoints);
-    return braking.reserve(problem, torque, approaches, known);
+    return braking.reserve(problem, torque, approaches, joint_room(), known);
   }
   // a^T (ddq, mu) <= b, all of them
   std::vector<std::pair<Eigen::Vector4d, double>> half_spaces() const {
@@ -241,7 +246,7 @@ class Pushed {
     if (brakes_together) {
       const std::array<Interval, 2> torque = {Interval{-1.0, 1.0}, Interval{-1.0, 1.0}};
       JointBraking braking(problem, 0, 5, 0, 2);
-      const double reserve = braking.reserve(problem, torque, approaches, known);
+      const double reserve = braking.reserve(problem, torque, approaches, {}, known);
       for (int i = 0; i < 3; ++i) {
         problem.set_bounds(i + 2, braking_bounds(approaches[i + 2], reserve, problem.bounds(i + 2),
                                                  kWall, options, normal(i).dot(v)));
@@ -275,12 +280,11 @@ class Thrown {
   DeviceModel device = unlimited_device();
   TwinModel twin = body(device);
 
-  Thrown() {
+  /// Every joint is so far away (rad) from its ends.
+  explicit Thrown(double away = 0.3) {
     for (int i = 0; i < 6; ++i) {
-      device.joint_limits[i] = {.q_min = kPosture[i] - kAway,
-                                .q_max = kPosture[i] + kAway,
-                                .dq_max = 3.0,
-                                .ddq_max = 10.0};
+      device.joint_limits[i] = {
+          .q_min = kPosture[i] - away, .q_max = kPosture[i] + away, .dq_max = 3.0, .ddq_max = 10.0};
     }
     for (ActuatorModel motor : reference_actuators()) {
       motor.torque_max *= 0.5;
@@ -325,7 +329,6 @@ class Thrown {
   }
 
  private:
-  static constexpr double kAway = 0.3;   // rad
   static constexpr double kSpeed = 1.5;  // rad/s
 
   static TwinModel body(const DeviceModel& device) {
@@ -367,6 +370,22 @@ TEST(BrakingTogether, BeginsEarlierWhereMotorsAreWeakerThanRatings) {
     EXPECT_LT(together.problem().bounds(row).ub, 0.0) << row;
     EXPECT_GT(alone.problem().bounds(row).ub, 0.0) << row;
   }
+}
+
+// While the handle stops in front of a wall, joints go on: one that would meet its end on the way
+// cannot help to the end.
+TEST(BrakingTogether, AJointThatMeetsItsEndOnTheWayBrakesNoWall) {
+  const auto reserve = [](double away) {
+    Thrown thrown(away);
+    const double y = handle_pose(thrown.device, kGantryAtHome, kPosture).p.y();
+    thrown.device.cartesian_limits = {
+        {.name = "hand", .frame = thrown.device.handle, .axes = {}, .margin = 0.0}};
+    thrown.device.cartesian_limits[0].axes[1] = {y - 0.3, y + 0.3, 3.0, 5.0};
+    return thrown.tasks({.braking = Braking::kTogether}).braking_reserve();
+  };
+  constexpr double kFar = 3.0, kOnTheWay = 1.5;  // rad; even this is no end that is near
+  ASSERT_LT(reserve(kFar), kMostReserve);
+  EXPECT_LT(reserve(kOnTheWay), 0.5 * reserve(kFar));
 }
 
 TEST(BrakingTogether, EqualsBrakingAloneWithoutMotorModel) {
