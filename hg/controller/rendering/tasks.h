@@ -153,9 +153,8 @@ class Tasks {
   VectorM motor_torque_;
   std::optional<JointBraking> joint_braking_;  ///< only where limits brake together
   std::vector<Approach> approaches_;           ///< Approaches of the device's limits, this cycle
-  std::vector<Interval> joint_room_;  ///< Accelerations of joints that last until walls are reached
-  std::vector<double> known_;         ///< Accelerations of these limits without the unknowns
-  std::vector<Interval> lasting_;     ///< Bounds of motor rows once they are reached
+  std::vector<double> known_;  ///< Accelerations of these limits without the unknowns
+  std::vector<Interval> lasting_, joint_room_;  ///< Of motors once reached; of joints up to walls
   double braking_reserve_ = kMostReserve;
   std::optional<PaperLaw> paper_;  ///< law paper only
 };
