@@ -27,7 +27,7 @@
 #   make rtsan   builds with RealtimeSanitizer and runs the control loop: what allocates, locks or
 #                waits in it ends the program. make rtsan-tests: without scenarios
 #   make audit   looks up crates and the page's packages in advisory databases, where they answer
-#   make headers checks that each header of the C++ package compiles alone; ARGS=--all: every header
+#   make headers checks that every header compiles alone
 #   make lint    checks names and some common mistakes (clang-tidy)
 #   make fuzz    feeds everything that reads what others have written, and the solver, with
 #                FUZZ_SECONDS=600 of random bytes each, under sanitizers. What it finds is in build/fuzz/; FUZZ_TARGETS="config urdf" for some of them
@@ -273,7 +273,7 @@ audit:
 headers:
 	@[ -f $(BUILD)/compile_commands.json ] || \
 	  { tools/setup.sh build && tools/configure.sh $(PRESET) build; }
-	@.venv/bin/python tools/check_headers.py $(BUILD) --jobs $(JOBS) $(ARGS)
+	@.venv/bin/python tools/check_headers.py $(BUILD) --jobs $(JOBS)
 
 lint:
 	@[ -f $(BUILD)/compile_commands.json ] || \

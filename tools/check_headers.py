@@ -1,7 +1,6 @@
-"""Checks that headers compile alone, without the precompiled headers of the build: those of the C++
-package (cmake/public_headers.txt), which programs of others include in any order, or every one.
+"""Checks that every header compiles alone, without the precompiled headers of the build.
 
-    check_headers.py BUILD [--all] [--jobs N]
+    check_headers.py BUILD [--jobs N]
 
 Takes compiler, language and include folders from BUILD/compile_commands.json. To be quick, headers
 that bring Eigen get it precompiled; one that would find std headers only through it is one that
@@ -55,20 +54,9 @@ def brings_eigen(header, known):
     return known[header]
 
 
-def headers_of_all():
-    return subprocess.run(["git", "ls-files", "--", *(f"{folder}/*.h" for folder in FOLDERS)],
-                          cwd=ROOT, check=True, capture_output=True, text=True).stdout.split()
-
-
-def public_headers():
-    lines = (ROOT / "cmake/public_headers.txt").read_text().splitlines()
-    return [line for line in lines if line and not line.startswith("#")]
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--all", action="store_true", help="every header of the repository")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
     compiler, flags = flags_of(arguments.build)
@@ -77,7 +65,8 @@ def main():
     (work / "eigen.h").write_text(EIGEN)
     subprocess.run([compiler, *flags, "-x", "c++-header", work / "eigen.h", "-o",
                     work / "eigen.h.gch"], check=True)
-    listed = headers_of_all() if arguments.all else public_headers()
+    listed = subprocess.run(["git", "ls-files", "--", *(f"{folder}/*.h" for folder in FOLDERS)],
+                            cwd=ROOT, check=True, capture_output=True, text=True).stdout.split()
     known = {}
 
     def compile_alone(header):
