@@ -1,9 +1,8 @@
 # %% [markdown]
 # # 1 A first run, and its recording as a table
 #
-# A simulated hand opens the rendered door. `hg.run` plays it as fast as it can; a recording of
-# `hapticgiant run` is read with `hg.read_recording("recordings/latest.mcap")` and has the same
-# columns. Needs pandas and matplotlib.
+# A simulated hand opens the rendered door. `hg.play` does what `hapticgiant run` does, here as fast
+# as it can, and names its recording; `hg.run` plays the same without one. Needs pandas and matplotlib.
 
 # %%
 import matplotlib.pyplot as plt
@@ -11,7 +10,8 @@ import numpy as np
 
 import hapticgiant as hg
 
-door = hg.run("door")
+outcome = hg.play("door", fast=True)
+door = hg.read_recording(outcome.recording)
 
 # %% [markdown]
 # Every column is an array; `to_pandas` makes a table of those that are asked for. The time is the
