@@ -10,6 +10,10 @@ run(patchelf --set-rpath "$ORIGIN" ${libraries})
 file(GLOB_RECURSE third_party ${CPACK_TEMPORARY_DIRECTORY}/THIRD_PARTY.md)
 get_filename_component(doc ${third_party} DIRECTORY)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/../CHANGELOG.md ${doc}/changelog COPYONLY)
+set(usr ${doc}/../../..)
+file(MAKE_DIRECTORY ${usr}/share/bash-completion/completions)
+execute_process(COMMAND ${usr}/bin/hapticgiant completion bash
+  OUTPUT_FILE ${usr}/share/bash-completion/completions/hapticgiant COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND date --utc --rfc-email --date=@$ENV{SOURCE_DATE_EPOCH} OUTPUT_VARIABLE date
   OUTPUT_STRIP_TRAILING_WHITESPACE)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/changelog.Debian.in ${doc}/changelog.Debian @ONLY)

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "apps/command_line/output.h"
@@ -54,12 +55,76 @@ void refuse_empty_values(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) refuse_empty_values(*command);
 }
 
+// The values of Option::suggest(), kept as the name of a validator that checks nothing.
+constexpr std::string_view kSuggested = "suggested\n";
+
+std::vector<std::string> suggested_values(CLI::Option& option) {
+  std::string values;
+  try {
+    for (int i = 0; !values.starts_with(kSuggested); ++i)
+      values = option.get_validator(i)->get_name();
+  } catch (const CLI::OptionNotFound&) {
+    return {};
+  }
+  return CLI::detail::split(values.substr(kSuggested.size()), '\n');
+}
+
+// Where the typing of a command line has arrived.
+struct Typed {
+  CLI::App* command = nullptr;
+  CLI::Option* awaiting = nullptr;  // the option of which a value follows
+  std::size_t positionals = 0;      // given so far
+};
+
+Typed read_typed(CLI::App* command, const std::vector<std::string>& words) {
+  Typed typed{.command = command};
+  for (const std::string& word : words) {
+    if (word == "=") continue;  // shells split --law=gauss
+    if (word.starts_with("--")) {
+      CLI::Option* option = typed.command->get_option_no_throw(word.substr(0, word.find('=')));
+      const bool takes_next = option != nullptr && option->get_items_expected_max() > 0 &&
+                              word.find('=') == std::string::npos;
+      typed.awaiting = takes_next ? option : nullptr;
+    } else if (typed.awaiting != nullptr) {
+      typed.awaiting = nullptr;
+    } else if (CLI::App* below = typed.command->get_subcommand_no_throw(word); below != nullptr) {
+      typed = {.command = below};
+    } else {
+      ++typed.positionals;
+    }
+  }
+  return typed;
+}
+
+std::vector<std::string> offered(const Typed& typed, bool is_option) {
+  if (typed.awaiting != nullptr) return suggested_values(*typed.awaiting);
+  std::vector<std::string> found;
+  std::size_t positional = 0;
+  for (CLI::Option* option : typed.command->get_options()) {
+    if (option->get_positional()) {
+      if (positional++ == typed.positionals && !is_option) found = suggested_values(*option);
+    } else if (is_option && !option->get_group().empty()) {  // without retired ones
+      for (const std::string& name : option->get_lnames()) found.push_back("--" + name);
+    }
+  }
+  if (is_option) return found;
+  for (const CLI::App* below : typed.command->get_subcommands({}))
+    found.push_back(below->get_name());
+  return found;
+}
+
 }  // namespace
 
 Option Option::check(const OptionCheck& check) const { return Option(self_->check(check)); }
 
 Option Option::one_of(const std::vector<std::string>& values) const {
-  return Option(self_->check(CLI::IsMember(values)));
+  return Option(self_->check(CLI::IsMember(values))).suggest(values);
+}
+
+Option Option::suggest(const std::vector<std::string>& values) const {
+  CLI::Validator kept;
+  kept.name(fmt::format("{}{}", kSuggested, fmt::join(values, "\n"))).active(false);
+  return Option(self_->check(kept));
 }
 
 Option Option::existing_file() const { return Option(self_->check(CLI::ExistingFile)); }
@@ -153,6 +218,15 @@ std::vector<std::string> Command::given_options() const {
 
 bool Command::is_parsed() const { return self_->parsed(); }
 bool Command::has_subcommand() const { return !self_->get_subcommands().empty(); }
+
+std::vector<std::string> Command::completions(const std::vector<std::string>& words) const {
+  if (words.empty()) return {};
+  const std::string last = words.back() == "=" ? "" : words.back();
+  const Typed typed = read_typed(self_, {words.begin(), words.end() - 1});
+  std::vector<std::string> found = offered(typed, last.starts_with('-'));
+  std::erase_if(found, [&](const std::string& text) { return !text.starts_with(last); });
+  return found;
+}
 
 Program::Program(const std::string& description, const std::string& name)
     : app_(std::make_unique<CLI::App>(description, name)) {}

@@ -27,8 +27,10 @@ class Option {
   explicit Option(CLI::Option* self) : self_(self) {}
 
   Option check(const OptionCheck& check) const;
-  /// Only these values; the help lists them.
+  /// Only these values; the help lists them, and a shell completes them.
   Option one_of(const std::vector<std::string>& values) const;
+  /// Values that a shell completes, besides others that are valid.
+  Option suggest(const std::vector<std::string>& values) const;
   Option existing_file() const;
   /// Replaces the value by what `change` returns for it.
   Option transform(const std::function<std::string(const std::string&)>& change) const;
@@ -89,6 +91,10 @@ class Command {
   std::vector<std::string> given_options() const;
   bool is_parsed() const;
   bool has_subcommand() const;
+  /// What a shell can complete the last of `words` to: subcommands, options, and values that
+  /// one_of() and suggest() name. `words` follow this command's name on a command line that is
+  /// being typed.
+  std::vector<std::string> completions(const std::vector<std::string>& words) const;
 
  private:
   friend class Program;

@@ -5,6 +5,7 @@
 #include "apps/hapticgiant/bus_command.h"
 #include "apps/hapticgiant/check_command.h"
 #include "apps/hapticgiant/commission_command.h"
+#include "apps/hapticgiant/completion_command.h"
 #include "apps/hapticgiant/doctor_command.h"
 #include "apps/hapticgiant/explain_command.h"
 #include "apps/hapticgiant/new_command.h"
@@ -32,5 +33,6 @@ int main(int argc, char** argv) {
     apps::add_bridge(program);
     apps::add_offline_commands(program, argc, argv);
     apps::add_python_commands(program);
+    apps::add_completion(program);
   });
 }

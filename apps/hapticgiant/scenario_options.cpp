@@ -12,12 +12,20 @@
 #include "hg/scenario/run/plan_options.h"
 
 namespace hg::apps {
+namespace {
+
+std::vector<std::string> shipped_scenarios() {
+  return {"door", "excavator", "free_space", "path", "walk", "surfaces"};
+}
+
+}  // namespace
 
 void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
   command
       .add_option(
           "scenario", world.scenario,
-          "scenario file, or door, excavator, free_space, path, walk, surfaces, ARM/SCENARIO")
+          fmt::format("scenario file, or {}, ARM/SCENARIO", fmt::join(shipped_scenarios(), ", ")))
+      .suggest(shipped_scenarios())
       .capture_default_str();
   command.add_option(
       "--device", world.device,

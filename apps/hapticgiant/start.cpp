@@ -4,6 +4,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/stack.h"
@@ -31,6 +32,10 @@ int parse(Program& program, int argc, char** argv, const int& exit_code) {
 
 }  // namespace
 
+bool is_completion(int argc, char** argv) {
+  return argc > 1 && std::string_view(argv[1]) == kComplete;
+}
+
 int start(int argc, char** argv, const std::function<void(Command program, int& exit_code)>& add) {
   open_standard_files();
   if (const std::string lack = provide_stack(); !lack.empty()) {
@@ -44,6 +49,12 @@ int start(int argc, char** argv, const std::function<void(Command program, int& 
   program.command().require_subcommand(1);
   int exit_code = 0;
   add(program.command(), exit_code);
+  if (is_completion(argc, argv)) {
+    for (const std::string& word : program.command().completions({argv + 2, argv + argc})) {
+      print_out(word + "\n");
+    }
+    return 0;
+  }
   return code_after_output(parse(program, argc, argv, exit_code));
 }
 

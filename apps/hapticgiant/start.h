@@ -2,10 +2,16 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 
 #include "apps/command_line/command.h"
 
 namespace hg::apps {
+
+/// First word of a command line that asks what the last one can be completed to; the scripts of
+/// `hapticgiant completion` write it.
+inline constexpr std::string_view kComplete = "__complete";
+bool is_completion(int argc, char** argv);
 
 /// Parses the command line of a program, to which `add` adds its subcommands; running one sets
 /// `exit_code`. Returns the exit code of the process, after printing what was wrong.

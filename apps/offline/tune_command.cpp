@@ -15,9 +15,9 @@
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/subcommand.h"
 #include "apps/offline/tune_report.h"
-#include "hg/config/control_cycle.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
+#include "hg/config/torque_loop.h"
 #include "hg/scenario/assembly.h"
 #include "hg/tune/tuned_device.h"
 
