@@ -6,6 +6,7 @@
 
 #include "hg/config/device_draft.h"
 #include "hg/config/schema.h"
+#include "hg/signals/presliding.h"
 
 namespace hg::config {
 

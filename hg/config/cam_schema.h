@@ -1,4 +1,4 @@
-/// Description of cams in twin.yaml, and of all joints that follow others.
+/// Description of cams in twin.yaml.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "hg/config/follower_schema.h"
+#include "hg/config/coupling_schema.h"
 #include "hg/config/schema.h"
 #include "hg/config/twin_draft.h"
 #include "hg/model/cam.h"
@@ -58,16 +58,6 @@ void describe_cam(V& v, TwinDraft& d, const UrdfParts& urdf) {
          model::to_text(cam.travel.lb) + " .. " + model::to_text(cam.travel.ub));
   coupling.curve = cam.curve;
   d.couplings.push_back(std::move(coupling));
-}
-
-/// Joints that follow others.
-template <class V>
-void describe_followers(V& v, TwinDraft& d, const UrdfParts& urdf) {
-  describe_couplings(v, d.couplings, urdf);
-  describe_loops(v, d.loops, urdf);
-  v.list(
-      "cams", [&](auto& child) { describe_cam(child, d, urdf); },
-      "joints that follow others by a curve, as on a cam: valves, presses, feeders");
 }
 
 }  // namespace hg::config

@@ -6,6 +6,7 @@
 
 #include "hg/config/device_draft.h"
 #include "hg/config/schema.h"
+#include "hg/controller/estimation/inertial_units.h"
 
 namespace hg::config {
 

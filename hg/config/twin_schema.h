@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hg/config/cam_schema.h"
+#include "hg/config/follower_schema.h"
 #include "hg/config/lock_schema.h"
 #include "hg/config/parameter_schema.h"
 #include "hg/config/schema.h"
