@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hg/core/error.h"
+#include "hg/hqp/problem.h"
 #include "hg/hqp/text.h"
 
 namespace hg::bench {

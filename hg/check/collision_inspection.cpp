@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "hg/controller/safety/collision/guard.h"
+
 namespace hg::check {
 
 void inspect_collisions(const config::DeviceConfig& device, Collector& out) {

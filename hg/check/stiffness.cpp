@@ -12,6 +12,7 @@
 
 #include "hg/controller/rendering/braking.h"
 #include "hg/controller/rendering/twin_elements.h"
+#include "hg/controller/safety/collision/guard.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/chain_data.h"

@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "hg/config/sources.h"
-#include "hg/controller/estimation/estimation.h"
-#include "hg/controller/prepositioning/prepositioning.h"
+#include "hg/controller/estimation/estimation_config.h"
+#include "hg/controller/prepositioning/prepositioning_config.h"
 #include "hg/controller/rendering/options.h"
-#include "hg/controller/safety/collision/guard.h"
-#include "hg/controller/safety/compliance/compliance.h"
-#include "hg/controller/safety/monitor.h"
-#include "hg/controller/safety/passivity/passivity.h"
-#include "hg/controller/safety/sanitiser.h"
-#include "hg/controller/tracking/joint_control.h"
+#include "hg/controller/safety/collision/collision_config.h"
+#include "hg/controller/safety/compliance/compliance_config.h"
+#include "hg/controller/safety/monitor_config.h"
+#include "hg/controller/safety/passivity/passivity_config.h"
+#include "hg/controller/safety/sanitiser_config.h"
+#include "hg/controller/tracking/control_config.h"
 #include "hg/model/device_model.h"
 #include "hg/signals/start_test_config.h"
 

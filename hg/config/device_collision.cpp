@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "hg/controller/safety/collision/guard.h"
 #include "hg/controller/safety/collision/pairs.h"
 #include "hg/controller/safety/collision/shapes.h"
 #include "hg/model/urdf_parts.h"

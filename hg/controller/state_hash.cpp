@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "hg/controller/cycle_state.h"
 #include "hg/core/fields.h"
 
 namespace hg::controller {

@@ -9,9 +9,11 @@
 /// struct with a new one does not compile until hashed() has it, too.
 #pragma once
 
-#include "hg/controller/cycle.h"
+#include <cstdint>
 
 namespace hg::controller {
+
+struct CycleState;
 
 /// Hash of `state`. Left out are the past commands of the drives but the last one (earlier hashes
 /// cover them), MonitorState::shaking, the filters of passivity::PassivityState, and some sums of

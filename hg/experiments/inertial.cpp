@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "hg/controller/cycle_state.h"
 #include "hg/core/stacked.h"
 #include "hg/experiments/player.h"
 #include "hg/model/chain_data.h"

@@ -6,11 +6,13 @@
 #include <string>
 #include <utility>
 
+#include "hg/controller/cycle.h"
 #include "hg/core/allocation_counter.h"
 #include "hg/core/allowed_to_wait.h"
 #include "hg/core/error.h"
 #include "hg/core/index.h"
 #include "hg/core/monotonic_clock.h"
+#include "hg/hqp/problem_capture.h"
 #include "hg/runtime/requests.h"
 
 namespace hg::runtime {
@@ -82,6 +84,10 @@ void Runtime::start() {
     options_.desk->open();
   }
   thread_ = std::thread([this] { loop(); });
+}
+
+const hqp::ProblemCapture& Runtime::kept_problems() const noexcept {
+  return cycle_.kept_problems();
 }
 
 RuntimeReport Runtime::join() {

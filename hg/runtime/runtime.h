@@ -11,7 +11,6 @@
 #include <optional>
 #include <thread>
 
-#include "hg/controller/cycle.h"
 #include "hg/core/nonblocking.h"
 #include "hg/core/schedule.h"
 #include "hg/core/spsc_ring.h"
@@ -24,6 +23,13 @@
 #include "hg/signals/operator_desk.h"
 #include "hg/signals/state.h"
 #include "hg/signals/timed_panel.h"
+
+namespace hg::controller {
+class Cycle;
+}
+namespace hg::hqp {
+class ProblemCapture;
+}
 
 namespace hg::runtime {
 
@@ -46,7 +52,7 @@ class Runtime {
   /// Takes the next sample; false if there is none yet. One observer thread only.
   bool pop(Sample& sample) noexcept { return samples_.pop(sample); }
   /// Problems of failed or slow solves. One observer thread only.
-  const hqp::ProblemCapture& kept_problems() const noexcept { return cycle_.kept_problems(); }
+  const hqp::ProblemCapture& kept_problems() const noexcept;
   /// Sets the target of a simulated hand from the next cycle on. False if it has no place, as in a
   /// long pause: to be repeated. One operator thread only.
   [[nodiscard]] bool set_hand_target(const HandTarget& target) noexcept {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "hg/controller/cycle.h"
 #include "hg/runtime/requests.h"
 
 namespace hg::runtime {
@@ -42,6 +43,10 @@ void Session::read() noexcept HG_NONBLOCKING {
   device_.read(now.sensors);
   const Truth* truth = device_.truth();
   now.truth = truth != nullptr ? *truth : Truth{};
+}
+
+void Session::step() noexcept HG_NONBLOCKING {
+  cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
 }
 
 void Session::request(ModeRequest request) noexcept {

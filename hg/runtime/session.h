@@ -8,12 +8,15 @@
 #include <memory>
 #include <vector>
 
-#include "hg/controller/cycle.h"
 #include "hg/core/nonblocking.h"
 #include "hg/device/device.h"
 #include "hg/signals/state.h"
 #include "hg/signals/timed_changes.h"
 #include "hg/signals/timed_load.h"
+
+namespace hg::controller {
+class Cycle;
+}
 
 namespace hg::runtime {
 
@@ -38,9 +41,7 @@ class Session {
   /// in sample() before step().
   void read() noexcept HG_NONBLOCKING;
   /// Second part of a period: only Cycle::step.
-  void step() noexcept HG_NONBLOCKING {
-    cycle_.step(sample_->sensors, sample_->operator_input, sample_->command, sample_->record);
-  }
+  void step() noexcept HG_NONBLOCKING;
   /// Last part of a period: sends the command.
   void write() noexcept HG_NONBLOCKING { device_.write(sample_->command); }
 

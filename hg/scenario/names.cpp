@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "hg/controller/rendering/tasks.h"
+#include "hg/controller/safety/collision/guard.h"
 
 namespace hg::scenario {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "hg/config/control_cycle.h"
+#include "hg/config/torque_loop.h"
 #include "hg/core/error.h"
 #include "hg/scenario/assembly.h"
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hg/config/simulation/scenario.h"
+#include "hg/controller/cycle_state.h"
 #include "hg/core/error.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/urdf.h"

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hg/controller/estimation/estimation_config.h"
 #include "hg/controller/estimation/gantry_observer.h"
 #include "hg/controller/estimation/inertial_check.h"
 #include "hg/controller/estimation/inertial_units.h"
@@ -19,15 +20,6 @@
 #include "hg/signals/state.h"
 
 namespace hg::estimation {
-
-/// Set-up data.
-struct EstimationConfig {
-  double observer_pole_Hz = 8.0;     ///< Pole of the gantry observer, see gantry_observer.h
-  double link_pole_Hz = 100.0;       ///< Pole of the link side; [C] 2: 60-160 equal, 40 marginal
-  double motor_low_pass_Hz = 200.0;  ///< Low-pass of the motor side's speed
-  WrenchConfig wrench;
-  InertialUnitsConfig units;  ///< Inertial units on links
-};
 
 struct EstimationState {
   bool is_started = false;

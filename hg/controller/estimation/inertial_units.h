@@ -17,6 +17,7 @@
 #include <memory>
 #include <vector>
 
+#include "hg/controller/estimation/estimation_config.h"
 #include "hg/controller/estimation/unit_calibration.h"
 #include "hg/core/stacked.h"
 #include "hg/core/types.h"
@@ -24,18 +25,6 @@
 #include "hg/signals/state.h"
 
 namespace hg::estimation {
-
-using UnitCalibrations = std::array<UnitCalibration, kMaxInertialUnits>;
-
-/// Set-up data.
-struct InertialUnitsConfig {
-  std::vector<int> frames;  ///< Frames of links with a unit, root to tip; empty = no units
-  double delay = 1e-3;      ///< Delay from motion to reading, s; rounded to periods, at least one
-  /// true: the control uses the units; false: their results are only reported.
-  bool feeds_back = false;
-  /// Mounting of the units known from an earlier run of the same device; null = it is learnt.
-  std::shared_ptr<const UnitCalibrations> known;
-};
 
 /// Joints by encoders alone.
 struct EncoderSample {

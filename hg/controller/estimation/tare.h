@@ -7,23 +7,11 @@
 
 #include <cstdint>
 
+#include "hg/controller/estimation/estimation_config.h"
 #include "hg/core/types.h"
 #include "hg/signals/state.h"
 
 namespace hg::estimation {
-
-/// Set-up data. The noise is that of one sample, at 1 kHz: [HANDBOOK] 1.6.
-struct TareConfig {
-  bool is_needed = false;        ///< Arming requires a tare
-  double duration = 0.5;         ///< Duration, s, > 0
-  double noise_force = 0.08;     ///< Noise of the force, rms, N, > 0
-  double noise_torque = 2.6e-3;  ///< Noise of the torque, rms, Nm, > 0
-  /// Largest deviation of the samples, times the noise; without a hand it is about 1.
-  double deviation_max = 3.0;
-  /// Largest change between the halves, times the noise; without a hand about 0.1.
-  double drift_max = 1.0;
-  double motion_max = 1e-3;  ///< Largest motion of a joint during the tare, rad or m
-};
 
 struct TareState {
   TareStatus status = TareStatus::kNone;

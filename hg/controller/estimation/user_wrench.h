@@ -6,21 +6,13 @@
 /// stable ([C] 3). Accelerometer, gyroscope and wrench must have the same delay.
 #pragma once
 
+#include "hg/controller/estimation/estimation_config.h"
 #include "hg/controller/estimation/tare.h"
 #include "hg/core/types.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/payload.h"
 
 namespace hg::estimation {
-
-/// Set-up data. Low-passes are of first order; 0 = off.
-struct WrenchConfig {
-  Payload payload;      ///< Payload beyond the sensor
-  bool has_imu = true;  ///< accelerometer and gyroscope in S; false: weight by the pose, no inertia
-  double alpha_low_pass_Hz = 60.0;  ///< Low-pass of the gyroscope's differences; [C] 2
-  double low_pass_Hz = 0.0;         ///< Low-pass of the whole wrench; 50 for a noisy sensor, [C] 2
-  TareConfig tare;
-};
 
 struct WrenchState {
   bool is_started = false;

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "hg/controller/prepositioning/prepositioning_config.h"
 #include "hg/core/interval.h"
 #include "hg/core/types.h"
 #include "hg/limits/velocity_bounds.h"
@@ -14,15 +15,6 @@
 #include "hg/signals/state.h"
 
 namespace hg::prepositioning {
-
-/// Set-up data.
-struct PrepositioningConfig {
-  double dq_max = 1.5;   ///< Largest speed, m/s or rad/s
-  double k_ppu = 4.0;    ///< Gain of (27), 1/s; below 1 / (4 lag) there is no overshoot
-  double ddq_max = 2.0;  ///< Deceleration that can be relied on, m/s^2 or rad/s^2
-  /// Speed towards a limit, m/s or rad/s, that the arm is trusted to compensate in front of it.
-  double taken_back = 0.25;
-};
 
 /// Distance that each axis may move before it carries a frame of the device over a limit; negative
 /// beyond one, m or rad. Empty: there are no such limits.

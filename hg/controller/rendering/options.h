@@ -31,18 +31,40 @@ enum class Braking : std::uint8_t {
 };
 
 constexpr std::string_view to_string(Law law) noexcept {
-  return law == Law::kPaper ? "paper" : "gauss";
+  switch (law) {
+    case Law::kGauss:
+      return "gauss";
+    case Law::kPaper:
+      return "paper";
+  }
+  return "";
 }
 constexpr std::string_view to_string(Bounds bounds) noexcept {
-  return bounds == Bounds::kPaper ? "paper" : "recoverable";
+  switch (bounds) {
+    case Bounds::kRecoverable:
+      return "recoverable";
+    case Bounds::kPaper:
+      return "paper";
+  }
+  return "";
 }
-
 constexpr std::string_view to_string(Gantry gantry) noexcept {
-  return gantry == Gantry::kRule ? "rule" : "law";
+  switch (gantry) {
+    case Gantry::kLaw:
+      return "law";
+    case Gantry::kRule:
+      return "rule";
+  }
+  return "";
 }
-
 constexpr std::string_view to_string(Braking braking) noexcept {
-  return braking == Braking::kTogether ? "together" : "alone";
+  switch (braking) {
+    case Braking::kAlone:
+      return "alone";
+    case Braking::kTogether:
+      return "together";
+  }
+  return "";
 }
 
 struct RenderingOptions {

@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+#include "hg/controller/cycle_config.h"
+#include "hg/controller/cycle_state.h"
 #include "hg/controller/rendering/test/test_models.h"
 #include "hg/core/allocation_counter.h"
 #include "hg/signals/test/reference_actuators.h"

@@ -1,4 +1,5 @@
 #include "hg/controller/state_hash.h"
+#include "hg/controller/cycle_state.h"
 
 #include <gtest/gtest.h>
 

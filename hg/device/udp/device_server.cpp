@@ -1,14 +1,22 @@
 #include "hg/device/udp/device_server.h"
 
 #include <fmt/format.h>
+#include <sodium/crypto_shorthash.h>
 #include <sodium/randombytes.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <span>
+#include <vector>
 
 #include "hg/core/schedule.h"
 #include "hg/device/udp/agreement.h"
+#include "hg/device/udp/capture.h"
+#include "hg/device/udp/inbox.h"
+#include "hg/device/udp/outbox.h"
+#include "hg/device/udp/udp_socket.h"
 
 namespace hg::udp {
 namespace {
@@ -21,24 +29,94 @@ std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
 }  // namespace
 
-DeviceServer::DeviceServer(const Address& address, const ServerConfig& config)
+/// What DeviceServer does, with the socket and what it knows of its clients.
+class Server {
+ public:
+  Server(const Address& address, const ServerConfig& config);
+
+  // as DeviceServer
+  std::string address() const { return to_string(socket_.own_address()); }
+  std::string capture_error() { return capture_ ? capture_->flush() : ""; }
+  bool wait_for_client(const std::atomic<bool>& stop);
+  SessionReport serve(device::Device& device, const std::atomic<bool>& stop);
+
+ private:
+  enum class Event { kNone, kReady, kCommand, kGoodbye };
+  /// Client that is welcomed and not ready yet. There may be several: the first that is ready gets
+  /// the device, even when it is not among those remembered.
+  struct Candidate {
+    Peer peer;
+    Hello hello;
+    Outbox outbox;
+    Inbox inbox;
+    std::int64_t give_up_ns = 0;
+  };
+  Event receive();
+  Event hear(DatagramCheck verdict, const Header& header, const Peer& from);
+  Event hear_candidate(DatagramCheck verdict, const Header& header, const Peer& from);
+  void begin_session(const Candidate& chosen);
+  Candidate& candidate_of(const Hello& hello, const Peer& from);
+  std::uint32_t session_for(const Peer& peer, std::int64_t time_ns) const noexcept;
+  bool was_welcomed(const Peer& peer, std::uint32_t session) const noexcept;
+  Event take(const Header& header);
+  void on_hello(const Header& header, DatagramCheck verdict, const Peer& from);
+  void refuse(ConnectionRefusal refusal, const std::string& reason, std::uint64_t nonce,
+              const Peer& to);
+  void live_in_real_time(device::Device& device, const std::atomic<bool>& stop);
+  void live_in_lock_step(device::Device& device, const std::atomic<bool>& stop);
+  void close_session(bool is_stopped);
+  bool answered(const std::atomic<bool>& stop);
+  void measure_answer();
+  template <typename Message>
+  void send(const Message& message) {
+    send(message, outbox_, client_);
+  }
+  template <typename Message>
+  void send(const Message& message, Outbox& outbox, const Peer& to);
+  void send_bytes(std::span<const std::byte> datagram, const Peer& to);
+
+  ServerConfig config_;
+  UdpSocket socket_;
+  std::unique_ptr<Capture> capture_;
+  /// Secret for session numbers: a client that answers with its number was welcomed at its address.
+  std::array<unsigned char, crypto_shorthash_KEYBYTES> secret_{};
+  std::uint64_t sessions_ = 0;         ///< number of sessions; a number is valid for one only
+  std::vector<Candidate> candidates_;  ///< oldest first, one per address
+  bool has_client_ = false;
+  Peer client_;
+  Hello hello_;
+  Outbox outbox_{0};
+  Inbox inbox_{0};
+  Datagram datagram_;
+  SensorFrame frame_;
+  CommandFrame arrived_, command_;  ///< `command_` is in effect
+  bool has_command_ = false;        ///< a command has arrived in this session
+  bool has_left_ = false;           ///< the client has sent a goodbye
+  std::int64_t frame_ns_ = 0, heard_ns_ = 0;
+  std::int64_t answers_ = 0, answers_ns_ = 0, longest_answer_ns_ = 0;
+  std::uint64_t refused_ = 0, late_ = 0, malformed_ = 0, foreign_ = 0, from_others_ = 0;
+  Peer first_other_;
+  SessionReport report_;
+};
+
+Server::Server(const Address& address, const ServerConfig& config)
     : config_(config), socket_(UdpSocket::listening_at(address)) {
   randombytes_buf(secret_.data(), secret_.size());
   if (!config.capture.empty()) capture_ = std::make_unique<Capture>(config.capture);
 }
 
-void DeviceServer::send_bytes(std::span<const std::byte> datagram, const Peer& to) {
+void Server::send_bytes(std::span<const std::byte> datagram, const Peer& to) {
   socket_.send(datagram, to);
   if (capture_) capture_->add(now_ns(), datagram);
 }
 
 template <typename Message>
-void DeviceServer::send(const Message& message, Outbox& outbox, const Peer& to) {
+void Server::send(const Message& message, Outbox& outbox, const Peer& to) {
   send_bytes(outbox.encode(message), to);
 }
 
 // receives one datagram, if any waits
-DeviceServer::Event DeviceServer::receive() {
+Server::Event Server::receive() {
   Peer from;
   if (!socket_.receive(datagram_, from)) return Event::kNone;
   if (capture_) capture_->add(now_ns(), datagram_.view());
@@ -55,8 +133,7 @@ DeviceServer::Event DeviceServer::receive() {
 }
 
 // a session begins with a hello; leftovers of an old one do not count for the next
-DeviceServer::Event DeviceServer::hear(DatagramCheck verdict, const Header& header,
-                                       const Peer& from) {
+Server::Event Server::hear(DatagramCheck verdict, const Header& header, const Peer& from) {
   if (!has_client_) return hear_candidate(verdict, header, from);
   if (!(from == client_)) {
     if (from_others_++ == 0) first_other_ = from;
@@ -65,8 +142,8 @@ DeviceServer::Event DeviceServer::hear(DatagramCheck verdict, const Header& head
   return inbox_.accept(verdict, header) ? take(header) : Event::kNone;
 }
 
-DeviceServer::Event DeviceServer::hear_candidate(DatagramCheck verdict, const Header& header,
-                                                 const Peer& from) {
+Server::Event Server::hear_candidate(DatagramCheck verdict, const Header& header,
+                                     const Peer& from) {
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     Candidate& candidate = candidates_[i];
     if (!(from == candidate.peer) || !candidate.inbox.accept(verdict, header)) continue;
@@ -95,7 +172,7 @@ DeviceServer::Event DeviceServer::hear_candidate(DatagramCheck verdict, const He
 
 // Number of the next session if it is the one of `peer`, welcomed at that time. A client that sends
 // it has received the welcome: no record of other clients is needed, however many there are.
-std::uint32_t DeviceServer::session_for(const Peer& peer, std::int64_t time_ns) const noexcept {
+std::uint32_t Server::session_for(const Peer& peer, std::int64_t time_ns) const noexcept {
   const std::int64_t slot = time_ns / std::max<std::int64_t>(1, ns(config_.ready_timeout_s));
   std::array<unsigned char, sizeof sessions_ + sizeof slot + sizeof peer.address> facts{};
   std::memcpy(facts.data(), &sessions_, sizeof sessions_);
@@ -109,14 +186,14 @@ std::uint32_t DeviceServer::session_for(const Peer& peer, std::int64_t time_ns) 
 }
 
 // welcomed at most twice the ready time-out ago
-bool DeviceServer::was_welcomed(const Peer& peer, std::uint32_t session) const noexcept {
+bool Server::was_welcomed(const Peer& peer, std::uint32_t session) const noexcept {
   const std::int64_t now = now_ns();
   return session == session_for(peer, now) ||
          session == session_for(peer, now - ns(config_.ready_timeout_s));
 }
 
 // the other candidates are notified that they are too late
-void DeviceServer::begin_session(const Candidate& chosen) {
+void Server::begin_session(const Candidate& chosen) {
   has_client_ = true;
   ++sessions_;
   client_ = chosen.peer;
@@ -134,7 +211,7 @@ void DeviceServer::begin_session(const Candidate& chosen) {
 }
 
 // a repeated hello belongs to the same candidate
-DeviceServer::Candidate& DeviceServer::candidate_of(const Hello& hello, const Peer& from) {
+Server::Candidate& Server::candidate_of(const Hello& hello, const Peer& from) {
   const std::uint32_t session = session_for(from, now_ns());
   for (Candidate& candidate : candidates_) {
     if (candidate.peer == from && candidate.hello.nonce == hello.nonce) return candidate;
@@ -148,7 +225,7 @@ DeviceServer::Candidate& DeviceServer::candidate_of(const Hello& hello, const Pe
                                             .give_up_ns = now_ns() + ns(config_.ready_timeout_s)});
 }
 
-DeviceServer::Event DeviceServer::take(const Header& header) {
+Server::Event Server::take(const Header& header) {
   switch (static_cast<MessageType>(header.type)) {
     case MessageType::kReady:
       return Event::kReady;
@@ -175,7 +252,7 @@ DeviceServer::Event DeviceServer::take(const Header& header) {
   return Event::kNone;
 }
 
-void DeviceServer::on_hello(const Header& header, DatagramCheck verdict, const Peer& from) {
+void Server::on_hello(const Header& header, DatagramCheck verdict, const Peer& from) {
   if (verdict == DatagramCheck::kWrongVersion) {
     refuse(ConnectionRefusal::kProtocol,
            fmt::format("protocol: version {}, expected {}", kVersion, header.version), 0, from);
@@ -220,8 +297,8 @@ void DeviceServer::on_hello(const Header& header, DatagramCheck verdict, const P
   }
 }
 
-void DeviceServer::refuse(ConnectionRefusal refusal, const std::string& reason, std::uint64_t nonce,
-                          const Peer& to) {
+void Server::refuse(ConnectionRefusal refusal, const std::string& reason, std::uint64_t nonce,
+                    const Peer& to) {
   ++refused_;
   Outbox outbox(0);  // without a tag, so that a client with another key or none can read it
   send(Welcome{.nonce = nonce,
@@ -232,7 +309,7 @@ void DeviceServer::refuse(ConnectionRefusal refusal, const std::string& reason, 
        outbox, to);
 }
 
-bool DeviceServer::wait_for_client(const std::atomic<bool>& stop) {
+bool Server::wait_for_client(const std::atomic<bool>& stop) {
   has_client_ = false;
   while (!stop.load()) {
     if (receive() == Event::kReady) return true;
@@ -244,7 +321,7 @@ bool DeviceServer::wait_for_client(const std::atomic<bool>& stop) {
   return false;
 }
 
-SessionReport DeviceServer::serve(device::Device& device, const std::atomic<bool>& stop) {
+SessionReport Server::serve(device::Device& device, const std::atomic<bool>& stop) {
   report_ = {};
   report_.client = fmt::format("{} at {}", hello_.client.printable(), to_string(client_));
   answers_ = answers_ns_ = longest_answer_ns_ = 0;
@@ -264,7 +341,7 @@ SessionReport DeviceServer::serve(device::Device& device, const std::atomic<bool
   return report_;
 }
 
-void DeviceServer::close_session(bool is_stopped) {
+void Server::close_session(bool is_stopped) {
   const bool is_silent = !has_left_ && !is_stopped;
   if (!has_left_) {
     const Goodbye goodbye{is_silent ? Farewell::kSilent : Farewell::kDone,
@@ -293,14 +370,14 @@ void DeviceServer::close_session(bool is_stopped) {
   has_client_ = false;
 }
 
-void DeviceServer::measure_answer() {
+void Server::measure_answer() {
   const std::int64_t time = now_ns() - frame_ns_;
   ++answers_;
   answers_ns_ += time;
   longest_answer_ns_ = std::max(longest_answer_ns_, time);
 }
 
-void DeviceServer::live_in_real_time(device::Device& device, const std::atomic<bool>& stop) {
+void Server::live_in_real_time(device::Device& device, const std::atomic<bool>& stop) {
   Schedule schedule(now_ns(), std::llround(1e9 / config_.actual.rate_Hz));
   const std::int64_t timeout = ns(config_.command_timeout_s);
   // age of the frame that a command answers: a client that falls behind must not be followed
@@ -333,7 +410,7 @@ void DeviceServer::live_in_real_time(device::Device& device, const std::atomic<b
   }
 }
 
-void DeviceServer::live_in_lock_step(device::Device& device, const std::atomic<bool>& stop) {
+void Server::live_in_lock_step(device::Device& device, const std::atomic<bool>& stop) {
   while (true) {
     device.read(frame_);
     frame_ns_ = now_ns();
@@ -345,7 +422,7 @@ void DeviceServer::live_in_lock_step(device::Device& device, const std::atomic<b
 }
 
 // waits for the command that answers the frame; false: the session is over
-bool DeviceServer::answered(const std::atomic<bool>& stop) {
+bool Server::answered(const std::atomic<bool>& stop) {
   const std::int64_t deadline = now_ns() + ns(config_.lock_step_timeout_s);
   while (!stop.load()) {
     const Event event = receive();
@@ -365,6 +442,18 @@ bool DeviceServer::answered(const std::atomic<bool>& stop) {
     if (event == Event::kNone) socket_.wait(std::min(deadline, now_ns() + kLook));
   }
   return false;
+}
+
+DeviceServer::DeviceServer(const Address& address, const ServerConfig& config)
+    : server_(std::make_unique<Server>(address, config)) {}
+DeviceServer::~DeviceServer() = default;
+std::string DeviceServer::address() const { return server_->address(); }
+std::string DeviceServer::capture_error() { return server_->capture_error(); }
+bool DeviceServer::wait_for_client(const std::atomic<bool>& stop) {
+  return server_->wait_for_client(stop);
+}
+SessionReport DeviceServer::serve(device::Device& device, const std::atomic<bool>& stop) {
+  return server_->serve(device, stop);
 }
 
 }  // namespace hg::udp

@@ -4,21 +4,15 @@
 /// Lock-step: it advances by a period when the command that answers its last frame has arrived.
 #pragma once
 
-#include <sodium/crypto_shorthash.h>
-
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "hg/device/device.h"
-#include "hg/device/udp/capture.h"
-#include "hg/device/udp/inbox.h"
-#include "hg/device/udp/outbox.h"
+#include "hg/device/udp/address.h"
+#include "hg/device/udp/key.h"
 #include "hg/device/udp/protocol.h"
-#include "hg/device/udp/udp_socket.h"
 #include "hg/signals/link_counts.h"
 
 namespace hg::udp {
@@ -57,16 +51,19 @@ struct SessionReport {
   LinkCounts link;
 };
 
+class Server;
+
 class DeviceServer {
  public:
   /// Throws SetupError.
   DeviceServer(const Address& address, const ServerConfig& config);
+  ~DeviceServer();
 
   /// Listening address HOST:PORT, with the port that the system chose for 0.
-  std::string address() const { return to_string(socket_.own_address()); }
+  std::string address() const;
 
   /// Why the capture misses datagrams; empty: it is complete, or there is none.
-  std::string capture_error() { return capture_ ? capture_->flush() : ""; }
+  std::string capture_error();
 
   /// Blocks until a client has been welcomed and is ready. False: stopped by `stop`.
   bool wait_for_client(const std::atomic<bool>& stop);
@@ -74,62 +71,7 @@ class DeviceServer {
   SessionReport serve(device::Device& device, const std::atomic<bool>& stop);
 
  private:
-  enum class Event { kNone, kReady, kCommand, kGoodbye };
-  /// Client that is welcomed and not ready yet. There may be several: the first that is ready gets
-  /// the device, even when it is not among those remembered.
-  struct Candidate {
-    Peer peer;
-    Hello hello;
-    Outbox outbox;
-    Inbox inbox;
-    std::int64_t give_up_ns = 0;
-  };
-  Event receive();
-  Event hear(DatagramCheck verdict, const Header& header, const Peer& from);
-  Event hear_candidate(DatagramCheck verdict, const Header& header, const Peer& from);
-  void begin_session(const Candidate& chosen);
-  Candidate& candidate_of(const Hello& hello, const Peer& from);
-  std::uint32_t session_for(const Peer& peer, std::int64_t time_ns) const noexcept;
-  bool was_welcomed(const Peer& peer, std::uint32_t session) const noexcept;
-  Event take(const Header& header);
-  void on_hello(const Header& header, DatagramCheck verdict, const Peer& from);
-  void refuse(ConnectionRefusal refusal, const std::string& reason, std::uint64_t nonce,
-              const Peer& to);
-  void live_in_real_time(device::Device& device, const std::atomic<bool>& stop);
-  void live_in_lock_step(device::Device& device, const std::atomic<bool>& stop);
-  void close_session(bool is_stopped);
-  bool answered(const std::atomic<bool>& stop);
-  void measure_answer();
-  template <typename Message>
-  void send(const Message& message) {
-    send(message, outbox_, client_);
-  }
-  template <typename Message>
-  void send(const Message& message, Outbox& outbox, const Peer& to);
-  void send_bytes(std::span<const std::byte> datagram, const Peer& to);
-
-  ServerConfig config_;
-  UdpSocket socket_;
-  std::unique_ptr<Capture> capture_;
-  /// Secret for session numbers: a client that answers with its number was welcomed at its address.
-  std::array<unsigned char, crypto_shorthash_KEYBYTES> secret_{};
-  std::uint64_t sessions_ = 0;         ///< number of sessions; a number is valid for one only
-  std::vector<Candidate> candidates_;  ///< oldest first, one per address
-  bool has_client_ = false;
-  Peer client_;
-  Hello hello_;
-  Outbox outbox_{0};
-  Inbox inbox_{0};
-  Datagram datagram_;
-  SensorFrame frame_;
-  CommandFrame arrived_, command_;  ///< `command_` is in effect
-  bool has_command_ = false;        ///< a command has arrived in this session
-  bool has_left_ = false;           ///< the client has sent a goodbye
-  std::int64_t frame_ns_ = 0, heard_ns_ = 0;
-  std::int64_t answers_ = 0, answers_ns_ = 0, longest_answer_ns_ = 0;
-  std::uint64_t refused_ = 0, late_ = 0, malformed_ = 0, foreign_ = 0, from_others_ = 0;
-  Peer first_other_;
-  SessionReport report_;
+  std::unique_ptr<Server> server_;
 };
 
 }  // namespace hg::udp

@@ -8,6 +8,11 @@
 
 #include "hg/core/error.h"
 #include "hg/device/udp/agreement.h"
+#include "hg/device/udp/arrivals.h"
+#include "hg/device/udp/frame_queue.h"
+#include "hg/device/udp/inbox.h"
+#include "hg/device/udp/outbox.h"
+#include "hg/device/udp/udp_socket.h"
 
 namespace hg::udp {
 namespace {
@@ -31,7 +36,58 @@ FaultCode reason_of(const Goodbye& goodbye) noexcept {
 
 }  // namespace
 
-RemoteDevice::RemoteDevice(const Address& address, const ClientConfig& config)
+/// What RemoteDevice does, with the socket and what it has received.
+class Client {
+ public:
+  Client(const Address& address, const ClientConfig& config);
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+  ~Client() { close(fault_); }
+
+  // as RemoteDevice
+  void read(SensorFrame& sensors) noexcept;
+  void write(const CommandFrame& command) noexcept;
+  void close(FaultCode reason) noexcept;
+  const Welcome& welcome() const noexcept { return welcome_; }
+  std::string farewell() const { return goodbye_.reason.printable(); }
+  LinkCounts counts() const noexcept;
+  std::int64_t late_ns() const noexcept { return late_ns_; }
+
+ private:
+  void connect(const std::string& at);
+  bool answers(const std::string& at, std::uint64_t nonce, bool is_patient);
+  void take_in() noexcept;
+  void take(const Header& header) noexcept;
+  void say_again() noexcept;
+  void stop(FaultCode fault, SensorFrame& sensors) noexcept;
+  template <typename Message>
+  void send(const Message& message) noexcept {
+    socket_.send(outbox_.encode(message));
+  }
+
+  ClientConfig config_;
+  UdpSocket socket_;
+  Outbox outbox_;
+  Inbox inbox_{0};
+  FrameQueue queue_;
+  Arrivals arrivals_;
+  Welcome welcome_;
+  Goodbye goodbye_;
+  SensorFrame arrived_;
+  CommandFrame last_command_;
+  std::uint64_t newest_ = 0;  ///< number of the newest frame received
+  Datagram datagram_;
+  bool is_started_ = false;  ///< the first frame has arrived
+  bool has_command_ = false;
+  bool has_left_ = false;  ///< the server has left
+  bool is_closed_ = false;
+  FaultCode fault_ = FaultCode::kNone;
+  LinkCounts own_;               ///< counts beyond those of inbox and queue
+  std::int64_t arrived_ns_ = 0;  ///< of the first frame that this read() has received; 0: none
+  std::int64_t late_ns_ = 0;     ///< of this computer in this read()
+};
+
+Client::Client(const Address& address, const ClientConfig& config)
     : config_(config),
       socket_(UdpSocket::talking_to(address)),
       outbox_(0, config.key),
@@ -39,9 +95,7 @@ RemoteDevice::RemoteDevice(const Address& address, const ClientConfig& config)
   connect(address.host + ":" + address.port);
 }
 
-RemoteDevice::~RemoteDevice() { close(fault_); }
-
-void RemoteDevice::connect(const std::string& at) {
+void Client::connect(const std::string& at) {
   const std::uint64_t nonce = random_number();
   const std::int64_t busy_until = now_ns() + ns(config_.busy_patience_s);
   const std::int64_t deadline = now_ns() + ns(config_.answer_timeout_s + config_.busy_patience_s);
@@ -62,7 +116,7 @@ void RemoteDevice::connect(const std::string& at) {
 }
 
 // whether a datagram was the welcome
-bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_patient) {
+bool Client::answers(const std::string& at, std::uint64_t nonce, bool is_patient) {
   Peer from;
   if (!socket_.receive(datagram_, from)) return false;
   Header header;
@@ -95,7 +149,7 @@ bool RemoteDevice::answers(const std::string& at, std::uint64_t nonce, bool is_p
   return inbox_.accept(verdict, header);
 }
 
-void RemoteDevice::read(SensorFrame& sensors) noexcept {
+void Client::read(SensorFrame& sensors) noexcept {
   arrived_ns_ = late_ns_ = 0;
   if (fault_ != FaultCode::kNone) return stop(fault_, sensors);
   const bool is_lock_step = config_.expected.is_lock_step;
@@ -125,7 +179,7 @@ void RemoteDevice::read(SensorFrame& sensors) noexcept {
   }
 }
 
-void RemoteDevice::take_in() noexcept {
+void Client::take_in() noexcept {
   Peer from;
   for (int i = 0; i < kMostAtOnce; ++i) {
     if (queue_.is_full() || !socket_.receive(datagram_, from)) return;
@@ -135,7 +189,7 @@ void RemoteDevice::take_in() noexcept {
   }
 }
 
-void RemoteDevice::take(const Header& header) noexcept {
+void Client::take(const Header& header) noexcept {
   switch (static_cast<MessageType>(header.type)) {
     case MessageType::kSensors:
       if (!decode(datagram_.view(), arrived_) || !fits(config_.expected, arrived_)) {
@@ -163,7 +217,7 @@ void RemoteDevice::take(const Header& header) noexcept {
 }
 
 // repeats what was lost: the server waits for it
-void RemoteDevice::say_again() noexcept {
+void Client::say_again() noexcept {
   if (has_command_) {
     send(last_command_);
     ++own_.repeated;
@@ -172,7 +226,7 @@ void RemoteDevice::say_again() noexcept {
   }
 }
 
-void RemoteDevice::stop(FaultCode fault, SensorFrame& sensors) noexcept {
+void Client::stop(FaultCode fault, SensorFrame& sensors) noexcept {
   fault_ = fault;
   if (!is_started_) {
     const auto n_m = static_cast<Eigen::Index>(config_.expected.n_m);
@@ -183,7 +237,7 @@ void RemoteDevice::stop(FaultCode fault, SensorFrame& sensors) noexcept {
   sensors.driver_fault = fault;
 }
 
-void RemoteDevice::write(const CommandFrame& command) noexcept {
+void Client::write(const CommandFrame& command) noexcept {
   // in lock-step a frame has one answer; the command at the end is followed by a goodbye
   const bool is_answered = has_command_ && command.sequence == last_command_.sequence;
   if (config_.expected.is_lock_step && is_answered) return;
@@ -194,7 +248,7 @@ void RemoteDevice::write(const CommandFrame& command) noexcept {
   send(last_command_);
 }
 
-void RemoteDevice::close(FaultCode reason) noexcept {
+void Client::close(FaultCode reason) noexcept {
   if (is_closed_ || has_left_) return;
   is_closed_ = true;
   const bool is_fault = reason != FaultCode::kNone;
@@ -203,7 +257,7 @@ void RemoteDevice::close(FaultCode reason) noexcept {
   for (int i = 0; i < kGoodbyes; ++i) send(goodbye);
 }
 
-LinkCounts RemoteDevice::counts() const noexcept {
+LinkCounts Client::counts() const noexcept {
   LinkCounts counts = inbox_.counts();
   counts.sent = outbox_.number();
   counts.held = queue_.held();
@@ -213,5 +267,16 @@ LinkCounts RemoteDevice::counts() const noexcept {
   counts.foreign += own_.foreign;
   return counts;
 }
+
+RemoteDevice::RemoteDevice(const Address& address, const ClientConfig& config)
+    : client_(std::make_unique<Client>(address, config)) {}
+RemoteDevice::~RemoteDevice() = default;
+void RemoteDevice::read(SensorFrame& sensors) noexcept { client_->read(sensors); }
+void RemoteDevice::write(const CommandFrame& command) noexcept { client_->write(command); }
+void RemoteDevice::close(FaultCode reason) noexcept { client_->close(reason); }
+const Welcome& RemoteDevice::welcome() const noexcept { return client_->welcome(); }
+std::string RemoteDevice::farewell() const { return client_->farewell(); }
+LinkCounts RemoteDevice::counts() const noexcept { return client_->counts(); }
+std::int64_t RemoteDevice::late_ns() const noexcept { return client_->late_ns(); }
 
 }  // namespace hg::udp

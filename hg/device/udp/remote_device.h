@@ -5,15 +5,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "hg/device/connected_device.h"
-#include "hg/device/udp/arrivals.h"
-#include "hg/device/udp/frame_queue.h"
-#include "hg/device/udp/inbox.h"
-#include "hg/device/udp/outbox.h"
+#include "hg/device/udp/address.h"
+#include "hg/device/udp/key.h"
 #include "hg/device/udp/protocol.h"
-#include "hg/device/udp/udp_socket.h"
 
 namespace hg::udp {
 
@@ -31,6 +29,8 @@ struct ClientConfig {
   Key key;  ///< shared key, which the server must have, too
 };
 
+class Client;
+
 class RemoteDevice final : public device::ConnectedDevice {
  public:
   /// Connects. Throws SetupError: no answer, refused and why, other device or version.
@@ -45,44 +45,14 @@ class RemoteDevice final : public device::ConnectedDevice {
   /// Notifies the server that the session is over, without waiting.
   void close(FaultCode reason) noexcept override;
 
-  const Welcome& welcome() const noexcept { return welcome_; }
+  const Welcome& welcome() const noexcept;
   /// Reason why the server ended the session, printable; empty: it did not.
-  std::string farewell() const override { return goodbye_.reason.printable(); }
+  std::string farewell() const override;
   LinkCounts counts() const noexcept override;
-  std::int64_t late_ns() const noexcept override { return late_ns_; }
+  std::int64_t late_ns() const noexcept override;
 
  private:
-  void connect(const std::string& at);
-  bool answers(const std::string& at, std::uint64_t nonce, bool is_patient);
-  void take_in() noexcept;
-  void take(const Header& header) noexcept;
-  void say_again() noexcept;
-  void stop(FaultCode fault, SensorFrame& sensors) noexcept;
-  template <typename Message>
-  void send(const Message& message) noexcept {
-    socket_.send(outbox_.encode(message));
-  }
-
-  ClientConfig config_;
-  UdpSocket socket_;
-  Outbox outbox_;
-  Inbox inbox_{0};
-  FrameQueue queue_;
-  Arrivals arrivals_;
-  Welcome welcome_;
-  Goodbye goodbye_;
-  SensorFrame arrived_;
-  CommandFrame last_command_;
-  std::uint64_t newest_ = 0;  ///< number of the newest frame received
-  Datagram datagram_;
-  bool is_started_ = false;  ///< the first frame has arrived
-  bool has_command_ = false;
-  bool has_left_ = false;  ///< the server has left
-  bool is_closed_ = false;
-  FaultCode fault_ = FaultCode::kNone;
-  LinkCounts own_;               ///< counts beyond those of inbox and queue
-  std::int64_t arrived_ns_ = 0;  ///< of the first frame that this read() has received; 0: none
-  std::int64_t late_ns_ = 0;     ///< of this computer in this read()
+  std::unique_ptr<Client> client_;
 };
 
 }  // namespace hg::udp

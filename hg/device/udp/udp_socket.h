@@ -9,17 +9,10 @@
 #include <string>
 
 #include "hg/core/monotonic_clock.h"
+#include "hg/device/udp/address.h"
 #include "hg/device/udp/codec.h"
 
 namespace hg::udp {
-
-/// HOST:PORT as typed by a user; a host with colons in brackets.
-struct Address {
-  std::string host, port;
-};
-
-/// Parses an address; throws SetupError that begins with `option`.
-Address parse_address(const std::string& option, const std::string& text);
 
 /// Address of the other end of a datagram.
 struct Peer {

@@ -9,6 +9,7 @@
 #include "hg/controller/rendering/braking.h"
 #include "hg/controller/rendering/motor_torque.h"
 #include "hg/controller/rendering/surfaces/surface.h"
+#include "hg/controller/safety/collision/guard.h"
 #include "hg/experiments/changes.h"
 #include "hg/experiments/haptify/play.h"
 #include "hg/experiments/player.h"

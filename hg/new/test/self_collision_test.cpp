@@ -1,4 +1,5 @@
 #include "hg/new/self_collision.h"
+#include "hg/controller/safety/collision/guard.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #include "hg/runtime/runtime.h"
+#include "hg/hqp/problem_capture.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>

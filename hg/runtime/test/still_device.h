@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "hg/controller/cycle.h"
+#include "hg/controller/cycle_config.h"
 #include "hg/controller/rendering/test/test_models.h"
 #include "hg/device/device.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "hg/config/control_cycle.h"
+#include "hg/config/torque_loop.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/scenario/assembly.h"
 #include "hg/tune/proof.h"

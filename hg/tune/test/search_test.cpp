@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "hg/config/control_cycle.h"
+#include "hg/config/torque_loop.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/scenario/assembly.h"
 #include "hg/tune/tuned_device.h"

@@ -24,8 +24,8 @@
 #include <string>
 #include <vector>
 
+#include "hg/controller/safety/collision/collision_config.h"
 #include "hg/controller/safety/collision/distance.h"
-#include "hg/controller/safety/collision/pairs.h"
 #include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
@@ -36,13 +36,6 @@ namespace hg::collision {
 inline constexpr int kMaxPairs = 96;  ///< Largest number of watched pairs; set-up refuses more
 /// Pairs that always stay farther apart than the safe distance plus this need not be watched, m.
 inline constexpr double kFarEnough = 0.02;
-
-/// Set-up data.
-struct CollisionConfig {
-  std::vector<Shape> shapes;    ///< Collision shapes; empty: nothing is watched
-  Pairs pairs;                  ///< Pairs found by choose_pairs()
-  double safe_distance = 0.03;  ///< Safe distance, [HANDBOOK] 6.4, m
-};
 
 /// Names like "link1 - forearm", one per watched pair.
 std::vector<std::string> pair_names(const CollisionConfig& config);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <ranges>
 
+#include "hg/model/urdf.h"
+
 namespace hg::collision {
 namespace {
 

@@ -10,7 +10,10 @@
 
 #include "hg/core/types.h"
 #include "hg/model/chain_model.h"
-#include "hg/model/urdf.h"
+
+namespace hg::model {
+struct Urdf;
+}
 
 namespace hg::collision {
 

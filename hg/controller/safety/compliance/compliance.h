@@ -15,16 +15,12 @@
 
 #include <cstdint>
 
+#include "hg/controller/safety/compliance/compliance_config.h"
 #include "hg/core/types.h"
 #include "hg/model/device_model.h"
 #include "hg/signals/touch.h"
 
 namespace hg::compliance {
-
-/// Set-up data.
-struct ComplianceConfig {
-  bool is_on = false;
-};
 
 /// The twin yields with no larger wrench than kForceMax and kMomentMax.
 inline constexpr double kForceMax = 100.0;   // N

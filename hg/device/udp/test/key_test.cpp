@@ -1,5 +1,6 @@
 /// The shared key: its file, its tag, and what either side makes of another one or none.
 #include "hg/device/udp/key.h"
+#include "hg/device/udp/codec.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

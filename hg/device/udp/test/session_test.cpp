@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "hg/core/monotonic_clock.h"
 #include "hg/device/udp/test/example_messages.h"
 #include "hg/device/udp/test/peers.h"
 
