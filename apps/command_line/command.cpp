@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <sstream>
@@ -69,6 +70,13 @@ std::vector<std::string> suggested_values(CLI::Option& option) {
   return CLI::detail::split(values.substr(kSuggested.size()), '\n');
 }
 
+CLI::App* subcommand_named(CLI::App* command, const std::string& name) {
+  const std::vector<CLI::App*> all = command->get_subcommands({});
+  const auto found =
+      std::ranges::find(all, name, [](const CLI::App* one) { return one->get_name(); });
+  return found == all.end() ? nullptr : *found;
+}
+
 // Where the typing of a command line has arrived.
 struct Typed {
   CLI::App* command = nullptr;
@@ -87,7 +95,7 @@ Typed read_typed(CLI::App* command, const std::vector<std::string>& words) {
       typed.awaiting = takes_next ? option : nullptr;
     } else if (typed.awaiting != nullptr) {
       typed.awaiting = nullptr;
-    } else if (CLI::App* below = typed.command->get_subcommand_no_throw(word); below != nullptr) {
+    } else if (CLI::App* below = subcommand_named(typed.command, word); below != nullptr) {
       typed = {.command = below};
     } else {
       ++typed.positionals;
@@ -216,7 +224,6 @@ std::vector<std::string> Command::given_options() const {
   return names;
 }
 
-bool Command::is_parsed() const { return self_->parsed(); }
 bool Command::has_subcommand() const { return !self_->get_subcommands().empty(); }
 
 std::vector<std::string> Command::completions(const std::vector<std::string>& words) const {

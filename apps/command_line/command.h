@@ -89,7 +89,6 @@ class Command {
   std::vector<std::string> remaining() const;
   /// Names of the options that the command line gives to it.
   std::vector<std::string> given_options() const;
-  bool is_parsed() const;
   bool has_subcommand() const;
   /// What a shell can complete the last of `words` to: subcommands, options, and values that
   /// one_of() and suggest() name. `words` follow this command's name on a command line that is

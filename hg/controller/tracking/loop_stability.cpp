@@ -1,5 +1,9 @@
 #include "hg/controller/tracking/loop_stability.h"
 
+#include <compare>
+#include <map>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "hg/controller/tracking/sampled_arm.h"
@@ -112,6 +116,76 @@ class SampledLoop {
   Eigen::MatrixXd feedback_;  // torques from theta, theta', q, q', tau_J
 };
 
+// Numbers of a loop in given postures, on which its stability depends.
+class Numbers {
+ public:
+  void add(double value) { values_.push_back(value); }
+  void add(const ActuatorModel& actuator) {
+    const auto& [rotor_inertia, stiffness, damping, coulomb_friction, viscous_friction,
+                 load_friction, stiction, stribeck_speed, presliding, presliding_elements,
+                 torque_max, torque_rated, speed_full_torque, speed_no_load] = actuator;
+    add_all(rotor_inertia, stiffness, damping, coulomb_friction, viscous_friction, load_friction,
+            stiction, stribeck_speed, presliding, presliding_elements, torque_max, torque_rated,
+            speed_full_torque, speed_no_load);
+  }
+  void add(const TorqueLoop& loop) {
+    const auto& [latency, current_lag] = loop;
+    add_all(latency, current_lag);
+  }
+  void add(const Poles& poles) {
+    const auto& [w0, w1, z1, z2, w2_max, w_motor] = poles;
+    add_all(w0, w1, z1, z2, w2_max, w_motor);
+  }
+  void add(const ControlConfig& config) {
+    const auto& [method, loop, latency_max, integral_rate, integral_max, poles, flatness_Hz,
+                 wrench_lead, lead_low_pass_Hz, stiff_low_pass_Hz, error_max, friction_share,
+                 friction_speed, friction_learning] = config;
+    add_all(static_cast<double>(method), loop, latency_max, integral_rate, integral_max, poles,
+            flatness_Hz, wrench_lead, lead_low_pass_Hz, stiff_low_pass_Hz, error_max,
+            friction_share, friction_speed, friction_learning);
+  }
+  void add(const LoopFilters& filters) {
+    const auto& [link_pole_Hz, motor_low_pass_Hz] = filters;
+    add_all(link_pole_Hz, motor_low_pass_Hz);
+  }
+  template <typename Derived>
+  void add(const Eigen::MatrixBase<Derived>& matrix) {
+    for (const double value : matrix.reshaped()) add(value);
+  }
+  template <typename... Parts>
+  void add_all(const Parts&... parts) {
+    (add(parts), ...);
+  }
+
+  auto operator<=>(const Numbers&) const = default;
+
+ private:
+  std::vector<double> values_;
+};
+
+// The arm takes part by its mass matrix and weight in each posture.
+Numbers numbers_of(const Loop& loop, const std::vector<Eigen::VectorXd>& postures) {
+  Numbers numbers;
+  numbers.add_all(loop.config, loop.filters, loop.device.rate_Hz);
+  for (const ActuatorModel& actuator : loop.device.actuators) numbers.add(actuator);
+  model::ChainData chain(loop.device.chain);
+  for (const Eigen::VectorXd& q : postures) {
+    chain.update(q, Eigen::VectorXd::Zero(q.size()));
+    numbers.add_all(q, chain.M(), chain.c());
+  }
+  return numbers;
+}
+
+int search_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures, int most,
+                   int least) {
+  for (int periods = least; periods <= most; ++periods) {
+    for (const Eigen::VectorXd& q : postures) {
+      if (spectral_radius(loop, q, periods * loop.device.dt()) >= 1.0) return periods - 1;
+    }
+  }
+  return most;
+}
+
 }  // namespace
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency) {
@@ -126,14 +200,23 @@ double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latenc
   return hg::spectral_radius(period);
 }
 
+// Campaigns make hundreds of cycles of one device: what was found for the same numbers is kept.
 int longest_stable_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures, int most,
                            int least) {
-  for (int periods = least; periods <= most; ++periods) {
-    for (const Eigen::VectorXd& q : postures) {
-      if (spectral_radius(loop, q, periods * loop.device.dt()) >= 1.0) return periods - 1;
-    }
+  static std::mutex mutex;
+  static std::map<Numbers, int> found;
+  Numbers numbers = numbers_of(loop, postures);
+  numbers.add_all(most, least);
+  {
+    const std::scoped_lock lock(mutex);
+    if (const auto known = found.find(numbers); known != found.end()) return known->second;
   }
-  return most;
+  const int periods = search_latency(loop, postures, most, least);
+  constexpr std::size_t kMostKept = 64;
+  const std::scoped_lock lock(mutex);
+  if (found.size() == kMostKept) found.clear();
+  found.emplace(std::move(numbers), periods);
+  return periods;
 }
 
 }  // namespace hg::tracking
