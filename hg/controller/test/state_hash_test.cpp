@@ -1,10 +1,11 @@
 #include "hg/controller/state_hash.h"
-#include "hg/controller/cycle_state.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <vector>
+
+#include "hg/controller/cycle_state.h"
 
 namespace hg::controller {
 namespace {

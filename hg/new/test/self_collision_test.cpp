@@ -1,5 +1,4 @@
 #include "hg/new/self_collision.h"
-#include "hg/controller/safety/collision/guard.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,6 +7,7 @@
 #include <random>
 
 #include "hg/config/device.h"
+#include "hg/controller/safety/collision/guard.h"
 #include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/test/temporary_folder.h"
 #include "hg/model/urdf.h"

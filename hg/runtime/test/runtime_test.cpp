@@ -1,5 +1,4 @@
 #include "hg/runtime/runtime.h"
-#include "hg/hqp/problem_capture.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -18,6 +17,7 @@
 #include "hg/core/index.h"
 #include "hg/core/monotonic_clock.h"
 #include "hg/core/schedule.h"
+#include "hg/hqp/problem_capture.h"
 #include "hg/runtime/test/still_device.h"
 
 namespace hg::runtime {
