@@ -121,6 +121,10 @@ class Sweep(TemporaryFolder):
                 self.assertIn(f"{self.file}:{place}" if place else str(self.file), err)
         self.assertFalse(self.out.exists())
 
+    def test_a_wrong_key_beside_an_option_of_its_part_has_its_own_place(self):
+        self.file.write_text("fixed:\n  twin: door\nparameters:\n  twin.joints.hing.friction_Nm: [1, 3]\n")
+        self.assertIn(f"{self.file}:4:3: twin.joints.hing: ", self.sweep(self.file, code=2)[1])
+
     def test_an_option_that_the_program_refuses_is_named_with_its_place(self):
         self.file.write_text(TABLE + "rows: [{hand: stif}]\n")
         _, err = self.sweep(self.file, code=2)

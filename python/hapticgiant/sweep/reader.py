@@ -92,11 +92,15 @@ class Placed:
     places: dict[str, str]
 
     def place(self, key: str) -> str:
-        """Where a key stands, or the one that is in it or around it."""
-        for known, place in self.places.items():
-            if known == key or known.startswith(key + ".") or key.startswith(known + "."):
-                return place
-        return str(self.file)
+        """Where a key stands; else the first one in it, else the longest one around it."""
+        places = {known.replace('"', ""): place for known, place in self.places.items()}
+        key = key.replace('"', "")  # a name with a dot stands in quotes
+        if key in places:
+            return places[key]
+        inside = [known for known in places if known.startswith((key + ".", key + "["))]
+        around = [known for known in places if key.startswith((known + ".", known + "["))]
+        nearest = inside or sorted(around, key=len)[-1:]
+        return places[nearest[0]] if nearest else str(self.file)
 
 
 class Reader:
