@@ -86,6 +86,11 @@ bool is_yes_or_no(FaultCode code) {
   }
 }
 
+std::string limit_name(const Names& names, int index) {
+  return index < static_cast<int>(names.limits.size()) ? names.limits[index].name
+                                                       : fmt::format("number {}", index);
+}
+
 }  // namespace
 
 std::string part_of(const Fault& fault, const Names& names, const SensorFrame& sensors) {
@@ -122,8 +127,8 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
     case FaultCode::kCycleOverrun:
       return index == 0 ? "in a row" : "in a second";
     case FaultCode::kLimitExceeded:
-      return index < static_cast<int>(names.limits.size()) ? names.limits[index].name
-                                                           : fmt::format("number {}", index);
+    case FaultCode::kLimitNotHeld:
+      return limit_name(names, index);
     case FaultCode::kGantryExceeded:
     case FaultCode::kGantryDeviates:
       return name_in(names.gantry, index, "axis");

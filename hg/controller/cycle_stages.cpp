@@ -89,6 +89,7 @@ bool follows_from_link(FaultCode code) noexcept {
     case FaultCode::kBrakingPosition:
     case FaultCode::kBrakingSpeed:
     case FaultCode::kStopTooFar:
+    case FaultCode::kLimitNotHeld:
       return true;
     default:
       return false;
@@ -484,7 +485,8 @@ Fault CycleStages::monitor(const SensorFrame& sensors, std::uint32_t late_cycles
                               .sync_error = results.moved.sync_error,
                               .v_H = law.v_H,
                               .contact_force = law.contact.force,
-                              .oscillation = results.passivity.oscillation},
+                              .oscillation = results.passivity.oscillation,
+                              .passing = law.passing},
                              {.state = state_.supervisor.state,
                               .late_cycles = late_cycles,
                               .dq_p_command = results.moved.dq_p,

@@ -197,6 +197,11 @@ constexpr FaultWords kFaults[] = {
      .text = "axis moves with its brake closed",
      .meaning =
          "An axis moves although its drive is off and its brake closed, or its encoders say so."},
+    {.code = FaultCode::kLimitNotHeld,
+     .name = "limit not held",
+     .text = "the motors cannot stop the device at a limit",
+     .meaning = "The hand moves the device towards a limit faster than its motors can stop it "
+                "there, so that the brakes do."},
 };
 
 constexpr FaultWords kUnknown = {

@@ -55,6 +55,7 @@ enum class FaultCode : std::uint16_t {
   kBrakingSpeed = 321,
   kStopTooFar = 322,
   kBrakesSlip = 323,
+  kLimitNotHeld = 324,
 };
 
 /// Words for a fault, the same in messages, recordings, Python and docs.

@@ -3,6 +3,7 @@
 /// SI units; frames and chains as in hg/signals/state.h.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "hg/signals/gantry_task.h"
@@ -31,6 +32,12 @@ struct LawInput {
 struct LawResult : LawReport {
   VectorM ddq_m;  ///< Accelerations of the manipulator joints, rad/s^2 or m/s^2
   VectorA ddq_a;  ///< Accelerations of the twin joints, rad/s^2 or m/s^2
+  /// Distance outside its range that each limit of the device will reach within kLookAhead, if it
+  /// could not be met in this cycle, else 0; rad or m, in the order of `limits`.
+  std::array<double, kMaxLimits> passing{};
 };
+
+/// How far ahead a limit that cannot be met is followed, s: brakes close and stop within less.
+inline constexpr double kLookAhead = 0.1;
 
 }  // namespace hg::rendering

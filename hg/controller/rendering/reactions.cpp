@@ -210,6 +210,25 @@ void Reactions::add_sum(const VectorA& tau_constraint) noexcept {
   }
 }
 
+namespace {
+
+// Distance outside its range that a quantity reaches within kLookAhead, if it keeps missing its
+// bound `ddq` by as much: at the end, or where it turns before. 0 for one that meets its bound.
+double passing(const LimitRow& row, const Interval& ddq, hqp::RowState state,
+               double slack) noexcept {
+  if (!hqp::is_violated(state) || row.is_motor) return 0.0;
+  const bool is_upper = state == hqp::RowState::kAbove;
+  const double outside = is_upper ? row.q - row.range.ub : row.range.lb - row.q;
+  const double speed = is_upper ? row.dq : -row.dq;
+  const double a = (is_upper ? ddq.ub : -ddq.lb) + std::abs(slack);
+  if (!(speed > 0.0)) return 0.0;
+  const double time = a < 0.0 ? std::min(kLookAhead, -speed / a) : kLookAhead;
+  const double reached = outside + speed * time + 0.5 * a * time * time;
+  return std::isfinite(reached) ? std::max(0.0, reached) : 0.0;
+}
+
+}  // namespace
+
 void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const Felt& felt,
                        LawResult& result) const noexcept {
   const auto& rows = tasks.limit_rows();
@@ -227,6 +246,7 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
     report.excess =
         std::max({0.0, rows[limit].q - rows[limit].range.ub, rows[limit].range.lb - rows[limit].q});
     report.slack = solution.slack[acting_row];
+    result.passing[limit] = passing(rows[limit], ddq, solution.state[acting_row], report.slack);
     report.reaction = value_[limit];
   }
   report_felt(felt.L, result);

@@ -133,7 +133,7 @@ MonitorResult Monitor::watch(const SensorFrame& sensors, const Rendered& rendere
   check_inertial_unit(watched);
   check_gantry(sensors, rendered, watched, state);
   check_braking(rendered, watched, state);
-  check_frames(rendered, watched);
+  check_limits(rendered, watched);
   check_clocks(sensors, watched, state);
   check_sensor_values(sensors, state);
   const Fault shaking = look_for_shaking(sensors, rendered, watched, state);
@@ -304,15 +304,19 @@ void Monitor::check_braking(const Rendered& rendered, const Watched& watched,
   }
 }
 
-void Monitor::check_frames(const Rendered& rendered, const Watched& watched) noexcept {
+void Monitor::check_limits(const Rendered& rendered, const Watched& watched) noexcept {
   const Mode mode = mode_of(watched.state);
   if (mode != Mode::kRunning && mode != Mode::kStopping) return;
-  for (int i = n_m_; i < end_cartesian_; ++i) {
-    // sums of joints, then motors, which have no range and so no excess, then frames
-    const bool is_sum = i < first_cartesian_;
-    look<FaultCode::kLimitExceeded>(
-        i, rendered.limits[i].excess,
-        is_sum ? config_.virtual_tolerance : config_.cartesian_tolerance);
+  for (int i = 0; i < end_cartesian_; ++i) {
+    const double of_joint =
+        i < n_m_ && is_slide_[i] ? config_.slide_tolerance : config_.position_tolerance;
+    // joints, sums of joints, then motors, which have no range and so no excess, then frames
+    const double tolerance = i < n_m_               ? of_joint
+                             : i < first_cartesian_ ? config_.virtual_tolerance
+                                                    : config_.cartesian_tolerance;
+    if (i >= n_m_) look<FaultCode::kLimitExceeded>(i, rendered.limits[i].excess, tolerance);
+    if (!rendered.passing.empty())
+      look<FaultCode::kLimitNotHeld>(i, rendered.passing[i], tolerance);
   }
   look<FaultCode::kSyncLost>(-1, rendered.sync_error, config_.sync_tolerance);
   if (watched.state != SafetyState::kAutonomous) return;

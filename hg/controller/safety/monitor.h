@@ -59,6 +59,7 @@ struct Rendered {
   const Eigen::Vector3d& v_H;            ///< Velocity of the handle at the reference, m/s
   const Eigen::Vector3d& contact_force;  ///< Force of virtual surfaces on the handle, N
   double oscillation = 0.0;              ///< PassivityReport::oscillation
+  std::span<const double> passing = {};  ///< LawResult::passing; empty = none
 };
 
 /// Other monitored values of a cycle.
@@ -121,7 +122,7 @@ class Monitor {
                     MonitorState& state) noexcept;
   void check_braking(const Rendered& rendered, const Watched& watched,
                      MonitorState& state) noexcept;
-  void check_frames(const Rendered& rendered, const Watched& watched) noexcept;
+  void check_limits(const Rendered& rendered, const Watched& watched) noexcept;
   Fault look_for_shaking(const SensorFrame& sensors, const Rendered& rendered,
                          const Watched& watched, MonitorState& state) noexcept;
   void check_clocks(const SensorFrame& sensors, const Watched& watched,

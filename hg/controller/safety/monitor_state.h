@@ -41,13 +41,15 @@ struct MonitorState {
   ShakingState shaking;
 };
 
-/// Words of the state hash, in its order.
+/// Words of the state hash, in its order. Without the rule that is younger than 0.2.0: hashes of
+/// runs recorded before stay what they were.
 void hashed(auto& hash, const MonitorState& state) {
   const auto& [broken, is_broken, has_sample, q_m, tau_m, q_p, w_S, imu, time_s, same, clock_error,
                late, late_in_a_row, dq_p_model, gantry_gap, gantry_drift, gantry_way, pulled_back,
                momentum, lowest, highest, lowest_p, highest_p, is_stopping, stop_from, braking_ramp,
                ramp_speed, stop_from_p, braking_ramp_p, shaking] = state;
-  hash.mix(broken, same,
+  hash.mix_first(broken, static_cast<int>(rule_index(FaultCode::kLimitNotHeld)));
+  hash.mix(same,
            static_cast<std::uint64_t>(late_in_a_row) | std::uint64_t{has_sample} << 62U |
                std::uint64_t{is_broken} << 63U,
            time_s, clock_error, late, w_S, imu, q_m, tau_m, pulled_back, momentum, lowest, highest,

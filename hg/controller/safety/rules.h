@@ -26,8 +26,8 @@ struct Rule {
   /// Share of the threshold from which a warning is given; 1 = no warning.
   double warn_from = 1.0;
   Debounce debounce;
-  Stop reaction = Stop::kSto;
-  std::string_view release;  ///< Condition for accepting a reset
+  Stop reaction = Stop::kSto;  ///< Where a rule names none: it is the hardest
+  std::string_view release;    ///< Condition for accepting a reset
 };
 
 inline constexpr Rule kRules[] = {
@@ -239,26 +239,26 @@ inline constexpr Rule kRules[] = {
                   "monitor.gantry_gap_rad",
      .warn_from = 0.6,
      .debounce = {.samples = 3},
-     .reaction = Stop::kSto,
      .release = "at once; find the cause: brakes had to stop it"},
     {.code = FaultCode::kBrakingSpeed,
      .threshold = "monitor.braking_deviation_rad_per_s, monitor.braking_deviation_m_per_s, "
                   "monitor.gantry_deviation_m_per_s, monitor.gantry_deviation_rad_per_s",
      .warn_from = 0.6,
      .debounce = {.seconds = 0.005},
-     .reaction = Stop::kSto,
      .release = "at once; find the cause: brakes had to stop it"},
     {.code = FaultCode::kStopTooFar,
      .threshold = "monitor.stop_distance_rad, monitor.stop_distance_m, "
                   "monitor.gantry_stop_distance_m, monitor.gantry_stop_distance_rad",
      .warn_from = 0.9,
-     .reaction = Stop::kSto,
      .release = "at once; find the cause: brakes had to stop it"},
     {.code = FaultCode::kBrakesSlip,
      .threshold = "monitor.brake_slip_rad, monitor.brake_slip_m",
      .debounce = {.samples = 3},
-     .reaction = Stop::kSto,
      .release = "the run is started again, after a start test: no software holds such an axis"},
+    {.code = FaultCode::kLimitNotHeld,
+     .threshold = "those of 300, of the place that it will have in 0.1 s",
+     .debounce = {.seconds = 0.005},
+     .release = "at once; push less, or keep farther from the limit"},
 };
 
 inline constexpr std::size_t kRuleCount = std::size(kRules);
