@@ -96,6 +96,7 @@ void hand_out(const std::filesystem::path& file, Receiver& receiver) {
 class Losses {
  public:
   void take(int kind, std::string_view name, std::uint64_t time_ns) {
+    if (kind == mcap_channel) (name.starts_with("/hapticgiant/") ? has_own_ : has_others_) = true;
     if (kind == mcap_damage) {
       parts_.push_back({.loss = {.part = std::string(name)}});
       is_open_ = true;
@@ -110,6 +111,8 @@ class Losses {
     part.last_ns = time_ns;
   }
   bool empty() const { return parts_.empty(); }
+  // Whether the file describes topics, and none of ours.
+  bool is_of_another_tool() const { return has_others_ && !has_own_; }
 
   // `start_ns`: log time at run time 0
   std::vector<Loss> since(std::uint64_t start_ns) const {
@@ -164,6 +167,7 @@ class Losses {
   std::uint64_t last_ns_ = 0, period_ns_ = 0;  // of intact samples
   std::uint64_t open_samples_ = 0;             // lost since the last intact one
   bool is_open_ = false;                       // a part was lost since then
+  bool has_own_ = false, has_others_ = false;  // topics that the file describes
 };
 
 std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
@@ -171,8 +175,9 @@ std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
 }
 
 [[noreturn]] void refuse_without_topic(const std::filesystem::path& file, const Losses& losses) {
-  refuse(file, losses.empty() ? "it has no topic /hapticgiant/sample"
-                              : "what describes its samples is damaged");
+  const bool is_sound = losses.empty() || losses.is_of_another_tool();
+  refuse(file, is_sound ? "it has no topic /hapticgiant/sample"
+                        : "what describes its samples is damaged");
 }
 
 // Notifies a listener.

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -15,6 +17,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/test/temporary_folder.h"
+#include "hg/recording/mcap_file.h"
 #include "hg/recording/playback.h"
 #include "hg/recording/test/example_run.h"
 
@@ -339,6 +342,22 @@ TEST_F(RecordedRunTest, RefusesOtherFilesAndNamesThem) {
             std::string::npos);
   EXPECT_NE(refusal(temporary_.path() / "nowhere.mcap"), "");
   EXPECT_NE(refusal(record(0)).find("no sample"), std::string::npos);
+}
+
+// its chunks cannot be read, as of one that is packed in another way; the index names its topics
+TEST_F(RecordedRunTest, OfAnotherToolIsNotCalledDamaged) {
+  const std::filesystem::path path = temporary_.path() / "other.mcap";
+  McapFile other(path);
+  const std::uint16_t pose = other.add_channel("/pose", "a/msg/Pose", "float64 x");
+  other.write(pose, 0, 1, std::array<std::byte, 64>{});
+  other.finish();
+  std::string bytes = content_of(path);
+  const std::size_t packed = bytes.find("zstd");
+  ASSERT_NE(packed, std::string::npos);
+  bytes[packed + 16] ^= 0x5a;
+  EXPECT_NE(
+      refusal(temporary_.write("bad.mcap", bytes)).find("it has no topic /hapticgiant/sample"),
+      std::string::npos);
 }
 
 TEST_F(RecordedRunTest, NeverCrashesOnDamagedFiles) {
