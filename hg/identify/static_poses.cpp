@@ -83,21 +83,41 @@ std::vector<Candidate> candidates(const config::DeviceConfig& device) {
 constexpr std::array<const char*, 9> kColumns = {"a_x", "a_y", "a_z", "f_x", "f_y",
                                                  "f_z", "n_x", "n_y", "n_z"};
 
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> result;
-  std::istringstream stream(line + ",");
-  for (std::string cell; std::getline(stream, cell, ',');) {
+// Of comma, semicolon and tab the one that the first line has most of: spreadsheets write the list
+// separator of their country.
+char separator_of(std::string_view header) {
+  return std::ranges::max(std::string_view(",;\t"), {},
+                          [&](char separator) { return std::ranges::count(header, separator); });
+}
+
+std::vector<std::string> cells(std::string_view line, char separator) {
+  std::vector<std::string> result(1);
+  bool is_quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      is_quoted = !is_quoted;
+    } else if (c == separator && !is_quoted) {
+      result.emplace_back();
+    } else {
+      result.back() += c;
+    }
+  }
+  for (std::string& cell : result) {
     const auto first = cell.find_first_not_of(" \t\r");
     const auto last = cell.find_last_not_of(" \t\r");
-    result.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+    cell = first == std::string::npos ? "" : cell.substr(first, last - first + 1);
   }
   return result;
 }
 
-double number(const std::string& text, const std::string& where) {
+// Where commas do not separate cells, one may be that of a decimal.
+double number(const std::string& text, char separator, const std::string& where) {
+  std::string plain = text;
+  if (separator != ',') std::ranges::replace(plain, ',', '.');
   double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+  const char* last = plain.data() + plain.size();
+  const auto [end, error] = std::from_chars(plain.data(), last, value);
+  if (error != std::errc() || end != last || !std::isfinite(value)) {
     throw SetupError(where + ": expected a number, got '" + text + "'");
   }
   return value;
@@ -173,7 +193,9 @@ std::vector<StaticPose> read_static_poses(const std::string& name, const std::st
   std::istringstream stream(text);
   std::string line;
   std::getline(stream, line);
-  const std::vector<std::string> header = cells(line);
+  if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // a byte order mark
+  const char separator = separator_of(line);
+  const std::vector<std::string> header = cells(line, separator);
   const std::array<int, 10> columns = find_columns(header, name);
   struct Sum {
     StaticPose pose;
@@ -181,7 +203,7 @@ std::vector<StaticPose> read_static_poses(const std::string& name, const std::st
   };
   std::map<std::string, Sum> sums;
   for (int row = 2; std::getline(stream, line); ++row) {
-    const std::vector<std::string> values = cells(line);
+    const std::vector<std::string> values = cells(line, separator);
     if (values == std::vector<std::string>{""}) continue;
     const std::string where = fmt::format("{}:{}", name, row);
     if (values.size() != header.size()) {
@@ -189,7 +211,7 @@ std::vector<StaticPose> read_static_poses(const std::string& name, const std::st
                                    header.size(), values.size()));
     }
     const auto value = [&](std::size_t i) {
-      return number(values[columns[i]], where + ": " + kColumns[i]);
+      return number(values[columns[i]], separator, where + ": " + kColumns[i]);
     };
     Sum& sum = sums[columns[9] < 0 ? where : values[columns[9]]];
     sum.pose.a_S += Eigen::Vector3d(value(0), value(1), value(2));

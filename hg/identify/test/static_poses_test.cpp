@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -88,6 +89,26 @@ TEST(ReadStaticPoses, TakesColumnsByNameAndAveragesAPose) {
 TEST(ReadStaticPoses, WithoutPosesEveryRowIsOne) {
   const std::string header = "a_x,a_y,a_z,f_x,f_y,f_z,n_x,n_y,n_z\n";
   EXPECT_EQ(read_static_poses("p", header + "1,2,3,4,5,6,7,8,9\n1,2,3,4,5,6,7,8,9\n").size(), 2u);
+}
+
+TEST(ReadStaticPoses, TakesTablesOfSpreadsheets) {
+  const std::string header = "a_x,a_y,a_z,f_x,f_y,f_z,n_x,n_y,n_z", row = "1.5,2,3,4,5,6,7,8,9";
+  const auto with = [](std::string text, char separator) {
+    std::ranges::replace(text, ',', separator);
+    return text;
+  };
+  std::string decimal = with(row, ';');
+  decimal.replace(decimal.find('.'), 1, ",");
+  const std::string quoted = "\"a_x\",\"a_y\",a_z,f_x,f_y,f_z,n_x,n_y,n_z";
+  for (const std::string& text :
+       {header + "\n" + row, with(header, ';') + "\r\n" + decimal + "\r\n",
+        with(header, ';') + "\n" + with(row, ';'), with(header, '\t') + "\n" + with(row, '\t'),
+        "\xef\xbb\xbf" + header + "\n" + row, quoted + "\n\"1.5\",2,3,4,5,6,7,8,9"}) {
+    const std::vector<StaticPose> poses = read_static_poses("poses.csv", text);
+    ASSERT_EQ(poses.size(), 1u) << text;
+    EXPECT_EQ(poses[0].a_S, Eigen::Vector3d(1.5, 2, 3)) << text;
+    EXPECT_EQ(poses[0].w_S[5], 9.0) << text;
+  }
 }
 
 TEST(ReadStaticPoses, ReportsWhatIsWrongAndWhere) {

@@ -65,12 +65,15 @@ def from_table(chain, file, rate_hz, names=None):
     joint's name or by names[joint] (columns of `hapticgiant export`)."""
     names = names or {}
     try:
-        with open(file, newline="") as stream:
-            lines = list(csv.reader(stream))
+        with open(file, newline="", encoding="utf-8-sig") as stream:
+            text = stream.read()
     except OSError as error:
         raise InputError(f"{file}: {error.strerror}") from None
     except UnicodeDecodeError:
         raise InputError(f"{file}: no text; expected CSV, as of hapticgiant export") from None
+    # a spreadsheet writes the list separator and the decimal comma of its country
+    separator = max(",;\t", key=text.partition("\n")[0].count)
+    lines = list(csv.reader(text.splitlines(), delimiter=separator))
     header = lines[0] if lines else []
     columns = []
     for joint in ["time_s", *(joint.name for joint in chain.moving)]:
@@ -82,7 +85,8 @@ def from_table(chain, file, rate_hz, names=None):
     rows = []
     for number, line in enumerate(lines[1:], 2):
         try:
-            row = [float(line[column]) for column in columns]
+            row = [float(line[column] if separator == "," else line[column].replace(",", "."))
+                   for column in columns]
         except (ValueError, IndexError):
             raise InputError(f"{file}:{number}: expected a number in each column of the motion") from None
         if not np.isfinite(row).all() or (rows and row[0] <= rows[-1][0]):
