@@ -44,16 +44,20 @@ void set(YAML::Node node, std::string_view rest, const ChangedValue& change) {
     const char* last = rest.data() + (end == std::string_view::npos ? rest.size() : end);
     const bool is_index = std::from_chars(rest.data() + 1, last, index).ptr == last;
     if (end == std::string_view::npos || !is_index) refuse("expected [NUMBER] after '{}'");
-    if (!node.IsSequence() || index >= node.size()) {
-      refuse(fmt::format("'{{}}' has {} entries", node.IsSequence() ? node.size() : 0));
+    if (!node.IsSequence()) {
+      refuse("'{}' is no list; a name with a dot or bracket stands in quotes: joints.\"arm[0]\"");
     }
+    if (index >= node.size()) refuse(fmt::format("'{{}}' has {} entries", node.size()));
     return set(node[index], rest.substr(end + 1), change);
   }
   if (rest.front() == '.') rest.remove_prefix(1);
-  const std::string_view key = rest.substr(0, rest.find_first_of(".["));
+  const bool is_quoted = rest.starts_with('"');  // a name with a dot or bracket
+  const std::size_t end = is_quoted ? rest.find('"', 1) : rest.find_first_of(".[");
+  if (is_quoted && end == std::string_view::npos) refuse("the quotes behind '{}' do not end");
+  const std::string_view key = is_quoted ? rest.substr(1, end - 1) : rest.substr(0, end);
   if (key.empty()) refuse("expected a key after '{}'");
   if (node.IsScalar() || node.IsSequence()) refuse("'{}' is no map of keys");
-  set(node[std::string(key)], rest.substr(key.size()), change);
+  set(node[std::string(key)], rest.substr(key.size() + (is_quoted ? 2 : 0)), change);
 }
 
 }  // namespace

@@ -231,6 +231,12 @@ constexpr char kKnownFilesOnly[] =
     "it, "
     "or give --twin or --device";
 
+// Whether a fault proposes a name that --set takes in quotes only.
+bool names_with_dot(const std::string& fault) {
+  const std::size_t meant = fault.find("did you mean '");
+  return meant != std::string::npos && fault.find_first_of(".[", meant) != std::string::npos;
+}
+
 // A fault "FILE:LINE:COLUMN: ITEM: WHAT" in a file with changed values, as one of these values:
 // before them there was none.
 std::string as_change(const std::string& fault, const std::vector<Part>& parts) {
@@ -241,7 +247,11 @@ std::string as_change(const std::string& fault, const std::vector<Part>& parts) 
     const std::string rest = fault.substr(place + 2);
     const bool has_item = rest.find(": ") < rest.find(' ');
     std::string text = fmt::format("--set {}{}{}", part.name, has_item ? "." : ": ", rest);
-    if (rest.find(": no such file, got ") != std::string::npos) text += kKnownFilesOnly;
+    if (rest.find(": no such file, got ") != std::string::npos) {
+      text += kKnownFilesOnly;
+    } else if (names_with_dot(rest)) {
+      text += "; a name with a dot or bracket stands in quotes, as in joints.\"arm.1\".start_rad";
+    }
     return text;
   }
   return fault;

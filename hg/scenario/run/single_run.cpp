@@ -271,7 +271,7 @@ RunOutcome play_single(PreparedRun& run, const RunSetting& setting) {
   RunOutcome outcome{
       .exit_code = exit_code(watch->summary(), missing, was_ended, recorded.is_whole()),
       .fault = fault,
-      .summary = json.dump(),
+      .summary = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
       .recording = recorded.recording.file};
   setting.observer.phase(RunPhase::kOver, 0.0, "");
   setting.observer.summary(

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "hg/config/law_names.h"
+#include "hg/core/open_file.h"
 #include "hg/core/test/message_of.h"
+#include "hg/core/test/temporary_folder.h"
 #include "hg/scenario/names.h"
 
 namespace hg::scenario {
@@ -78,6 +80,34 @@ TEST(Options, SetReplacesAndAddsValuesOfAnyFileAndARecordingHasThem) {
   EXPECT_EQ(recorded.twin.model.dofs[0].damping, 7.5);
   EXPECT_EQ(hash_of(recorded.sources), hash_of(scenario.sources));
   EXPECT_NE(hash_of(load({.scenario = "door"}).sources), hash_of(scenario.sources));
+}
+
+TEST(Options, SetTakesNamesWithDotsInQuotes) {
+  const TemporaryFolder folder;
+  std::string urdf = read_file("models/twins/door/door.urdf");
+  std::string twin = read_file("models/twins/door/twin.yaml");
+  const auto rename = [](std::string& text, const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos;
+         at = text.find(from, at + to.size())) {
+      text.replace(at, from.size(), to);
+    }
+  };
+  rename(urdf, "\"hinge\"", "\"hinge.1\"");
+  rename(twin, "hinge:", "hinge.1:");
+  folder.write("door.urdf", urdf);
+  const std::string file = folder.write("twin.yaml", twin).string();
+  const auto with = [&](const std::string& change) {
+    return load({.scenario = "door", .twin = file, .changes = {change}});
+  };
+  EXPECT_EQ(with("twin.joints.\"hinge.1\".damping_Nms_per_rad=7").twin.model.dofs[0].damping, 7.0);
+  EXPECT_NE(message_of([&] {
+              with("twin.joints.hinge.damping_Nms_per_rad=7");
+            }).find("stands in quotes, as in joints.\"arm.1\""),
+            std::string::npos);
+  EXPECT_NE(message_of([&] {
+              with("twin.joints.\"hinge.1.damping_Nms_per_rad=7");
+            }).find("the quotes behind 'twin.joints.' do not end"),
+            std::string::npos);
 }
 
 TEST(Options, SetChangesTheFileOfAnOption) {
