@@ -20,11 +20,28 @@ void add_dynamics(model::Urdf& urdf) {
   if (dynamics.count > 0) urdf.ignored.push_back(dynamics);
 }
 
+// What is wrong with parts that are not used: with a used one the file would not be read.
+void add_faults(model::Urdf& urdf) {
+  const auto add = [&](const std::string& fault, int line) {
+    if (fault.empty()) return;
+    const std::size_t place = fault.find(": ");  // behind file and line
+    urdf.ignored.push_back({.what = fault.substr(place == std::string::npos ? 0 : place + 2),
+                            .line = line,
+                            .count = 1});
+  };
+  for (const model::UrdfJoint& joint : urdf.joints) add(joint.fault, joint.line);
+  for (const model::UrdfLink& link : urdf.links) {
+    const bool is_point = link.inertial && link.inertial->inertia.isZero(0.0);
+    if (!is_point) add(link.inertial_fault, link.line);
+  }
+}
+
 }  // namespace
 
 void inspect_ignored(const std::vector<config::SourceText>& sources, UrdfUse use, Collector& out) {
   for (model::Urdf& urdf : urdfs_among(sources)) {
     if (use == UrdfUse::kDevice) add_dynamics(urdf);
+    add_faults(urdf);
     if (urdf.ignored.empty()) continue;
     std::string list;
     int first_line = urdf.ignored.front().line;

@@ -10,6 +10,7 @@
 
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
+#include "hg/core/visible.h"
 #include "hg/model/urdf.h"
 
 namespace hg::config {
@@ -203,7 +204,7 @@ bool Loader::flag(std::string_view key, bool& value, std::string_view) {
   return true;
 }
 
-bool Loader::words(std::string_view key, std::string& value, std::string_view, Need need) {
+bool Loader::text(std::string_view key, std::string& value, Need need) {
   const Entry* entry = find(key, need);
   if (entry == nullptr) return false;
   if (!entry->value.IsScalar() || entry->value.Scalar().empty()) {
@@ -214,10 +215,21 @@ bool Loader::words(std::string_view key, std::string& value, std::string_view, N
   return true;
 }
 
-bool Loader::path(std::string_view key, std::filesystem::path& value, std::string_view text,
-                  Need need) {
+bool Loader::words(std::string_view key, std::string& value, std::string_view, Need need) {
   std::string given;
-  if (!words(key, given, text, need)) return false;
+  if (!text(key, given, need)) return false;
+  if (visible(given) != given) {
+    fault(find(key, need)->value, item_of(key),
+          "must be UTF-8 text without control characters, got " + in_quotes(visible(given)));
+    return false;
+  }
+  value = given;
+  return true;
+}
+
+bool Loader::path(std::string_view key, std::filesystem::path& value, std::string_view, Need need) {
+  std::string given;  // names of files may have any bytes
+  if (!text(key, given, need)) return false;
   const std::filesystem::path file = (file_.path.parent_path() / given).lexically_normal();
   if (!file_.sources.exists(file)) {
     fault(find(key, need)->value, item_of(key),
@@ -492,7 +504,7 @@ std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path&
     const model::Urdf parts = model::read_urdf_text(result.text, urdf.generic_string());
     for (const model::UrdfLink& link : parts.links) result.link_names.push_back(link.name);
     for (const model::UrdfJoint& joint : parts.joints) {
-      if (joint.type == model::UrdfJointType::kFixed) continue;
+      if (joint.type == model::UrdfJointType::kFixed && joint.fault.empty()) continue;
       result.joint_names.push_back(joint.name);
       result.joints.push_back(joint);
     }

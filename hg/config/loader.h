@@ -43,8 +43,7 @@ class Loader {
 
   bool number(std::string_view key, double& value, const Range& range, std::string_view text,
               Need need = Need::kOptional);
-  /// Reads a number whose key depends on the joint: rad family or m family; either for an unknown
-  /// joint.
+  /// Reads a number whose key depends on the joint: of rad or of m; either for an unknown joint.
   bool joint_number(const JointKey& key, JointUnit unit, double& value, const Range& range,
                     std::string_view text, Need need = Need::kOptional);
   /// Reads a whole number from 0 to `most`, also as 0x1A00.
@@ -130,6 +129,7 @@ class Loader {
   void add_entry(const YAML::Node& key, const YAML::Node& value);
   Entry* find(std::string_view key, Need need);
   bool is_word(std::string_view key, std::string_view word) const;
+  bool text(std::string_view key, std::string& value, Need need);
   static std::string one_of(Names names);
   void read_map(const YAML::Node& node, const std::string& item,
                 const std::function<void(Loader&)>& read);

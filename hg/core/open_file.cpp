@@ -78,7 +78,12 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t most_byt
     const ssize_t count = read(opened.descriptor(), bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) refuse(file, "read", std::strerror(errno));
-    if (count == 0) return content;
+    if (count == 0) {
+      if (content.starts_with("version https://git-lfs.github.com/spec/")) {
+        refuse(file, "read", "it is a pointer of Git LFS; git lfs pull fetches the file itself");
+      }
+      return content;
+    }
     content.append(bytes.data(), count);
     if (content.size() > most_bytes) {
       refuse(file, "read", "it has more than " + std::to_string(most_bytes) + " bytes");

@@ -172,6 +172,14 @@ class Builder {
     fail(urdf_.joints.front().line, "robot: joints form a loop, a chain has a root and a tip");
   }
 
+  // Exporters give a frame a mass of nearly nothing, and an inertia that is none: it is left out.
+  bool is_frame(const UrdfLink& link) const {
+    constexpr double kMassShare = 1e-6;  // of the body that it is fixed to
+    constexpr double kInertia = 1e-6;    // kg m^2
+    return !link.inertial_fault.empty() && std::abs(link.inertial->mass) <= kMassShare * mass_ &&
+           link.inertial->mass != 0.0 && link.inertial->inertia.norm() <= kInertia;
+  }
+
   // Collects the links that are fixed to `first`, gives them to the body of `joint` and lists
   // frames.
   void merge_fixed(ChainParts& chain, pinocchio::JointIndex joint, int first,
@@ -181,7 +189,8 @@ class Builder {
     for (std::size_t i = 0; i < merged_.size(); ++i) {
       const Merged at = merged_[i];
       chain.add_frame(link(at.link).name, joint, at.T_joint_link);
-      if (const auto& inertial = link(at.link).inertial; inertial && joint > 0) {
+      const auto& inertial = link(at.link).inertial;
+      if (inertial && joint > 0 && !(i > 0 && is_frame(link(at.link)))) {
         // a point mass must be fixed to a body with inertia
         const bool is_point = i > 0 && inertial->mass > 0.0 && inertial->inertia.isZero(0.0);
         const std::string& fault = link(at.link).inertial_fault;
@@ -406,6 +415,9 @@ ChainParts build(Urdf urdf, const ChainOptions& options) {
   add_couplings(options.couplings, urdf);
   for (const ClosedLoop& loop : options.loops) add_couplings(close_loop(urdf, loop), urdf);
   Urdf part = serial_part(urdf, options.root_link, options.tip_link);
+  for (const UrdfJoint& joint : part.joints) {
+    if (!joint.fault.empty()) throw SetupError(joint.fault);
+  }
   if (options.tool) attach(*options.tool, part);
   for (const PassiveJoint& joint : options.passive)
     insert_behind(joint.behind, joint.name, joint.axis, part);

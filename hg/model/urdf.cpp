@@ -7,12 +7,14 @@
 #include <charconv>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/nearest_name.h"
 #include "hg/core/open_file.h"
+#include "hg/core/visible.h"
 
 namespace hg::model {
 namespace {
@@ -65,6 +67,29 @@ std::string advice_for(std::string_view root) {
   if (root == "mujoco") return ": an MJCF file; export the mechanism as a URDF";
   if (root == "sdf") return ": an SDF file; export the mechanism as a URDF";
   return {};
+}
+
+// Why a text is no XML, and what helps.
+std::string reason_of(std::string_view text, tinyxml2::XMLError error) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    return "it is UTF-16; save it as UTF-8";
+  }
+  switch (error) {
+    case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
+      return "it is empty";
+    case tinyxml2::XML_ERROR_PARSING_DECLARATION:
+      return "<?xml ...?> must be the first in the file; move what stands before it";
+    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
+      return "an element is not closed, or closed by another name";
+    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
+      return "an attribute is not NAME=\"VALUE\", or stands there twice";
+    case tinyxml2::XML_ERROR_PARSING_COMMENT:
+      return "a comment does not end";
+    case tinyxml2::XML_ERROR_PARSING_TEXT:
+      return "text stands where an element is expected";
+    default:
+      return "an element cannot be read";
+  }
 }
 
 // An element of URDF: what is read of it, and what else URDF has.
@@ -199,7 +224,16 @@ class Reader {
       fail(urdf_, e.GetLineNum(),
            item + ": <" + e.Name() + "> needs the attribute " + in_quotes(key));
     }
+    require_utf8(e, key, text, item);
     return text;
+  }
+
+  void require_utf8(const XMLElement& e, const char* key, const std::string& text,
+                    const std::string& item) const {
+    if (visible(text) == text) return;
+    fail(urdf_, e.GetLineNum(),
+         item + ": " + key + " must be UTF-8 without control characters, got " +
+             in_quotes(visible(text)) + "; convert the file: iconv -f ISO-8859-1 -t UTF-8");
   }
 
   // Numbers separated by blanks; exactly `count` of them, each in `range`.
@@ -293,7 +327,7 @@ class Reader {
 
   UrdfCollision collision(const XMLElement& e, const std::string& item) const {
     UrdfCollision result;
-    if (e.Attribute("name") != nullptr) result.name = e.Attribute("name");
+    if (e.Attribute("name") != nullptr) result.name = attribute(e, "name", item);
     result.T_link_shape = origin(e, item);
     const XMLElement& geometry = child(e, "geometry", item);
     if (const XMLElement* sphere = geometry.FirstChildElement("sphere")) {
@@ -317,7 +351,12 @@ class Reader {
                        .inertial_fault = {},
                        .collisions = {}};
     if (const XMLElement* i = e.FirstChildElement("inertial")) {
-      result.inertial = inertial(*i, "link " + result.name, result.inertial_fault);
+      try {
+        result.inertial = inertial(*i, "link " + result.name, result.inertial_fault);
+      } catch (const SetupError& error) {
+        result.inertial = Inertial{.mass = std::numeric_limits<double>::quiet_NaN()};
+        result.inertial_fault = error.what();
+      }
     }
     for (auto* c = e.FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
       result.collisions.push_back(collision(*c, "collision of link " + result.name));
@@ -370,6 +409,14 @@ class Reader {
     return kInfinity;
   }
 
+  // Of a continuous joint; some exporters write zeros.
+  void ignore_range(const XMLElement& limit) {
+    const auto is_given = [&](const char* key) { return limit.DoubleAttribute(key) != 0.0; };
+    if (!is_given("lower") && !is_given("upper")) return;
+    ignore(urdf_, "<limit> lower and upper of a continuous joint, which turns without end",
+           limit.GetLineNum());
+  }
+
   // those of a fixed joint mean nothing; some exporters write zeros
   void limits(const XMLElement& e, const std::string& item, UrdfJoint& joint) {
     if (joint.type == UrdfJointType::kFixed) return;
@@ -379,7 +426,10 @@ class Reader {
     if (limit == nullptr) return;
     joint.velocity_max = rating(*limit, "velocity", kVelocity, item);
     joint.effort_max = rating(*limit, "effort", kEffort, item);
-    if (!has_range) return;
+    if (!has_range) {
+      ignore_range(*limit);
+      return;
+    }
     const Interval& range = joint.type == UrdfJointType::kPrismatic ? kPosition : kAngle;
     // the default of URDF is 0
     const auto end = [&](const char* key) {
@@ -424,10 +474,22 @@ class Reader {
     result.name = attribute(e, "name", "joint");
     result.line = e.GetLineNum();
     const std::string item = "joint " + result.name;
-    result.type = joint_type(e, item);
     result.parent = link_index(child(e, "parent", item), item);
     result.child = link_index(child(e, "child", item), item);
     result.T_parent_joint = origin(e, item);
+    try {
+      read_motion(e, item, result);
+    } catch (const SetupError& error) {
+      result.type = UrdfJointType::kFixed;
+      result.mimic.reset();
+      result.fault = error.what();
+    }
+    return result;
+  }
+
+  // Kind, axis, limits, dynamics and mimic of a joint.
+  void read_motion(const XMLElement& e, const std::string& item, UrdfJoint& result) {
+    result.type = joint_type(e, item);
     const bool has_axis =
         result.type != UrdfJointType::kFixed && result.type != UrdfJointType::kFloating;
     if (has_axis) result.axis = axis(e, item);
@@ -442,7 +504,6 @@ class Reader {
     if (const XMLElement* mimic = e.FirstChildElement("mimic")) {
       result.mimic = read_mimic(*mimic, item);
     }
-    return result;
   }
 
   template <typename Item>
@@ -489,8 +550,7 @@ Urdf read_urdf_text(std::string_view text, std::string_view source) {
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     fail(urdf, std::max(1, document.ErrorLineNum()),
-         std::string("is not valid XML: ") +
-             tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()));
+         "is not valid XML: " + reason_of(text, document.ErrorID()));
   }
   const XMLElement* root = document.RootElement();
   if (root == nullptr || std::string_view(root->Name()) != "robot") {

@@ -72,6 +72,9 @@ struct UrdfJoint {
   std::optional<UrdfMimic> mimic;
   /// Moves although it is not between root and tip: it follows a joint that is, see serial_part()
   bool is_branch = false;
+  /// Error of its type, axis, limits, dynamics or mimic; matters for joints of the chain only, and
+  /// the type is then kFixed
+  std::string fault = {};
 };
 
 /// A kind of element or attribute that is not read, or a rating of 0, which stands for an unknown

@@ -88,7 +88,9 @@ Urdf serial_part(const Urdf& urdf, const std::string& root, const std::string& t
     for (UrdfJoint& joint : part.joints) {
       if (is_between(joint.name)) continue;
       joint.is_branch = joint.mimic && is_between(joint.mimic->joint);
-      if (!joint.is_branch) joint.type = UrdfJointType::kFixed;
+      if (joint.is_branch) continue;
+      joint.type = UrdfJointType::kFixed;
+      joint.fault.clear();
     }
   }
   return root_index < 0 ? part : hanging_on(part, root_index);

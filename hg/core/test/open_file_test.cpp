@@ -29,6 +29,15 @@ TEST(OpenFile, ReadsWholeFilesAndNothingElse) {
             "/dev/zero: cannot be read: expected a file, got a device");
 }
 
+TEST(OpenFile, APointerOfGitLfsIsNotTheFile) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("arm.urdf", "version https://git-lfs.github.com/spec/v1\noid x\n");
+  EXPECT_EQ(message_of([&] { read_file(file); }),
+            file.string() +
+                ": cannot be read: it is a pointer of Git LFS; git lfs pull fetches the "
+                "file itself");
+}
+
 TEST(OpenFile, NamedPipesAreNotWaitedFor) {
   const TemporaryFolder folder;
   const std::string pipe = (folder.path() / "pipe").string();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "hg/core/error.h"
 #include "hg/model/chain_data.h"
@@ -69,6 +70,27 @@ TEST(SerialPart, ABranchedRobotIsReadUpToATip) {
   const double expected =
       about_z(0.1, 0.2) + about_z(0.1, 1.2) + 2 * about_z(1.1, 1.2) + about_z(0.1, -0.8);
   EXPECT_NEAR(chain.M()(0, 0), expected, kRounding);
+}
+
+TEST(SerialPart, WhatIsNotTakenMayHaveAnyFault) {
+  const auto with = [](const std::string& more) {
+    std::string text = kTree;
+    return text.insert(text.rfind("</robot>"), more);
+  };
+  const ChainOptions arm = {.root_link = "base", .tip_link = "lower"};
+  const std::string ball = "<link name='ball'/>";
+  for (const auto& [text, fault] :
+       {std::pair{ball + joint("j", "spherical", "base", "ball", ""), "type is unknown"},
+        std::pair{ball + joint("j", "continuous", "base", "ball", "<axis xyz='0 0 0'/>"), "axis"},
+        std::pair{ball + joint("j", "revolute", "base", "ball", ""), "limit"},
+        std::pair{ball + joint("j", "revolute", "base", "ball", "<limit lower='-1e9' upper='1'/>"),
+                  "lower must be"}}) {
+    EXPECT_EQ(message_of(with(text), arm), "accepted") << text;
+    EXPECT_NE(message_of(with(text), {}).find(fault), std::string::npos)
+        << message_of(with(text), {});
+  }
+  const std::string bare = "<link name='ball'><inertial><mass value='1'/></inertial></link>";
+  EXPECT_EQ(message_of(with(bare + joint("j", "fixed", "base", "ball", "")), arm), "accepted");
 }
 
 TEST(SerialPart, BelowARootTheRestOfTheRobotIsLeftOut) {

@@ -135,6 +135,20 @@ TEST(Urdf, InertiaOfALinkThatDoesNotMoveDoesNotMatter) {
   EXPECT_EQ(message_of(text.all()), "accepted");
 }
 
+// principal moments -3e-24, 0 and 3e-8, as an exporter rounds an inertia of nothing
+TEST(Urdf, AFrameWithAMassOfNearlyNothingIsAFrame) {
+  const auto message_with = [](const std::string& mass) {
+    Text text;
+    text.tip = "<link name='tip'><inertial><mass value='" + mass +
+               "'/><inertia ixx='1e-8' iyy='1e-8' izz='1e-8' ixy='1e-8' ixz='1e-8' iyz='1e-8'/>"
+               "</inertial></link>";
+    return message_of(text.all());
+  };
+  EXPECT_EQ(message_with("1e-7"), "accepted");
+  EXPECT_EQ(message_with("1e-10"), "accepted");
+  EXPECT_NE(message_with("0.1").find("must be positive definite"), std::string::npos);
+}
+
 TEST(Urdf, APointMassMayBeFixedToABody) {
   Text text;
   text.tip =
@@ -165,6 +179,19 @@ TEST(Urdf, ARatingOfZeroIsUnknownAndListed) {
   ASSERT_EQ(urdf.ignored.size(), 2U);
   EXPECT_EQ(urdf.ignored[0].what, "<limit> velocity 0");
   EXPECT_EQ(urdf.ignored[1].what, "<limit> effort 0");
+}
+
+TEST(Urdf, TheRangeOfAContinuousJointIsListed) {
+  const auto ignored_with = [](const std::string& range) {
+    Text text;
+    text.joint = joint_with("continuous", "<limit velocity='1' " + range + "/>");
+    return read_urdf_text(text.all(), "").ignored;
+  };
+  ASSERT_EQ(ignored_with("lower='-1' upper='1'").size(), 1U);
+  EXPECT_EQ(ignored_with("upper='1'")[0].what,
+            "<limit> lower and upper of a continuous joint, which turns without end");
+  EXPECT_TRUE(ignored_with("lower='0' upper='0'").empty());  // as some exporters write
+  EXPECT_TRUE(ignored_with("").empty());
 }
 
 TEST(Urdf, DynamicsOfAJointAreItsDampingAndFriction) {
@@ -234,6 +261,10 @@ std::vector<Fault> faults_of_spelling() {
       "attribute of another case",
       [](Text& t) { t.joint = joint_with("continuous", "<axis XYZ='0 0 1'/>"); },
       "arm.urdf:5: <axis> XYZ is unknown to URDF, nearest is 'xyz'");
+  add(
+      "name in ISO-8859-1", [](Text& t) { t.tip = "<link name='t\xfcr'/>"; },
+      "arm.urdf:4: link: name must be UTF-8 without control characters, got 't\\xfcr'; convert the "
+      "file: iconv -f ISO-8859-1 -t UTF-8");
   add(
       "element of another case", [](Text& t) { t.tip = "<Link name='tip'/>"; },
       "arm.urdf:4: <Link> is unknown to URDF, nearest is 'link'");
@@ -440,8 +471,17 @@ TEST(Urdf, ChainsOfTheWrongShapeAreRefused) {
 
 TEST(Urdf, BrokenXmlNamesItsLine) {
   EXPECT_EQ(message_of("<robot name='r'>\n<link name='a'>\n</robot>"),
-            "arm.urdf:2: is not valid XML: XML_ERROR_MISMATCHED_ELEMENT");
-  EXPECT_EQ(message_of(""), "arm.urdf:1: is not valid XML: XML_ERROR_EMPTY_DOCUMENT");
+            "arm.urdf:2: is not valid XML: an element is not closed, or closed by another name");
+  EXPECT_EQ(message_of(""), "arm.urdf:1: is not valid XML: it is empty");
+  EXPECT_EQ(message_of("<!-- of a tool -->\n<?xml version='1.0'?>\n<robot name='r'/>"),
+            "arm.urdf:2: is not valid XML: <?xml ...?> must be the first in the file; move what "
+            "stands before it");
+  EXPECT_EQ(message_of(std::string("\xff\xfe<\0r\0", 6)),
+            "arm.urdf:1: is not valid XML: it is UTF-16; save it as UTF-8");
+  for (const char* broken : {"robot", "<robot name=r/>", "<robot name='r'", "<!-- <robot/>",
+                             "<a/>b", "<robot name='r' name='s'/>", "\xef\xbb\xbf", "<?xml"}) {
+    EXPECT_EQ(message_of(broken).find("XML_ERROR"), std::string::npos) << broken;
+  }
   EXPECT_EQ(message_of("<!-- hm -->"), "arm.urdf:1: root element must be <robot>, got <>");
   EXPECT_EQ(message_of("<mujoco/>"),
             "arm.urdf:1: root element must be <robot>, got <mujoco>: an MJCF file; "
