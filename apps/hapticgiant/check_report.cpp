@@ -66,7 +66,7 @@ std::string to_json(const CheckReport& report) {
   for (const check::Datasheet& sheet : report.datasheets) {
     json["datasheets"].push_back(datasheet_json(sheet));
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace hg::apps

@@ -85,6 +85,8 @@ int new_device(const NewArguments& arguments) {
   }
   write_output(output.string(), files.device);
   for (const std::string& line : files.news) print_out("note        {}\n", line);
+  for (const std::string& line : files.doubts)
+    print_error("WARNING {}: {}\n", output.string(), line);
   print_out(
       "{0} written. Next:\n"
       "  hapticgiant check {0}\n"
@@ -102,6 +104,7 @@ int new_twin(const NewArguments& arguments) {
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
   if (!draft.note.empty()) print_out("note        {}\n", draft.note);
+  if (!draft.doubt.empty()) print_error("WARNING {}: {}\n", output.string(), draft.doubt);
   if (!draft.problem.empty()) {
     print_error("WARNING {}: {}\n  what helps: {}\n", output.string(), draft.problem,
                 workspace::kCuresOfWay);

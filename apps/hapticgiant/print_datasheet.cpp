@@ -88,7 +88,10 @@ void print_capability(const Datasheet& sheet) {
     print_out("  50 N and 10 Nm      at once, in any directions: {:.0f} % of the postures\n",
               100.0 * sheet.share_paper_wrench);
   } else {
-    print_out("  force, torque       unknown: the URDF gives no effort\n");
+    const bool has_some = sheet.unrated.size() < sheet.joints.size();
+    print_out("  force, torque       unknown: {}\n",
+              has_some ? fmt::format("no effort in the URDF: {}", fmt::join(sheet.unrated, ", "))
+                       : std::string("the URDF gives no effort"));
   }
   print_out("  acceleration        {}{}\n", values(sheet.acceleration, "m/s^2"),
             by(sheet.acceleration_bottleneck));

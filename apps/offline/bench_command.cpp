@@ -174,7 +174,9 @@ int bench(const BenchArguments& arguments) {
 
   if (isatty(STDERR_FILENO) != 0) draw_error("");
   const nlohmann::ordered_json measured = to_json(results);
-  if (!file.empty()) write_output(file, measured.dump() + "\n");
+  if (!file.empty())
+    write_output(file,
+                 measured.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   return become_reports({{.results = measured,
                           .folder = arguments.out,
                           .files = {{"bench.json", arguments.json}},

@@ -216,7 +216,9 @@ void play_experiment(const PaperExperiment& experiment, const ExperimentRun& arg
   facts.version = kVersion;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - begin).count();
   write_output((folder / "timing.json").string(),
-               watcher.summary.to_json(facts, watcher.detector.missing()).dump(2) + "\n");
+               watcher.summary.to_json(facts, watcher.detector.missing())
+                       .dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                   "\n");
 }
 
 }  // namespace hg::apps

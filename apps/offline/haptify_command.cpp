@@ -108,7 +108,8 @@ int run_haptify(const HaptifyArguments& arguments) {
   if (play_campaign(campaign, arguments.played)) return 0;
   const nlohmann::ordered_json results = results_json(arguments, measured);
   const fs::path file = folder / "results.json";
-  write_output(file.string(), results.dump() + "\n");
+  write_output(file.string(),
+               results.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   return become_reports(
       {{.results = results,
         .folder = folder.string(),

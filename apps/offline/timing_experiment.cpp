@@ -76,7 +76,8 @@ int timing_experiment(const PaperExperimentArguments& arguments) {
     }
   }
   if (isatty(STDERR_FILENO) != 0) draw_error("");
-  write_output((folder / "results.json").string(), results.dump() + "\n");
+  write_output((folder / "results.json").string(),
+               results.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   return become_reports({report_in(folder.string(), arguments.docs, results)});
 }
 

@@ -78,7 +78,8 @@ int run_tune(const TuneArguments& arguments) {
   const nlohmann::ordered_json results = tune_json(report);
   if (arguments.only_checks) return become_reports({{.results = results}});
   const std::filesystem::path folder = arguments.out;
-  write_output((folder / "results.json").string(), results.dump() + "\n");
+  write_output((folder / "results.json").string(),
+               results.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   return become_reports(
       {{.results = results,
         .folder = folder.string(),

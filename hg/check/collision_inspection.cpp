@@ -30,6 +30,14 @@ void inspect_collisions(const config::DeviceConfig& device, Collector& out) {
                          "boxes");
     return;
   }
+  constexpr double kLargest = 10.0;  // m
+  for (const collision::Shape& shape : config.shapes) {
+    const double size = collision::reach(shape);
+    if (shape.is_surrounding || size <= kLargest) continue;
+    out.add(Severity::kWarning, "collision",
+            fmt::format("shape {} reaches {:.3g} m: millimetres?", shape.name, size),
+            "give lengths in metres, and meshes in millimetres a scale of 0.001");
+  }
   const auto count = [&](collision::Exclusion reason) {
     return std::ranges::count(config.pairs.excluded, reason, &collision::Excluded::reason);
   };

@@ -103,8 +103,10 @@ Datasheet make_datasheet(const config::DeviceConfig& device, const workspace::Su
   if (sheet.postures == 0) return sheet;
 
   sheet.joints = joint_lines(device, survey);
-  sheet.has_ratings = std::ranges::any_of(
-      sheet.joints, [](const JointLine& joint) { return std::isfinite(joint.effort_max); });
+  for (const JointLine& joint : sheet.joints) {
+    if (!std::isfinite(joint.effort_max)) sheet.unrated.push_back(joint.name);
+  }
+  sheet.has_ratings = sheet.unrated.empty();
   fill_capability(device, survey, sheet);
 
   sheet.length = survey.length;

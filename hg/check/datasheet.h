@@ -52,9 +52,10 @@ struct Datasheet {
   /// Distance of the handle from the axis of the arm's first joint, m; 0 = no axis
   double reach = 0.0;
   workspace::HandleWorkspace workspace;
-  bool has_ratings = false;  ///< some joint has a torque rating
-  Distribution force;        ///< force in the worst direction, N
-  Distribution torque;       ///< torque in the worst direction, Nm
+  bool has_ratings = false;          ///< every joint has a torque rating
+  std::vector<std::string> unrated;  ///< joints without a torque rating
+  Distribution force;                ///< force in the worst direction, N
+  Distribution torque;               ///< torque in the worst direction, Nm
   Bottleneck force_bottleneck, torque_bottleneck;
   /// Share of postures that provide 50 N and 10 Nm at once, [HG] III-B
   double share_paper_wrench = 0.0;

@@ -12,6 +12,7 @@
 #include "hg/check/collision_inspection.h"
 #include "hg/check/ignored_urdf.h"
 #include "hg/check/stopping_rule.h"
+#include "hg/check/twin_bodies.h"
 #include "hg/model/chain_data.h"
 #include "hg/workspace/workspace.h"
 
@@ -254,6 +255,7 @@ Findings inspect(const config::DeviceConfig& device, const workspace::Survey& su
   inspect_stopping(device, out);
   inspect_singularities(device, survey, out);
   inspect_collisions(device, out);
+  inspect_bodies(device.sources, out);
   inspect_ignored(device.sources, UrdfUse::kDevice, out);
   inspect_floor(device, survey, out);
   return std::move(out.findings);

@@ -1,11 +1,13 @@
 #include "hg/check/file_check.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <list>
 #include <tuple>
 
 #include "hg/check/device_inspection.h"
+#include "hg/check/machine_inspection.h"
 #include "hg/check/scenario_inspection.h"
 #include "hg/check/stiffness.h"
 #include "hg/check/twin_inspection.h"
@@ -17,6 +19,7 @@
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
+#include "hg/model/urdf.h"
 #include "hg/workspace/survey.h"
 
 namespace hg::check {
@@ -31,6 +34,7 @@ struct Check {
   std::list<config::Twin> twins;
   std::list<config::Scenario> scenarios;
   std::vector<std::string> scripts;
+  std::vector<std::string> machines;
 };
 
 void add(Findings findings, Check& check) {
@@ -49,7 +53,21 @@ bool try_to(const std::string& file, Check& check, const std::function<void()>& 
   }
 }
 
+// A URDF alone: nothing says which of its parts are used, so all count.
+void load_urdf(const std::string& file, Check& check) {
+  check.report.files.push_back({file, "URDF"});
+  const auto refuse = [&](const std::string& fault) {
+    if (!fault.empty()) add(findings_of_message(fault, file), check);
+  };
+  try_to(file, check, [&] {
+    const model::Urdf urdf = model::read_urdf_file(file);
+    for (const model::UrdfJoint& joint : urdf.joints) refuse(joint.fault);
+    for (const model::UrdfLink& link : urdf.links) refuse(link.inertial_fault);
+  });
+}
+
 void load(const std::string& file, Check& check) {
+  if (std::filesystem::path(file).extension() == ".urdf") return load_urdf(file, check);
   FileKind kind = FileKind::kDevice;
   const bool is_known = try_to(file, check, [&] {
     config::SourceReader reader;
@@ -84,6 +102,7 @@ void load(const std::string& file, Check& check) {
       case FileKind::kMachine: {
         config::SourceReader reader;
         config::load_machine(file, reader, {});
+        check.machines.push_back(file);
         break;
       }
     }
@@ -120,6 +139,9 @@ void check_devices(Check& check) {
     const workspace::Survey found = workspace::survey(device);
     add(check::inspect(device, found), check);
     if (has_datasheet) check.report.datasheets.push_back(make_datasheet(device, found));
+    for (const std::string& machine : check.machines) {
+      try_to(machine, check, [&] { add(inspect_machine(machine, device), check); });
+    }
   };
   for (const config::DeviceConfig& device : check.devices) inspect(device, true);
   for (const config::Scenario& scenario : check.scenarios) inspect(scenario.device, false);

@@ -183,6 +183,7 @@ StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
 void inspect_stiffness(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
                        Collector& out) {
   const StiffnessLimits limits = stiffness_limits(device, twin);
+  if (!can_be_pushed(limits.mass)) return;
   out.add(Severity::kNote, "end_effector",
           fmt::format(
               "surfaces and springs that this device can show with this twin ({}): up to "

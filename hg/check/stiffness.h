@@ -11,6 +11,10 @@
 
 namespace hg::check {
 
+/// Whether something that feels like `mass` (kg) can be pushed; where no joint moves the handle
+/// along any direction the mass is infinite, or nearly.
+constexpr bool can_be_pushed(double mass) noexcept { return mass < 1e6; }
+
 /// Quantities that determine the limits. The acceleration is the deceleration of the handle
 /// available from the motors, or the rating of its Cartesian limits where the law does not model
 /// the motors; without either it is infinite.

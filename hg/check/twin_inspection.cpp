@@ -7,6 +7,7 @@
 #include <string>
 
 #include "hg/check/ignored_urdf.h"
+#include "hg/check/stiffness.h"
 #include "hg/check/twin_bodies.h"
 #include "hg/controller/rendering/twin_elements.h"
 #include "hg/core/linear_algebra.h"
@@ -52,6 +53,12 @@ void inspect_mass_matrix(const TwinFigures& figures, Collector& out) {
 }
 
 void inspect_weight(const TwinFigures& figures, Collector& out) {
+  if (!can_be_pushed(figures.mass)) {
+    out.add(Severity::kWarning, "end_effector",
+            "no joint moves it along any direction: a hand there can only turn it",
+            "name a link away from the axes, where the mechanism is held");
+    return;
+  }
   if (figures.mass < kLightMass) {
     out.add(Severity::kWarning, "end_effector",
             fmt::format("in some direction the hand moves only {:.2g} kg, expected 3 kg, at least "

@@ -214,8 +214,8 @@ std::vector<Body> read_bodies(const ChainPart& part, const model::Urdf& urdf,
 void begin_with_one(Body& body) {
   body.mesh = mesh_of(body.triangles);
   // a mesh in millimetres is not cut into millions
-  const double size = (body.mesh->aabb_local.max_ - body.mesh->aabb_local.min_).norm();
-  body.parts = {part_of(cut(body.triangles, std::max(kLongestEdge, size / 100.0)), body)};
+  body.size = (body.mesh->aabb_local.max_ - body.mesh->aabb_local.min_).norm();
+  body.parts = {part_of(cut(body.triangles, std::max(kLongestEdge, body.size / 100.0)), body)};
   measure(body);
 }
 

@@ -37,6 +37,7 @@ struct Body {
   std::shared_ptr<const MeshModel> mesh;
   std::vector<Part> parts;
   int parts_made = 0;
+  double size = 0.0;  ///< Diagonal of the box around its meshes, m
 };
 
 /// The bodies of the chain from the root on, each with one part; primitives of the URDF count as

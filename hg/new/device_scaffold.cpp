@@ -325,6 +325,17 @@ std::string drive_lines(const std::vector<DrivenJoint>& joints, Drives drives,
          actuator_lines(joints, "  ");
 }
 
+std::vector<std::string> doubts_of(const DeviceDraft& d, const Reach& reach) {
+  constexpr double kFarthest = 30.0;  // m
+  std::vector<std::string> doubts = doubts_of(d.shapes);
+  const double extent = (reach.upper - reach.lower).maxCoeff();
+  if (extent > kFarthest) {
+    doubts.push_back(fmt::format(
+        "the handle moves through {:.3g} m: are the lengths of the URDF millimetres?", extent));
+  }
+  return doubts;
+}
+
 }  // namespace
 
 DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& folder, Drives drives,
@@ -378,7 +389,8 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
   text += drive_lines(joints, drives, simulation_file);
   text += joint_lines(d) + posture_lines(d) + virtual_joint_lines(d) + box_lines(d, reach) +
           collision_lines(d.shapes);
-  DeviceFiles files = {.device = text, .simulation = {}, .news = news_of(d.shapes)};
+  DeviceFiles files = {
+      .device = text, .simulation = {}, .news = news_of(d.shapes), .doubts = doubts_of(d, reach)};
   if (drives != Drives::kIdeal) {
     files.simulation = simulation_yaml(d.chain.model().name(), joints, drives);
   }

@@ -26,7 +26,8 @@ enum class Drives {
 struct DeviceFiles {
   std::string device;
   std::string simulation;
-  std::vector<std::string> news = {};  ///< What a user should know, one line each
+  std::vector<std::string> news = {};    ///< What a user should know, one line each
+  std::vector<std::string> doubts = {};  ///< What its lengths make doubtful, one line each
 };
 
 /// A device.yaml that will stand in `folder`, its simulation beside it in `simulation_file`.
@@ -41,7 +42,8 @@ DeviceFiles draft_device(const ChainPart& part, const std::filesystem::path& fol
 struct TwinDraft {
   std::string yaml;
   std::string problem;
-  std::string note;  ///< What differs from the mechanism of the URDF; empty: nothing
+  std::string note;   ///< What differs from the mechanism of the URDF; empty: nothing
+  std::string doubt;  ///< What its lengths make doubtful; empty: nothing
 };
 
 /// A twin.yaml that will stand in `folder`: placed upright where `device` can lead a hand through

@@ -300,6 +300,7 @@ SelfCollision fit_self_collision(const ChainPart& part, const model::ChainModel&
 
   for (const Body& body : fit.bodies) {
     FittedBody fitted = {.link = body.link, .files = body.files, .capsules = {}};
+    fitted.size = body.size;
     for (const Part& p : body.parts) {
       fitted.capsules.push_back(p.capsule);
       fitted.stands_out = std::max(fitted.stands_out, p.stands_out);

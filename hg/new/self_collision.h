@@ -33,6 +33,7 @@ struct FittedBody {
   std::vector<std::string> files;  ///< Names of the mesh files
   std::vector<Capsule> capsules;
   double stands_out = 0.0;  ///< Largest distance from a capsule's surface to the meshes, m
+  double size = 0.0;        ///< Diagonal of the box around its meshes, m
 };
 
 /// Names of two bodies, or of two capsules, whose meshes never touch.
@@ -69,5 +70,7 @@ std::string collision_lines(const SelfCollision& shapes);
 
 /// What a user should know, in one line each.
 std::vector<std::string> news_of(const SelfCollision& shapes);
+/// Bodies whose size is that of no arm, in one line each.
+std::vector<std::string> doubts_of(const SelfCollision& shapes);
 
 }  // namespace hg::new_files

@@ -72,6 +72,11 @@ std::string summary_of(const SelfCollision& shapes) {
       shapes.parts_apart.size(), 1e3 * kMeshMargin);
 }
 
+// Names of mesh files; primitives have none.
+std::string names_of(const FittedBody& body) {
+  return body.files.empty() ? "its shape" : fmt::format("{}", fmt::join(body.files, ", "));
+}
+
 }  // namespace
 
 std::string collision_lines(const SelfCollision& shapes) {
@@ -100,6 +105,22 @@ std::vector<std::string> news_of(const SelfCollision& shapes) {
         shapes.unread.size(), shapes.unread.front()));
   }
   return news;
+}
+
+std::vector<std::string> doubts_of(const SelfCollision& shapes) {
+  constexpr double kLargest = 10.0, kSmallest = 1e-3;  // m
+  std::vector<std::string> doubts;
+  for (const FittedBody& body : shapes.bodies) {
+    if (body.size > kLargest) {
+      doubts.push_back(fmt::format(
+          "link {}: {} is {:.3g} m large: millimetres? <mesh scale=\"0.001 0.001 0.001\">",
+          body.link, names_of(body), body.size));
+    } else if (body.size < kSmallest) {
+      doubts.push_back(fmt::format("link {}: {} is smaller than 1 mm: is its scale right?",
+                                   body.link, names_of(body)));
+    }
+  }
+  return doubts;
 }
 
 }  // namespace hg::new_files

@@ -77,6 +77,25 @@ Mechanism make_mechanism(const ChainPart& part) {
   return d;
 }
 
+// What its lengths make doubtful; empty: nothing.
+std::string doubt_of(const Mechanism& d) {
+  constexpr double kFarthest = 30.0, kOnAxis = 1e-3;  // m
+  const std::string& held = d.chain.model().frame_names()[d.end_effector];
+  for (int i = 0; i < d.lever.size(); ++i) {
+    const bool is_slide = joint(d, i).is_slide();
+    const double way = is_slide ? d.ranges[i].ub - d.ranges[i].lb : d.lever[i];
+    if (way < kFarthest) continue;
+    return fmt::format(
+        "joint {} moves {} by up to {:.3g} m{}: are the lengths of the URDF millimetres?",
+        joint(d, i).name, held, way, is_slide ? "" : " per rad");
+  }
+  if (d.lever.maxCoeff() > kOnAxis) return "";
+  return fmt::format(
+      "{} is on the axis of {}, a hand there can only turn it: give the URDF a link where it is "
+      "held, on a fixed joint with an <origin>, and name it in end_effector",
+      held, joint(d, 0).name);
+}
+
 Pose tip(Mechanism& d, const Eigen::VectorXd& q) {
   d.chain.update_kinematics(q, Eigen::VectorXd::Zero(q.size()));
   return d.chain.pose(d.end_effector);
@@ -386,7 +405,8 @@ TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
                       ? ""
                       : fmt::format("{:g} times as heavy as in its URDF (mass_scale): lighter it "
                                     "shakes in a hand on this device",
-                                    mass_scale)};
+                                    mass_scale),
+          .doubt = doubt_of(d)};
 }
 
 }  // namespace hg::new_files

@@ -113,6 +113,33 @@ class Check(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertRegex(out, r"twin\.yaml:8:\d+: fault: placement: ")
 
+    def test_a_urdf_alone_is_checked_as_a_whole(self):
+        sound = DOOR.parent / "door.urdf"
+        self.assertEqual(check(sound)[0], 0)
+        wrong = self.folder / "arm.urdf"
+        wrong.write_text(sound.read_text().replace('type="revolute"', 'type="spherical"', 1))
+        code, out, _ = check(wrong)
+        self.assertEqual(code, 2)
+        self.assertRegex(out, r"arm\.urdf:\d+:\d+: fault: .*type is unknown, got 'spherical'")
+        wrong.write_text("version https://git-lfs.github.com/spec/v1\n")
+        self.assertIn("it is a pointer of Git LFS", check(wrong)[1])
+
+    def test_drives_of_a_machine_fit_the_ratings_of_its_device(self):
+        machine = DEVICE.with_name("machine.yaml")
+        self.assertNotIn("0x6072", check(DEVICE, machine)[1])
+        wrong = self.folder / "machine.yaml"
+        wrong.write_text(machine.read_text().replace("scale: 0.09}", "scale: 90}"))
+        _, out, _ = check(DEVICE, wrong)
+        self.assertRegex(out, r"machine\.yaml:\d+:\d+: warning: slaves\[\d\]\.outputs\[1\]\.scale: "
+                              r"object 0x6072, 1956, times this scale is 1\.76e\+05 Nm; the joint's rating is 176 Nm")
+
+    def test_a_folder_of_another_encoding_is_no_internal_error(self):
+        folder = pathlib.Path(os.fsdecode(os.fsencode(self.folder) + b"/T\xfcr"))
+        shutil.copytree(DOOR.parent, folder)
+        code, out, err = check(folder / "twin.yaml", "--json", self.folder / "out.json")
+        self.assertEqual((code, "internal error" in out + err), (0, False))
+        json.loads((self.folder / "out.json").read_text())
+
     def test_files_that_are_no_kind_of_ours(self):
         odd = self.folder / "odd.yaml"
         odd.write_text("colour: red\n")

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "hg/workspace/test/cartesian_device.h"
 
@@ -33,6 +35,15 @@ TEST(Datasheet, ForcesOfACartesianDeviceAreItsRatingsLessGravity) {
   EXPECT_NEAR(sheet.acceleration.median, 10.0, 1e-9);
   EXPECT_NEAR(sheet.joints[2].gravity_max, 5.0 * 9.81, 1e-9);
   EXPECT_EQ(sheet.joints[0].gravity_max, 0.0);
+}
+
+TEST(Datasheet, HasNoForceWhereAJointHasNoRating) {
+  std::string urdf(workspace::kCartesianUrdf);
+  urdf.replace(urdf.find("effort=\"80\""), 11, "effort=\"0\"");
+  const config::DeviceConfig device = workspace::cartesian_device({}, urdf);
+  const Datasheet sheet = make_datasheet(device, workspace::survey(device, kFew));
+  EXPECT_FALSE(sheet.has_ratings);
+  EXPECT_EQ(sheet.unrated, std::vector<std::string>{"py"});
 }
 
 TEST(Datasheet, DoesNotChangeWhenTheDeviceIsTurnedAboutTheVertical) {

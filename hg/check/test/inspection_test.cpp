@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 
 #include "hg/check/device_inspection.h"
 #include "hg/check/scenario_inspection.h"
+#include "hg/check/twin_bodies.h"
 #include "hg/check/twin_inspection.h"
 #include "hg/config/file_kind.h"
 #include "hg/config/simulation/simulation.h"
@@ -581,12 +583,50 @@ TEST(IgnoredUrdf, IsNamedInOneNotePerFile) {
   EXPECT_EQ(find(inspect(door({}), kDt), "urdf", "not read"), nullptr);
 }
 
+TEST(IgnoredUrdf, FaultsOfPartsThatAreNotUsedAreNamed) {
+  const Changed more = {.urdf_from = "</robot>",
+                        .urdf_to =
+                            "<link name=\"ball\"/><joint name=\"socket\" type=\"spherical\">"
+                            "<parent link=\"ball\"/><child link=\"ball2\"/></joint>"
+                            "<link name=\"ball2\"/></robot>"};
+  const Findings device = device_findings(more);
+  EXPECT_NE(find(device, "urdf", "joint socket: type is unknown, got 'spherical'"), nullptr)
+      << all_of(device);
+}
+
 TEST(IgnoredUrdf, FrictionOfADeviceIsNotTakenFromItsUrdf) {
   const Changed rubbed = {.urdf_from = "</joint>",
                           .urdf_to = R"(<dynamics damping="1" friction="0"/></joint>)"};
   const Findings device = device_findings(rubbed);
   EXPECT_NE(find(device, "urdf", "not read: <dynamics> damping and friction"), nullptr)
       << all_of(device);
+}
+
+// links of 0.2 and 0.3 m, each with 10 g
+TEST(Bodies, PlaceholdersAreNamed) {
+  const auto findings_with = [](const char* mass_of_b) {
+    std::string urdf = "<robot name=\"r\"><link name=\"o\"/>";
+    const char* const names[] = {"a", "b", "c"};
+    for (int i = 0; i < 3; ++i) {
+      urdf += fmt::format(
+          "<link name=\"{0}\"><inertial><mass value=\"{1}\"/><inertia ixx=\"1\" iyy=\"1\" "
+          "izz=\"1\" "
+          "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link><joint name=\"j{0}\" "
+          "type=\"continuous\"><parent link=\"{2}\"/><child link=\"{0}\"/><origin xyz=\"0 0 {3}\"/>"
+          "</joint>",
+          names[i], i == 1 ? mass_of_b : "0.01", i == 0 ? "o" : names[i - 1], 0.1 * (i + 1));
+    }
+    const std::vector<config::SourceText> sources = {{"f.yaml", ""}, {"r.urdf", urdf + "</robot>"}};
+    const config::Places places;
+    Collector out(sources, places);
+    inspect_bodies(sources, out);
+    return out.findings;
+  };
+  const Findings alike = findings_with("0.01");
+  EXPECT_NE(find(alike, "link a", "all 3 moving links have its mass and inertia, 0.03 kg"), nullptr)
+      << all_of(alike);
+  const Findings own = findings_with("0.02");
+  EXPECT_EQ(find(own, "link a", "have its mass"), nullptr) << all_of(own);
 }
 
 TEST(Findings, TakesMessagesApart) {

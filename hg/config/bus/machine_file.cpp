@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "hg/config/bus/machine_schema.h"
 #include "hg/config/loader.h"
@@ -101,7 +102,7 @@ void check_inputs_once(LoaderFile& file, const ethercat::Machine& machine) {
 }  // namespace
 
 ethercat::Machine load_machine(const std::filesystem::path& path, SourceReader& reader,
-                               const std::vector<std::string>& joints) {
+                               const std::vector<std::string>& joints, Places* places) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   file.knows_names = !joints.empty();
   ethercat::Machine machine;
@@ -118,6 +119,7 @@ ethercat::Machine load_machine(const std::filesystem::path& path, SourceReader& 
     }
     check_inputs_once(file, machine);
   });
+  if (places != nullptr) *places = std::move(file.places);
   return machine;
 }
 

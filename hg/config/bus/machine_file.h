@@ -13,6 +13,6 @@ namespace hg::config {
 /// Loads a machine. `joints` are those of its device, gantry first; empty: any name is accepted,
 /// and no slave has a joint. Throws SetupError with all faults of the file, one per line.
 ethercat::Machine load_machine(const std::filesystem::path& file, SourceReader& reader,
-                               const std::vector<std::string>& joints);
+                               const std::vector<std::string>& joints, Places* places = nullptr);
 
 }  // namespace hg::config

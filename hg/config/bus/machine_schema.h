@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hg/config/bus/entry_schema.h"
+#include "hg/config/bus/profile_schema.h"
 #include "hg/config/schema.h"
 #include "hg/device/ethercat/machine.h"
 
@@ -46,6 +47,9 @@ template <class V>
 void check_drive(V& v, const ethercat::Slave& slave) {
   using namespace ethercat;
   if (slave.mode == DriveMode::kNone) return;
+  check_bits(v, slave.settings, "settings");
+  check_bits(v, slave.outputs, "outputs");
+  check_bits(v, slave.inputs, "inputs");
   const bool sets_mode =
       has_entry(slave.outputs, Output::kMode) ||
       std::ranges::any_of(slave.settings, [](const Setting& s) { return s.object == 0x6060; });

@@ -163,6 +163,22 @@ TEST(Scaffold, AJointWithDynamicsKeepsThem) {
   EXPECT_EQ(twin.model.dofs[0].friction, 0.3);
 }
 
+TEST(Scaffold, LengthsThatCanOnlyBeOfAnotherUnitAreDoubted) {
+  const TemporaryFolder folder;
+  const auto device = config::load_simulated_device("models/haptic_giant/device.yaml");
+  const std::string gate = read_file(kGate.urdf);
+  const auto doubt_of = [&](const std::string& from, const std::string& to) {
+    std::string urdf = gate;
+    urdf.replace(urdf.find(from), from.size(), to);
+    return draft_twin({folder.write("gate.urdf", urdf), "", ""}, folder.path(), device).doubt;
+  };
+  EXPECT_EQ(doubt_of("0.45 0.05 0", "0.45 0.05 0"), "");
+  EXPECT_NE(doubt_of("0.45 0.05 0", "450 50 0").find("are the lengths of the URDF millimetres?"),
+            std::string::npos);
+  EXPECT_NE(doubt_of("0.45 0.05 0", "0 0 0.3").find("handle is on the axis of hinge"),
+            std::string::npos);
+}
+
 TEST(Scaffold, AUrdfBehindASymbolicLinkIsFound) {
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "v2");

@@ -94,11 +94,12 @@ class MeshArm : public ::testing::Test {
     part_ = arm(0.18, 0.18);
   }
 
-  // `shoulder`, `wrist`: lengths of the first and fifth link, m, each between two bars
-  ChainPart arm(double shoulder, double wrist) const {
-    std::string text = "<robot name=\"bars\">\n" + link(0);
+  // `shoulder`, `wrist`: lengths of the first and fifth link, m, each between two bars; `scale` of
+  // the meshes
+  ChainPart arm(double shoulder, double wrist, const std::string& scale = "1 1 1") const {
+    std::string text = "<robot name=\"bars\">\n" + link(0, scale);
     for (int i = 1; i <= 6; ++i) {
-      text += link(i);
+      text += link(i, scale);
       text += fmt::format(
           "<joint name=\"joint{0}\" type=\"revolute\"><parent link=\"link{1}\"/><child "
           "link=\"link{0}\"/><origin xyz=\"0 0 {3}\"/><axis xyz=\"{2}\"/><limit lower=\"-2.6\" "
@@ -114,13 +115,13 @@ class MeshArm : public ::testing::Test {
     return {folder_.write("bars.urdf", text + "</robot>\n"), "", ""};
   }
 
-  static std::string link(int i) {
+  static std::string link(int i, const std::string& scale) {
+    const std::string mesh = "<collision><geometry><mesh filename=\"bar.stl\" scale=\"" + scale +
+                             "\"/></geometry></collision>";
     return fmt::format(
         "<link name=\"link{}\"><inertial><mass value=\"1\"/><inertia ixx=\"0.01\" iyy=\"0.01\" "
         "izz=\"0.01\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>{}</link>\n",
-        i,
-        i % 2 == 0 ? "<collision><geometry><mesh filename=\"bar.stl\"/></geometry></collision>"
-                   : "");
+        i, i % 2 == 0 ? mesh : "");
   }
 
   // an open tube of four sides along z, as the text form of an STL
@@ -170,6 +171,18 @@ TEST_F(MeshArm, IsWatchedByCapsulesAroundItsMeshes) {
   model::ChainData posture(device.model.chain);
   posture.update_poses(device.model.posture);
   EXPECT_GT(shapes.distance(posture), config.safe_distance);
+}
+
+TEST_F(MeshArm, MeshesOfAnotherUnitAreDoubted) {
+  EXPECT_TRUE(draft().doubts.empty());
+  const auto doubt_with = [&](const char* scale) {
+    part_ = arm(0.18, 0.18, scale);
+    const std::vector<std::string> doubts = draft().doubts;
+    return doubts.empty() ? "" : doubts.front();
+  };
+  EXPECT_NE(doubt_with("1000 1000 1000").find("link link0: bar.stl is 166 m large: millimetres?"),
+            std::string::npos);
+  EXPECT_NE(doubt_with("0 0 0").find("smaller than 1 mm"), std::string::npos);
 }
 
 TEST_F(MeshArm, IsWatchedWhereItFoldsOrReachesForTheFloor) {

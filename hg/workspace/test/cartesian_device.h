@@ -36,12 +36,12 @@ inline constexpr std::string_view kCartesianUrdf = R"(<robot name="cartesian">
 <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 </robot>)";
 
-/// The root link stands at T_B_root. Every acceleration rating is 10.
-inline config::DeviceConfig cartesian_device(const Pose& T_B_root = {}) {
-  config::DeviceConfig device = {
-      .name = "cartesian",
-      .model = {.chain = model::ChainModel::from_urdf_text(kCartesianUrdf, "cartesian.urdf",
-                                                           {.T_B_root = T_B_root})}};
+/// The root link of `urdf` stands at T_B_root. Every acceleration rating is 10.
+inline config::DeviceConfig cartesian_device(const Pose& T_B_root = {},
+                                             std::string_view urdf = kCartesianUrdf) {
+  config::DeviceConfig device = {.name = "cartesian",
+                                 .model = {.chain = model::ChainModel::from_urdf_text(
+                                               urdf, "cartesian.urdf", {.T_B_root = T_B_root})}};
   device.model.n_m = 6;
   device.model.handle = device.model.chain.frame("handle");
   for (const model::Joint& joint : device.model.chain.joints()) {
@@ -50,7 +50,7 @@ inline config::DeviceConfig cartesian_device(const Pose& T_B_root = {}) {
                                          .dq_max = joint.velocity_max,
                                          .ddq_max = 10.0});
   }
-  device.sources = {{"device.yaml", ""}, {"cartesian.urdf", std::string(kCartesianUrdf)}};
+  device.sources = {{"device.yaml", ""}, {"cartesian.urdf", std::string(urdf)}};
   return device;
 }
 

@@ -96,6 +96,9 @@ TEST(MachineFile, NamesWhatIsWrongAndWhere) {
   expect(
       kAxis + drive("one", "m1", "cst", "{object: 0x6071, bits: 15, is: target_torque, scale: 1}"),
       "must be whole bytes");
+  expect(
+      kAxis + drive("one", "m1", "cst", "{object: 0x6071, bits: 32, is: target_torque, scale: 1}"),
+      "slaves[1].outputs: object 0x6071 has 16 bits by CiA 402, got 32");
   expect(kAxis + drive("one", "m1", "cst", "{bits: 16, is: target_torque, scale: 1}"),
          "a gap (object 0) has no meaning");
   expect(kAxis + drive("one", "m1", "cst", "{object: 0x16071, bits: 16, is: target_torque}"),
