@@ -83,6 +83,7 @@ struct Results {
   RobotState robot;
   ReferenceState reference;
   std::array<LimitReport, kMaxLimits> limits{};
+  std::array<double, kMaxLimits> passing{};
   double sync_error = 0.0;
   Eigen::Vector3d v_H = Eigen::Vector3d::Zero(), contact_force = Eigen::Vector3d::Zero();
 
@@ -92,7 +93,8 @@ struct Results {
             .limits = limits,
             .sync_error = sync_error,
             .v_H = v_H,
-            .contact_force = contact_force};
+            .contact_force = contact_force,
+            .passing = passing};
   }
 };
 
@@ -179,6 +181,12 @@ const Case kCases[] = {
      [](Bench& b, double x) { b.results.limits[6].excess = x; }},
     {FaultCode::kLimitExceeded, "frame", 1, 8, 0.031, 0.029,
      [](Bench& b, double x) { b.results.limits[8].excess = x; }},
+    {FaultCode::kLimitNotHeld, "end of a joint", 5, 3, 0.031, 0.029,
+     [](Bench& b, double x) { b.results.passing[3] = x; }},
+    {FaultCode::kLimitNotHeld, "sum of joints ahead", 5, 6, 0.051, 0.049,
+     [](Bench& b, double x) { b.results.passing[6] = x; }},
+    {FaultCode::kLimitNotHeld, "wall", 5, 8, 0.031, 0.029,
+     [](Bench& b, double x) { b.results.passing[8] = x; }},
     {FaultCode::kSpeedExceeded, "measured speed", 3, 4, -3.31, -3.29,
      [](Bench& b, double x) { b.results.robot.dq_m[4] = x; }},
     {FaultCode::kSpeedExceeded, "speed of the reference", 3, 4, 3.31, 3.29,
