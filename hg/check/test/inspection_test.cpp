@@ -9,6 +9,7 @@
 #include <string>
 
 #include "hg/check/device_inspection.h"
+#include "hg/check/ignored_urdf.h"
 #include "hg/check/scenario_inspection.h"
 #include "hg/check/twin_bodies.h"
 #include "hg/check/twin_inspection.h"
@@ -584,14 +585,17 @@ TEST(IgnoredUrdf, IsNamedInOneNotePerFile) {
 }
 
 TEST(IgnoredUrdf, FaultsOfPartsThatAreNotUsedAreNamed) {
-  const Changed more = {.urdf_from = "</robot>",
-                        .urdf_to =
-                            "<link name=\"ball\"/><joint name=\"socket\" type=\"spherical\">"
-                            "<parent link=\"ball\"/><child link=\"ball2\"/></joint>"
-                            "<link name=\"ball2\"/></robot>"};
-  const Findings device = device_findings(more);
-  EXPECT_NE(find(device, "urdf", "joint socket: type is unknown, got 'spherical'"), nullptr)
-      << all_of(device);
+  const std::vector<config::SourceText> sources = {
+      {"f.yaml", ""},
+      {"r.urdf",
+       R"(<robot name="r"><link name="a"/><link name="b"/><joint name="socket" type="spherical">)"
+       R"(<parent link="a"/><child link="b"/></joint></robot>)"}};
+  const config::Places places;
+  Collector out(sources, places);
+  inspect_ignored(sources, UrdfUse::kTwin, out);
+  EXPECT_NE(find(out.findings, "urdf", "not read: joint socket: type is unknown, got 'spherical'"),
+            nullptr)
+      << all_of(out.findings);
 }
 
 TEST(IgnoredUrdf, FrictionOfADeviceIsNotTakenFromItsUrdf) {

@@ -93,7 +93,7 @@ TEST(Options, SetTakesNamesWithDotsInQuotes) {
     }
   };
   rename(urdf, "\"hinge\"", "\"hinge.1\"");
-  rename(twin, "hinge:", "hinge.1:");
+  rename(twin, "hinge", "hinge.1");
   folder.write("door.urdf", urdf);
   const std::string file = folder.write("twin.yaml", twin).string();
   const auto with = [&](const std::string& change) {
