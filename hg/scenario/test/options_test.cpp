@@ -106,7 +106,7 @@ TEST(Options, SetTakesNamesWithDotsInQuotes) {
             std::string::npos);
   EXPECT_NE(message_of([&] {
               with("twin.joints.\"hinge.1.damping_Nms_per_rad=7");
-            }).find("the quotes behind 'twin.joints.' do not end"),
+            }).find("the quotes behind 'joints.' do not end"),
             std::string::npos);
 }
 
