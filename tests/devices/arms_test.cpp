@@ -55,7 +55,8 @@ class PushedArm : public testing::TestWithParam<const char*> {
                                           "segments:\n"
                                           "  - {start_s: 1, duration_s: 0.4, by: {") +
                                   target + "}}\nduration_s: 3\n");
-    const std::string text = "title: Push\ndevice: " + arm + "/device.yaml\ntwin: " + arm +
+    const std::string text = "title: Push\ndescription: A hand of 60 N.\ndevice: " + arm +
+                             "/device.yaml\ntwin: " + arm +
                              "/tool.yaml\nperson: push.yaml\nduration_s: 3\n";
     return config::load_scenario(folder.write("pushed.yaml", text));
   }
@@ -70,7 +71,8 @@ TEST_P(PushedArm, StopsAtItsWalls) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Arms, PushedArm, testing::Values("fr3", "iiwa14"),
+INSTANTIATE_TEST_SUITE_P(Arms, PushedArm,
+                         testing::Values("fr3", "iiwa14", "ur5e", "ur10e", "xarm7", "gen3"),
                          [](const auto& arm) { return std::string(arm.param); });
 INSTANTIATE_TEST_SUITE_P(Arms, ShippedArm,
                          testing::Values("fr3", "ur5e", "ur10e", "xarm7", "gen3", "iiwa14"),
