@@ -218,9 +218,9 @@ bool Loader::text(std::string_view key, std::string& value, Need need) {
 bool Loader::words(std::string_view key, std::string& value, std::string_view, Need need) {
   std::string given;
   if (!text(key, given, need)) return false;
-  if (visible(given) != given) {
+  if (!is_utf8(given)) {
     fault(find(key, need)->value, item_of(key),
-          "must be UTF-8 text without control characters, got " + in_quotes(visible(given)));
+          "must be UTF-8, got " + in_quotes(visible(given)));
     return false;
   }
   value = given;

@@ -13,6 +13,9 @@ namespace hg {
 /// marks of writing direction (U+202E), and invalid or overlong UTF-8 (C0 9B).
 std::size_t shown_bytes(std::string_view text) noexcept;
 
+/// Whether all of `text` is valid UTF-8, control characters included.
+bool is_utf8(std::string_view text) noexcept;
+
 /// `text` with the bytes of all characters that must not be shown as escapes such as \x1b.
 std::string visible(std::string_view text);
 

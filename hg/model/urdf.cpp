@@ -230,9 +230,9 @@ class Reader {
 
   void require_utf8(const XMLElement& e, const char* key, const std::string& text,
                     const std::string& item) const {
-    if (visible(text) == text) return;
+    if (is_utf8(text)) return;
     fail(urdf_, e.GetLineNum(),
-         item + ": " + key + " must be UTF-8 without control characters, got " +
+         item + ": " + key + " must be UTF-8, got " +
              in_quotes(visible(text)) + "; convert the file: iconv -f ISO-8859-1 -t UTF-8");
   }
 

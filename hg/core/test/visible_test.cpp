@@ -35,6 +35,16 @@ TEST(Visible, EscapesWhatIsNotTheShortestUtf8) {
   EXPECT_EQ(visible("\xfe\xff"), "\\xfe\\xff");
 }
 
+TEST(Utf8, IsValidWithControlCharactersAndNotOtherwise) {
+  for (const std::string_view text : {""sv, "T\u00FCr"sv, "\x1b\x7f\0"sv, "\u202E\u009b"sv}) {
+    EXPECT_TRUE(is_utf8(text)) << visible(text);
+  }
+  for (const std::string_view text :
+       {"T\xfcr"sv, "\x9b"sv, "\xc0\x9b"sv, "\xed\xa0\x80"sv, "\xe2\x82"sv}) {
+    EXPECT_FALSE(is_utf8(text)) << visible(text);
+  }
+}
+
 TEST(Visible, EscapesWhatTurnsTheDirectionOrIsNotSeen) {
   EXPECT_EQ(visible("a\u202Eb"), "a\\xe2\\x80\\xaeb");
   for (const std::string_view text :

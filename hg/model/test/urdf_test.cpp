@@ -263,7 +263,7 @@ std::vector<Fault> faults_of_spelling() {
       "arm.urdf:5: <axis> XYZ is unknown to URDF, nearest is 'xyz'");
   add(
       "name in ISO-8859-1", [](Text& t) { t.tip = "<link name='t\xfcr'/>"; },
-      "arm.urdf:4: link: name must be UTF-8 without control characters, got 't\\xfcr'; convert the "
+      "arm.urdf:4: link: name must be UTF-8, got 't\\xfcr'; convert the "
       "file: iconv -f ISO-8859-1 -t UTF-8");
   add(
       "element of another case", [](Text& t) { t.tip = "<Link name='tip'/>"; },

@@ -195,6 +195,13 @@ TEST(BadFile, EveryKindOfUnreadableFileIsNamed) {
             "door.yaml:2:1: the file must be one map, but it has ended before this");
 }
 
+TEST(BadFile, TextOfAnotherEncodingIsNamed) {
+  EXPECT_EQ(twin_message("name: T\xfcr\nurdf: door.urdf\nend_effector: handle\n"),
+            "door.yaml:1:7: name: must be UTF-8, got 'T\\xfcr'");
+  EXPECT_EQ(twin_message("name: T\u00fcr # \u009b\nurdf: door.urdf\nend_effector: handle\n"),
+            "no error");
+}
+
 TEST(BadFile, MissingKeysAreNamedAtTheMapThatNeedsThem) {
   EXPECT_EQ(twin_message("urdf: door.urdf\n"),
             "door.yaml:1:1: key 'name' is missing\n"
