@@ -22,7 +22,9 @@ int main(int count, char** arguments) try {
                  to_string(report.fault.code).data(), to_string(report.refusal).data());
     return 1;
   }
-  const hg::VectorM moved = cycle.state().q_m - start;
+  hg::SensorFrame now;
+  robot.read(now);
+  const hg::VectorM moved = now.q_m - start;
   std::printf("the joints have moved by up to %.2f rad in %d cycles\n", moved.cwiseAbs().maxCoeff(),
               static_cast<int>(report.cycles));
 } catch (const hg::SetupError& error) {

@@ -219,8 +219,7 @@ bool Loader::words(std::string_view key, std::string& value, std::string_view, N
   std::string given;
   if (!text(key, given, need)) return false;
   if (!is_utf8(given)) {
-    fault(find(key, need)->value, item_of(key),
-          "must be UTF-8, got " + in_quotes(visible(given)));
+    fault(find(key, need)->value, item_of(key), "must be UTF-8, got " + in_quotes(visible(given)));
     return false;
   }
   value = given;

@@ -232,8 +232,8 @@ class Reader {
                     const std::string& item) const {
     if (is_utf8(text)) return;
     fail(urdf_, e.GetLineNum(),
-         item + ": " + key + " must be UTF-8, got " +
-             in_quotes(visible(text)) + "; convert the file: iconv -f ISO-8859-1 -t UTF-8");
+         item + ": " + key + " must be UTF-8, got " + in_quotes(visible(text)) +
+             "; convert the file: iconv -f ISO-8859-1 -t UTF-8");
   }
 
   // Numbers separated by blanks; exactly `count` of them, each in `range`.

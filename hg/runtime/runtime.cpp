@@ -12,7 +12,6 @@
 #include "hg/core/error.h"
 #include "hg/core/index.h"
 #include "hg/core/monotonic_clock.h"
-#include "hg/hqp/problem_capture.h"
 #include "hg/runtime/requests.h"
 
 namespace hg::runtime {

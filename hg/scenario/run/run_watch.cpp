@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "hg/controller/safety/rules.h"
-#include "hg/hqp/problem_capture.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/names.h"
 

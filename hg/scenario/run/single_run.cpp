@@ -9,7 +9,6 @@
 
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
-#include "hg/hqp/problem_capture.h"
 #include "hg/page/page_scene.h"
 #include "hg/recording/recording_folder.h"
 #include "hg/runtime/runtime.h"
