@@ -16,6 +16,7 @@
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
+#include "hg/check/ignored_urdf.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
@@ -64,6 +65,15 @@ new_files::ChainPart device_part(const NewArguments& arguments) {
   return part;
 }
 
+// What a draft leaves out of the URDF.
+void print_not_read(const std::filesystem::path& urdf, check::UrdfUse use) {
+  const std::vector<config::SourceText> sources = {{"", ""}, {urdf.string(), read_file(urdf)}};
+  const config::Places places;
+  check::Collector found(sources, places);
+  check::inspect_ignored(sources, use, found);
+  for (const check::Finding& finding : found.findings) print_out("note        {}\n", finding.what);
+}
+
 }  // namespace
 
 int new_device(const NewArguments& arguments) {
@@ -84,6 +94,7 @@ int new_device(const NewArguments& arguments) {
         "ideal drives\n");
   }
   write_output(output.string(), files.device);
+  print_not_read(arguments.part.urdf, check::UrdfUse::kDevice);
   for (const std::string& line : files.news) print_out("note        {}\n", line);
   for (const std::string& line : files.doubts)
     print_error("WARNING {}: {}\n", output.string(), line);
@@ -103,6 +114,7 @@ int new_twin(const NewArguments& arguments) {
   const new_files::TwinDraft draft = new_files::draft_twin(arguments.part, output.parent_path(),
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
+  print_not_read(arguments.part.urdf, check::UrdfUse::kTwin);
   if (!draft.note.empty()) print_out("note        {}\n", draft.note);
   if (!draft.doubt.empty()) print_error("WARNING {}: {}\n", output.string(), draft.doubt);
   if (!draft.problem.empty()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "hg/model/urdf.h"
@@ -31,7 +32,8 @@ void add_faults(model::Urdf& urdf) {
   };
   for (const model::UrdfJoint& joint : urdf.joints) add(joint.fault, joint.line);
   for (const model::UrdfLink& link : urdf.links) {
-    const bool is_point = link.inertial && link.inertial->inertia.isZero(0.0);
+    const bool is_point =
+        link.inertial && std::isfinite(link.inertial->mass) && link.inertial->inertia.isZero(0.0);
     if (!is_point) add(link.inertial_fault, link.line);
   }
 }

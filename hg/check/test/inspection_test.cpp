@@ -588,13 +588,15 @@ TEST(IgnoredUrdf, FaultsOfPartsThatAreNotUsedAreNamed) {
   const std::vector<config::SourceText> sources = {
       {"f.yaml", ""},
       {"r.urdf",
-       R"(<robot name="r"><link name="a"/><link name="b"/><joint name="socket" type="spherical">)"
+       R"(<robot name="r"><link name="a"><inertial><mass value="1"/></inertial></link><link name="b"/><joint name="socket" type="spherical">)"
        R"(<parent link="a"/><child link="b"/></joint></robot>)"}};
   const config::Places places;
   Collector out(sources, places);
   inspect_ignored(sources, UrdfUse::kTwin, out);
   EXPECT_NE(find(out.findings, "urdf", "not read: joint socket: type is unknown, got 'spherical'"),
             nullptr)
+      << all_of(out.findings);
+  EXPECT_NE(find(out.findings, "urdf", "link a: <inertial> needs an element <inertia>"), nullptr)
       << all_of(out.findings);
 }
 
