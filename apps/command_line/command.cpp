@@ -228,10 +228,18 @@ bool Command::has_subcommand() const { return !self_->get_subcommands().empty();
 
 std::vector<std::string> Command::completions(const std::vector<std::string>& words) const {
   if (words.empty()) return {};
-  const std::string last = words.back() == "=" ? "" : words.back();
-  const Typed typed = read_typed(self_, {words.begin(), words.end() - 1});
+  std::string last = words.back() == "=" ? "" : words.back();
+  std::vector<std::string> before(words.begin(), words.end() - 1);
+  std::string kept;  // of --law=ga, where a shell does not split it
+  if (const std::size_t end = last.find('='); last.starts_with("--") && end != std::string::npos) {
+    before.push_back(last.substr(0, end));
+    kept = last.substr(0, end + 1);
+    last.erase(0, end + 1);
+  }
+  const Typed typed = read_typed(self_, before);
   std::vector<std::string> found = offered(typed, last.starts_with('-'));
   std::erase_if(found, [&](const std::string& text) { return !text.starts_with(last); });
+  for (std::string& text : found) text.insert(0, kept);
   return found;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <list>
 #include <tuple>
+#include <utility>
 
 #include "hg/check/device_inspection.h"
 #include "hg/check/machine_inspection.h"
@@ -62,7 +63,12 @@ void load_urdf(const std::string& file, Check& check) {
   try_to(file, check, [&] {
     const model::Urdf urdf = model::read_urdf_file(file);
     for (const model::UrdfJoint& joint : urdf.joints) refuse(joint.fault);
-    for (const model::UrdfLink& link : urdf.links) refuse(link.inertial_fault);
+    for (const model::UrdfLink& link : urdf.links) {
+      if (link.inertial_fault.empty() || model::is_point_mass(link)) continue;
+      Findings found = findings_of_message(link.inertial_fault, file);
+      for (Finding& finding : found) finding.severity = Severity::kWarning;  // it may stand still
+      add(std::move(found), check);
+    }
   });
 }
 
@@ -134,14 +140,28 @@ void check_scripts(Check& check) {
   }
 }
 
+// A machine beside the device is its own, and one elsewhere where it has its joints.
+void check_machines(const config::DeviceConfig& device, Check& check) {
+  const auto folder = std::filesystem::path(device.sources.front().name).parent_path();
+  for (const std::string& machine : check.machines) {
+    const auto inspect = [&] { add(inspect_machine(machine, device), check); };
+    if (std::filesystem::path(machine).parent_path() == folder) {
+      try_to(machine, check, inspect);
+      continue;
+    }
+    try {
+      inspect();
+    } catch (const SetupError&) {  // a machine of another device
+    }
+  }
+}
+
 void check_devices(Check& check) {
   const auto inspect = [&](const config::DeviceConfig& device, bool has_datasheet) {
     const workspace::Survey found = workspace::survey(device);
     add(check::inspect(device, found), check);
     if (has_datasheet) check.report.datasheets.push_back(make_datasheet(device, found));
-    for (const std::string& machine : check.machines) {
-      try_to(machine, check, [&] { add(inspect_machine(machine, device), check); });
-    }
+    if (has_datasheet) check_machines(device, check);
   };
   for (const config::DeviceConfig& device : check.devices) inspect(device, true);
   for (const config::Scenario& scenario : check.scenarios) inspect(scenario.device, false);

@@ -48,6 +48,7 @@ void inspect_alike(const model::Urdf& urdf, Collector& out) {
     ++count;
     mass += link.inertial->mass;
     const double length = extent(urdf, joint.child);
+    if (length == 0.0) continue;  // the last one, whose end no joint shows
     shortest = std::min(shortest, length);
     longest = std::max(longest, length);
   }
@@ -65,7 +66,8 @@ void inspect_link(const model::Urdf& urdf, int index, Collector& out) {
   constexpr double kSlackness = 2.0;                   // times the link's length
   constexpr double kThinnest = 1e-3, kThickest = 5.0;  // m, radius of gyration
   const model::UrdfLink& link = urdf.links[index];
-  if (!link.inertial) return;
+  const bool moves = std::ranges::count(urdf.joints, index, &model::UrdfJoint::child) > 0;
+  if (!link.inertial || !moves || !link.inertial_fault.empty()) return;
   const double length = std::max(kAtLeast, kSlackness * extent(urdf, index));
   const double distance = link.inertial->p_com.norm();
   if (distance > length) {

@@ -56,8 +56,12 @@ void set(YAML::Node node, std::string_view rest, const ChangedValue& change) {
   if (is_quoted && end == std::string_view::npos) refuse("the quotes behind '{}' do not end");
   const std::string_view key = is_quoted ? rest.substr(1, end - 1) : rest.substr(0, end);
   if (key.empty()) refuse("expected a key after '{}'");
+  const std::string_view behind = rest.substr(key.size() + (is_quoted ? 2 : 0));
+  if (is_quoted && !behind.empty() && behind[0] != '.' && behind[0] != '[') {
+    refuse("expected '.' or '[' behind the quotes after '{}'");
+  }
   if (node.IsScalar() || node.IsSequence()) refuse("'{}' is no map of keys");
-  set(node[std::string(key)], rest.substr(key.size() + (is_quoted ? 2 : 0)), change);
+  set(node[std::string(key)], behind, change);
 }
 
 }  // namespace

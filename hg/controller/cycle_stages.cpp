@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <new>
+#include <span>
 
 #include "hg/controller/safety/stopping.h"
 #include "hg/controller/state_hash.h"
@@ -478,26 +479,28 @@ Fault CycleStages::monitor(const SensorFrame& sensors, std::uint32_t late_cycles
   } else {
     const rendering::LawResult& law = results.law;
     const estimation::InertialCheck& inertial = state_.estimation.inertial;
-    verdict = monitor_.watch(sensors,
-                             {.robot = results.robot,
-                              .reference = results.moved.reference,
-                              .limits = law.limits,
-                              .sync_error = results.moved.sync_error,
-                              .v_H = law.v_H,
-                              .contact_force = law.contact.force,
-                              .oscillation = results.passivity.oscillation,
-                              .passing = law.passing},
-                             {.state = state_.supervisor.state,
-                              .late_cycles = late_cycles,
-                              .dq_p_command = results.moved.dq_p,
-                              .tau_m = state_.tau_m,
-                              .pulled_back = results.pulled_back,
-                              .unexplained = state_.control.unexplained,
-                              .turn = inertial.turn.norm(),
-                              .turn_uncertainty = estimation::turn_uncertainty(inertial),
-                              .slip = inertial.slip.norm(),
-                              .slip_uncertainty = estimation::slip_uncertainty(inertial)},
-                             state_.monitor);
+    verdict = monitor_.watch(
+        sensors,
+        {.robot = results.robot,
+         .reference = results.moved.reference,
+         .limits = law.limits,
+         .sync_error = results.moved.sync_error,
+         .v_H = law.v_H,
+         .contact_force = law.contact.force,
+         .oscillation = results.passivity.oscillation,
+         .passing = state_.motion == Motion::kBrakeJoints ? std::span<const double>()
+                                                          : std::span<const double>(law.passing)},
+        {.state = state_.supervisor.state,
+         .late_cycles = late_cycles,
+         .dq_p_command = results.moved.dq_p,
+         .tau_m = state_.tau_m,
+         .pulled_back = results.pulled_back,
+         .unexplained = state_.control.unexplained,
+         .turn = inertial.turn.norm(),
+         .turn_uncertainty = estimation::turn_uncertainty(inertial),
+         .slip = inertial.slip.norm(),
+         .slip_uncertainty = estimation::slip_uncertainty(inertial)},
+        state_.monitor);
     if (state_.monitor.is_broken) {
       const Fault link = follows_from_link(verdict.fault.code)
                              ? control_.link_disturbance(sensors, state_.control)

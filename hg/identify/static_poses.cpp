@@ -94,7 +94,8 @@ std::vector<std::string> cells(std::string_view line, char separator) {
   std::vector<std::string> result(1);
   bool is_quoted = false;
   for (const char c : line) {
-    if (c == '"') {
+    const bool begins = result.back().find_first_not_of(" \t") == std::string::npos;
+    if (c == '"' && (is_quoted || begins)) {
       is_quoted = !is_quoted;
     } else if (c == separator && !is_quoted) {
       result.emplace_back();

@@ -192,7 +192,7 @@ class Builder {
       const auto& inertial = link(at.link).inertial;
       if (inertial && joint > 0 && !(i > 0 && is_frame(link(at.link)))) {
         // a point mass must be fixed to a body with inertia
-        const bool is_point = i > 0 && inertial->mass > 0.0 && inertial->inertia.isZero(0.0);
+        const bool is_point = i > 0 && is_point_mass(link(at.link));
         const std::string& fault = link(at.link).inertial_fault;
         if (!fault.empty() && !is_point) throw SetupError(fault);
         chain.model.appendBodyToJoint(joint, to_inertia(*inertial), at.T_joint_link);

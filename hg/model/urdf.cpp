@@ -481,10 +481,17 @@ class Reader {
       read_motion(e, item, result);
     } catch (const SetupError& error) {
       result.type = UrdfJointType::kFixed;
-      result.mimic.reset();
+      result.mimic = leader_of(e);
       result.fault = error.what();
     }
     return result;
+  }
+
+  // Of a joint with a fault: which joint it would follow.
+  static std::optional<UrdfMimic> leader_of(const XMLElement& e) {
+    const XMLElement* mimic = e.FirstChildElement("mimic");
+    if (mimic == nullptr || mimic->Attribute("joint") == nullptr) return {};
+    return UrdfMimic{.joint = mimic->Attribute("joint"), .line = mimic->GetLineNum()};
   }
 
   // Kind, axis, limits, dynamics and mimic of a joint.
@@ -542,6 +549,10 @@ void check_inertial(const Inertial& inertial, std::string_view item) {
   require(moments[0] + moments[1] >= moments[2] * (1.0 - kRounding),
           "inertia is of no body, the two smaller principal moments must add up to the largest",
           got.str());
+}
+
+bool is_point_mass(const UrdfLink& link) noexcept {
+  return link.inertial && link.inertial->mass > 0.0 && link.inertial->inertia.isZero(0.0);
 }
 
 Urdf read_urdf_text(std::string_view text, std::string_view source) {

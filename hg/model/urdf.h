@@ -96,6 +96,9 @@ struct Urdf {
 Urdf read_urdf_file(const std::filesystem::path& file);
 Urdf read_urdf_text(std::string_view text, std::string_view source);
 
+/// Whether a link has mass but no inertia, as what is fixed to a body may.
+bool is_point_mass(const UrdfLink& link) noexcept;
+
 /// Throws SetupError, beginning with `item`, unless the mass distribution is physically possible.
 void check_inertial(const Inertial& inertial, std::string_view item);
 

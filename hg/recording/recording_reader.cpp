@@ -96,7 +96,8 @@ void hand_out(const std::filesystem::path& file, Receiver& receiver) {
 class Losses {
  public:
   void take(int kind, std::string_view name, std::uint64_t time_ns) {
-    if (kind == mcap_channel) (name.starts_with("/hapticgiant/") ? has_own_ : has_others_) = true;
+    const bool is_own = name.starts_with("/hapticgiant/") || name.ends_with("/robot_description");
+    if (kind == mcap_channel) (is_own ? has_own_ : has_others_) = true;
     if (kind == mcap_damage) {
       parts_.push_back({.loss = {.part = std::string(name)}});
       is_open_ = true;

@@ -133,6 +133,10 @@ class Check(unittest.TestCase):
         self.assertRegex(out, r"machine\.yaml:\d+:\d+: warning: slaves\[\d\]\.outputs\[1\]\.scale: "
                               r"object 0x6072, 1956, times this scale is 1\.76e\+05 Nm; the joint's rating is 176 Nm")
 
+    def test_a_machine_of_another_device_is_not_held_against_it(self):
+        code, out, _ = check(MODELS / "arms/ur5e/device.yaml", DEVICE.with_name("machine.yaml"))
+        self.assertEqual((code, "must be a joint of the device" in out), (0, False), out)
+
     def test_a_folder_of_another_encoding_is_no_internal_error(self):
         folder = pathlib.Path(os.fsdecode(os.fsencode(self.folder) + b"/T\xfcr"))
         shutil.copytree(DOOR.parent, folder)

@@ -43,6 +43,7 @@ class Completion(unittest.TestCase):
         self.assertIn("together", offered("run", "--law", ""))
         self.assertEqual(offered("run", "--law", "="), offered("run", "--law", ""))
         self.assertEqual(offered("run", "--law", "=", "pap"), ["paper", "paper_bounds"])
+        self.assertEqual(offered("run", "--law=pap"), ["--law=paper", "--law=paper_bounds"])
         self.assertEqual(offered("run", "door", "--sensors", "i"), ["ideal"])
         self.assertEqual(offered("run", "--brak"), [])  # an option of earlier versions
 

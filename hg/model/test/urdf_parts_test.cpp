@@ -89,6 +89,9 @@ TEST(SerialPart, WhatIsNotTakenMayHaveAnyFault) {
     EXPECT_NE(message_of(with(text), {}).find(fault), std::string::npos)
         << message_of(with(text), {});
   }
+  std::string follower = kTree;  // the finger moves with the elbow, whatever is wrong with it
+  follower.replace(follower.find("prismatic"), 9, "Prismatic");
+  EXPECT_NE(message_of(follower, arm).find("type is unknown"), std::string::npos);
   const std::string bare = "<link name='ball'><inertial><mass value='1'/></inertial></link>";
   EXPECT_EQ(message_of(with(bare + joint("j", "fixed", "base", "ball", "")), arm), "accepted");
 }

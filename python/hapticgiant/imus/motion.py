@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import dataclasses
 import math
 
@@ -73,7 +74,7 @@ def from_table(chain, file, rate_hz, names=None):
         raise InputError(f"{file}: no text; expected CSV, as of hapticgiant export") from None
     # a spreadsheet writes the list separator and the decimal comma of its country
     separator = max(",;\t", key=text.partition("\n")[0].count)
-    lines = list(csv.reader(text.splitlines(), delimiter=separator))
+    lines = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator))
     header = lines[0] if lines else []
     columns = []
     for joint in ["time_s", *(joint.name for joint in chain.moving)]:
