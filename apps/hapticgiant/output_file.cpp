@@ -30,7 +30,7 @@ void write_output(const std::string& file, const std::string& text) {
 void write_json(const std::string& file, nlohmann::ordered_json json) {
   if (file.empty()) return;
   json["version"] = kVersion;
-  write_output(file, json.dump(2) + "\n");
+  write_output(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace hg::apps

@@ -48,7 +48,8 @@ void RunPrinter::summary(const scenario::RunSummary& summary) {
   is_written_ = true;
   if (file_.empty()) return;
   try {
-    write_output(file_, summary.json.dump(2) + "\n");
+    write_output(file_,
+                 summary.json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   } catch (const SetupError& error) {
     print_error("{}\n", error.what());
     is_written_ = false;

@@ -143,6 +143,9 @@ class Check(unittest.TestCase):
         code, out, err = check(folder / "twin.yaml", "--json", self.folder / "out.json")
         self.assertEqual((code, "internal error" in out + err), (0, False))
         json.loads((self.folder / "out.json").read_text())
+        subprocess.run([PROGRAM, "run", "door", "--fast", "--duration", "0.2", "--recordings", folder,
+                        "--summary", self.folder / "run.json"], capture_output=True, check=False)
+        self.assertIn("recording", json.loads((self.folder / "run.json").read_text()))
 
     def test_files_that_are_no_kind_of_ours(self):
         odd = self.folder / "odd.yaml"
