@@ -68,7 +68,7 @@ void add_law_option(Command command, std::string& law, std::vector<std::string> 
       .one_of(all);
   command.retire_option("--bounds", "use --law paper_bounds for law and bounds of the paper");
   command.retire_option("--gantry", "use --law gantry for a gantry that the law leads");
-  command.retire_option("--braking", "use --law together for limits that brake together");
+  command.retire_option("--braking", "use --law gauss for limits that brake alone");
   command.retire_option("--passivity", "use --set device.passivity.reaction=act");
 }
 

@@ -22,7 +22,8 @@ std::vector<Stopping> stopping_of(const config::DeviceConfig& device) {
           is_angle ? "monitor.gantry_stop_distance_rad" : "monitor.gantry_stop_distance_m";
     } else {
       const auto& limits = model.joint_limits[i - model.n_p];
-      stopping.need = safety::stopping_need(limits.dq_max, limits.ddq_max);
+      stopping.need = safety::stopping_need(limits.dq_max, limits.ddq_max,
+                                            safety::drive_lag(model.follows_positions));
       stopping.distance = is_angle ? monitor.stop_distance : monitor.slide_stop_distance;
       stopping.key = is_angle ? "monitor.stop_distance_rad" : "monitor.stop_distance_m";
     }

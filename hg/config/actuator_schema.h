@@ -10,8 +10,10 @@
 
 namespace hg::config {
 
-inline constexpr std::array<Choice<tracking::Method>, 2> kMethods = {
-    {{"modal", tracking::Method::kModal}, {"motor_pd", tracking::Method::kMotorPd}}};
+inline constexpr std::array<Choice<tracking::Method>, 3> kMethods = {
+    {{"modal", tracking::Method::kModal},
+     {"motor_pd", tracking::Method::kMotorPd},
+     {"drives", tracking::Method::kDrives}}};
 
 template <class V>
 void describe(V& v, ActuatorModel& actuator) {
@@ -52,8 +54,11 @@ void describe(V& v, ActuatorModel& actuator) {
 
 template <class V>
 void describe(V& v, tracking::ControlConfig& config) {
-  v.choice("method", config.method, kMethods,
-           "modal: all states of the arm in its modes; motor_pd: each motor for itself");
+  v.choice(
+      "method", config.method, kMethods,
+      "modal: all states of the arm in its modes; motor_pd: each motor for itself; drives: the "
+      "drives follow positions, and the law keeps the torques of their motors");
+  if (!v.covers(config.method != tracking::Method::kDrives)) return;
   v.number("latency_s", config.loop.latency, {.lb = 0.0, .ub = 0.64},
            "expected from a sample to the torque at the drive; the true one is measured");
   v.number("current_lag_s", config.loop.current_lag, kNotNegative, "time constant of the current");
@@ -93,8 +98,9 @@ void describe_control(V& v, DeviceDraft& d) {
   v.groups_by_name(
       "actuators", d.joint_names, "a joint of the URDF",
       [&](auto& child, int index) { describe(child, d.joints[index].actuator.emplace()); },
-      "series elastic joints, for all or none of the manipulator; without them the drives follow "
-      "a reference of positions");
+      "motors and gears of all joints of the manipulator, or of none: without them the drives "
+      "follow "
+      "positions, and the law does not know their torques");
   v.rule(v.is_given("actuators") || !v.is_given("control"), "control",
          "concerns 'actuators', and there are none");
   if (v.is_given("actuators")) {
@@ -116,6 +122,7 @@ void describe_control(V& v, DeviceDraft& d) {
                    model::to_text(d.device.control.flatness_Hz));
       },
       "how motor torques make the joints follow the reference");
+  if (d.device.control.method == tracking::Method::kDrives) d.device.control.error_max = kInfinity;
 }
 
 }  // namespace hg::config

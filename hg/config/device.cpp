@@ -187,8 +187,7 @@ void take_model(model::ChainModel chain, DeviceDraft& draft) {
   }
   for (int i : draft.manipulator) {
     model.joint_limits.push_back(draft.joints[i].limits);
-    if (device.control.method == tracking::Method::kDrives) continue;
-    model.actuators.push_back(*draft.joints[i].actuator);
+    if (draft.joints[i].actuator) model.actuators.push_back(*draft.joints[i].actuator);
   }
 }
 
@@ -200,7 +199,8 @@ void state_stopping(DeviceConfig& device) {
   for (std::size_t i = 0; i < device.model.joint_limits.size(); ++i) {
     const limits::JointLimits& joint = device.model.joint_limits[i];
     double& most = need[device.model.is_slide(static_cast<int>(i)) ? 1 : 0];
-    most = std::max(most, safety::stopping_need(joint.dq_max, joint.ddq_max).distance);
+    const double lag = safety::drive_lag(device.control.method == tracking::Method::kDrives);
+    most = std::max(most, safety::stopping_need(joint.dq_max, joint.ddq_max, lag).distance);
   }
   const double gantry = safety::stopping_need(device.model.drive).distance;
   const auto state = [](double& distance, double least) {
@@ -215,7 +215,8 @@ void state_stopping(DeviceConfig& device) {
 }  // namespace
 
 void settle_law(DeviceConfig& device) {
-  device.model.has_torque_limits = device.control.method != tracking::Method::kDrives &&
+  device.model.follows_positions = device.control.method == tracking::Method::kDrives;
+  device.model.has_torque_limits = !device.model.actuators.empty() &&
                                    device.rendering.law == rendering::Law::kGauss &&
                                    device.rendering.bounds == rendering::Bounds::kRecoverable;
 }

@@ -15,9 +15,9 @@ namespace hg::config {
 
 /// Named combinations of law, bounds, gantry guidance and braking; docs/concepts/law.md.
 enum class LawPreset : std::uint8_t {
-  kGauss,        ///< Gauss' principle, recoverable bounds
+  kTogether,     ///< Gauss' principle, recoverable bounds, limits that brake together
+  kGauss,        ///< the same with limits that brake alone
   kGantry,       ///< gauss with the accelerations of the gantry as unknowns
-  kTogether,     ///< gauss with limits of the device that brake together
   kPaper,        ///< the law of [HG] with recoverable bounds
   kPaperBounds,  ///< law and bounds of [HG]
 };
@@ -32,7 +32,7 @@ struct LawParts {
   rendering::Law law = rendering::Law::kGauss;
   rendering::Bounds bounds = rendering::Bounds::kRecoverable;
   rendering::Gantry gantry = rendering::Gantry::kRule;
-  rendering::Braking braking = rendering::Braking::kAlone;
+  rendering::Braking braking = rendering::Braking::kTogether;
 
   bool operator==(const LawParts&) const = default;
 };
@@ -40,10 +40,12 @@ struct LawParts {
 /// The parts of each preset, in the order of LawPreset.
 inline constexpr std::array<LawParts, kLawPresets.size()> kPartsOfPresets = {
     {{},
-     {.gantry = rendering::Gantry::kLaw},
-     {.braking = rendering::Braking::kTogether},
-     {.law = rendering::Law::kPaper},
-     {.law = rendering::Law::kPaper, .bounds = rendering::Bounds::kPaper}}};
+     {.braking = rendering::Braking::kAlone},
+     {.gantry = rendering::Gantry::kLaw, .braking = rendering::Braking::kAlone},
+     {.law = rendering::Law::kPaper, .braking = rendering::Braking::kAlone},
+     {.law = rendering::Law::kPaper,
+      .bounds = rendering::Bounds::kPaper,
+      .braking = rendering::Braking::kAlone}}};
 
 constexpr void set_parts(rendering::RenderingOptions& options, LawPreset preset) noexcept {
   const LawParts& parts = kPartsOfPresets[static_cast<std::size_t>(preset)];

@@ -15,7 +15,7 @@ inline constexpr JointKey kBrake = {"ddq_brake_rad_per_s2", "ddq_brake_m_per_s2"
 
 template <class V>
 void describe(V& v, rendering::RenderingOptions& options, std::size_t manipulator_joints) {
-  LawPreset law = LawPreset::kGauss;
+  LawPreset law = LawPreset::kTogether;
   v.choice("law", law, kLawPresets,
            "preset of the law; paper and paper_bounds need six joints, see docs/concepts/law.md");
   set_parts(options, law);

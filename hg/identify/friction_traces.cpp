@@ -19,10 +19,10 @@ FrictionTraces::FrictionTraces(const DeviceModel& device, double current_lag)
       settling_(kSettling_s / device.dt()),
       joints_(device.actuators.size()),
       given_(kRemembered) {
-  if (device.actuators.empty()) {
+  if (device.actuators.empty() || device.follows_positions) {
     throw SetupError(
-        "friction: needs a device with 'actuators', whose motor torques are known; the drives of "
-        "this one follow positions");
+        "friction: needs a device that takes torques, with 'actuators'; the drives of this one "
+        "follow positions");
   }
   for (FrictionTrace& joint : joints_) joint.period_s = device.dt();
   current_ = working_ = VectorM::Zero(joints_.size());

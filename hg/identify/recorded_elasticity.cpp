@@ -44,7 +44,7 @@ RecordedElasticity identify_recorded_elasticity(
   result.has_both_sides = std::ranges::all_of(recorded.parts, [](const JointMotion& part) {
     return part.theta.cols() == part.q.cols() && part.tau.cols() == part.q.cols();
   });
-  result.follows_positions = model.actuators.empty();
+  result.follows_positions = model.follows_positions;
   result.nominal_latency = recorded.device.simulation.drives.latency;
   result.nominal_delay = result.nominal_latency + extra_delay(recorded.device);
   require_signals(result, file);

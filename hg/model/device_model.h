@@ -47,10 +47,11 @@ struct DeviceModel {
   DriveModel drive;                               ///< Drive of every gantry axis
   std::vector<Interval> gantry_range;             ///< Ranges of the gantry axes, m or rad
   std::vector<limits::JointLimits> joint_limits;  ///< Limits of the manipulator joints
-  /// Actuators, one per manipulator joint; empty: drives that follow positions.
+  /// Actuators, one per manipulator joint; empty: not known.
   std::vector<ActuatorModel> actuators;
-  /// Whether the law models the torques of the motors: they are limits, and no other limit is
-  /// accelerated beyond its rating.
+  bool follows_positions = false;  ///< The drives follow positions; otherwise they take torques
+  /// Whether the law models the torques of the motors: they are limits, and where the drives take
+  /// torques, an acceleration rating is no limit of its own.
   bool has_torque_limits = false;
   std::vector<VirtualJoint> virtual_joints;
   std::vector<CartesianLimit> cartesian_limits;  ///< Cartesian limits, highest priority first
@@ -64,6 +65,8 @@ struct DeviceModel {
   std::span<const ActuatorModel> motors() const noexcept {
     return has_torque_limits ? std::span(actuators) : std::span<const ActuatorModel>();
   }
+  /// Whether the law keeps accelerations within their ratings also far from a limit.
+  bool has_rated_accelerations() const noexcept { return motors().empty() || follows_positions; }
   /// Number of catalogue entries that belong to the device.
   int limit_count() const noexcept {
     return n_m +

@@ -84,7 +84,8 @@ simulator::PlantConfig motor_plant(const config::SimulatedDeviceConfig& device, 
     plant.gantry_stops.push_back(end_stops(reality, joints[axis], limits.lb, limits.ub));
   }
   const bool has_loop = plant_of(device) == config::PlantKind::kPositionDrives;
-  const auto& actuators = has_loop ? reality.drives.actuators : device.model.actuators;
+  const auto& known = device.model.actuators;
+  const auto& actuators = known.empty() ? reality.drives.actuators : known;
   plant.current_lag = torque_loop(device).current_lag;
   if (has_loop) plant.position_loop = reality.drives.loop;
   for (int i = 0; i < device.model.n_m; ++i) {

@@ -98,6 +98,7 @@ void apply_to_simulation(const ScenarioOptions& options, config::Scenario& scena
   if (options.plant == "ideal") {
     device.control.method = tracking::Method::kDrives;
     device.simulation.drives.actuators.clear();
+    device.model.actuators.clear();
   }
   if (options.plant == "elastic" && config::plant_of(device) == config::PlantKind::kIdeal) {
     throw SetupError("--plant elastic: needs 'actuators' in " + device.sources.front().name +
@@ -155,7 +156,7 @@ void apply_earlier(const std::string& text, config::Scenario& scenario) {
 // applies --law; parts of the law that device.yaml gives by keys of their own stay
 void apply_law(const ScenarioOptions& options, config::Scenario& scenario) {
   if (!options.law.empty()) {
-    config::LawPreset preset = config::LawPreset::kGauss;
+    config::LawPreset preset = config::LawPreset::kTogether;
     choose("--law", options.law, {config::kLawPresets}, preset);
     rendering::RenderingOptions& law = scenario.device.rendering;
     const rendering::RenderingOptions own = law;

@@ -23,8 +23,9 @@ TunedDevice device_of(const config::SimulatedDeviceConfig& device) {
   };
   if (device.control.method == tracking::Method::kDrives) {
     refuse(
-        "tune is for joints whose torque we control: the device has no 'actuators', its drives "
-        "follow positions on their own");
+        "tune is for joints whose torque we control: it has no control of torques, its drives "
+        "follow "
+        "positions on their own");
   }
   if (device.control.method != tracking::Method::kModal) {
     refuse("tune is for control.method: modal, got motor_pd");

@@ -110,7 +110,7 @@ class MainJob(TemporaryFolder):
 
     def test_options_for_single_parts_of_the_law_name_the_preset(self):
         for option, instead in (("--bounds", "--law paper_bounds"), ("--gantry", "--law gantry"),
-                                ("--braking", "--law together"),
+                                ("--braking", "--law gauss"),
                                 ("--passivity", "--set device.passivity.reaction=act")):
             code, _, err = run("run", "door", option, "law")
             self.assertEqual(code, 2)

@@ -49,7 +49,7 @@ class Offline(unittest.TestCase):
                 self.assertIn("make build", err)
 
     def test_options_of_earlier_versions_name_what_to_use(self):
-        for option, instead in (("--bounds", "--law paper_bounds"), ("--braking", "--law together")):
+        for option, instead in (("--bounds", "--law paper_bounds"), ("--braking", "--law gauss")):
             _, err = run(PROGRAM, "run", "door", option, "paper", code=2)
             self.assertIn(f"{option}: is no option any more: use {instead}", err)
 

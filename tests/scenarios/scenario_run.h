@@ -28,10 +28,10 @@ inline config::Scenario shipped(const std::string& name, double rate_Hz) {
   return scenario::load({.scenario = name, .rate_Hz = rate_Hz});
 }
 
-/// Leaves the law alone: drives follow perfectly, sensors have no errors. Only the gantry lags, and
-/// the estimation filters the wrench.
+/// Leaves the law alone: drives and sensors are perfect, but for the gantry and the filters.
 inline config::Scenario with_ideal_device(config::Scenario scenario) {
   scenario.device.control.method = tracking::Method::kDrives;
+  scenario.device.model.actuators.clear();
   config::settle_law(scenario);
   scenario.device.simulation.sensors = simulator::ideal_sensors();
   return scenario;

@@ -96,8 +96,8 @@ inline constexpr double kChangesPerCycleMax = 0.039;
 /// Mean change of the hand's acceleration per cycle, m/s^2: there it was 0.01-0.25 at 1 kHz without
 /// chatter, 13-25 with it. These scenarios are gentler: the bound is in their middle.
 inline constexpr double kAccelerationChangeMax = 0.05;
-/// Rounding, relative to the largest part.
-inline constexpr double kBudgetMax = 1e-9;
+/// Rounding, relative to the largest part; where motors and walls act at once it is 2e-9.
+inline constexpr double kBudgetMax = 1e-8;
 /// N or Nm: hands push with 60 N. Rows that collide push against each other for a cycle or two:
 /// "hand y" and m2 at the end of free space with up to 8 kN (26 kN have been seen with other
 /// ratings). Splits that add up by chance are beyond 1e5.

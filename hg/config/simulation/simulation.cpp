@@ -195,8 +195,8 @@ void load(const std::filesystem::path& path, SourceReader& reader, const Simulat
     describe_rest(loader, draft, device.gantry, device.manipulator);
     check_filters(loader, draft.simulation);
     if (is_base) return;
-    loader.rule(!device.has_torque_drives || draft.simulation.drives.actuators.empty(), "drives",
-                "the device takes torques: its 'actuators' stand in device.yaml");
+    loader.rule(!device.has_actuators || draft.simulation.drives.actuators.empty(),
+                "drives.actuators", "the 'actuators' of this device stand in device.yaml");
     if (draft.urdf.empty()) yield(loader, file, device, draft);
     if (draft.simulation.chain && !device.manipulator.empty() && file.faults.count() == 0) {
       take_plant(loader, device, draft, *draft.simulation.chain);
@@ -223,7 +223,7 @@ SimulationTarget target_of(const DeviceConfig& device) {
   SimulationTarget target = {.handle = model.chain.frame_names()[model.handle],
                              .chain = device.chain_options,
                              .urdf = device.urdf,
-                             .has_torque_drives = !device.model.actuators.empty()};
+                             .has_actuators = !device.model.actuators.empty()};
   for (int i = 0; i < model.n_p + model.n_m; ++i) {
     std::vector<std::string>& names = i < model.n_p ? target.gantry : target.manipulator;
     names.push_back(model.chain.joints()[i].name);
@@ -242,8 +242,9 @@ SimulationConfig ideal_simulation(const DeviceConfig& device) {
 
 PlantKind plant_of(const SimulatedDeviceConfig& device) noexcept {
   if (device.control.method != tracking::Method::kDrives) return PlantKind::kTorqueDrives;
-  return device.simulation.drives.actuators.empty() ? PlantKind::kIdeal
-                                                    : PlantKind::kPositionDrives;
+  const bool is_ideal =
+      device.model.actuators.empty() && device.simulation.drives.actuators.empty();
+  return is_ideal ? PlantKind::kIdeal : PlantKind::kPositionDrives;
 }
 
 SimulatedDeviceConfig load_simulated_device(const std::filesystem::path& file) {

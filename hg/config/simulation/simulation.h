@@ -100,7 +100,7 @@ struct SimulationTarget {
   std::string handle;                            ///< name of the frame H
   model::ChainOptions chain;                     ///< options with which its URDF was read
   std::filesystem::path urdf;
-  bool has_torque_drives = false;  ///< its device.yaml has 'actuators'
+  bool has_actuators = false;  ///< its device.yaml has 'actuators'
 };
 
 /// Loads a simulation. Throws SetupError with all faults of the file, one per line.

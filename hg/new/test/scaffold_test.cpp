@@ -142,7 +142,7 @@ TEST(Scaffold, AMechanismThatShakesIsMadeHeavier) {
       <axis xyz="1 0 0"/><limit lower="-0.5" upper="0.5" velocity="2" effort="100"/></joint>
     <link name="handle"/><joint name="grip" type="fixed"><parent link="bar"/><child link="handle"/>
       <origin xyz="0 0 0.35" rpy="1.5708 0 1.5708"/></joint></robot>)");
-  const auto device = config::load_simulated_device("models/arms/fr3/device.yaml");
+  const auto device = config::load_simulated_device("models/arms/ur5e/device.yaml");
   const TwinDraft draft = draft_twin({urdf, "", ""}, folder.path(), device);
   EXPECT_EQ(draft.problem, "");
   EXPECT_NE(draft.note.find("times as heavy as in its URDF"), std::string::npos) << draft.note;

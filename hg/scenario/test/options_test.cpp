@@ -28,7 +28,7 @@ TEST(Options, EveryPresetSetsTheFourPartsOfTheLaw) {
     const analysis::RunFacts facts = facts_of_scenario(load({.scenario = "door", .law = law}));
     return facts.law + " " + facts.bounds + " " + facts.gantry + " " + facts.braking;
   };
-  EXPECT_EQ(parts(""), "gauss recoverable rule alone");
+  EXPECT_EQ(parts(""), "gauss recoverable rule together");
   EXPECT_EQ(parts("gauss"), "gauss recoverable rule alone");
   EXPECT_EQ(parts("gantry"), "gauss recoverable law alone");
   EXPECT_EQ(parts("together"), "gauss recoverable rule together");

@@ -112,7 +112,7 @@ TEST(GoodDevice, ReportsWhetherLimitsBrakeTogether) {
   };
   EXPECT_EQ(braking("rendering: {braking: together}"), rendering::Braking::kTogether);
   EXPECT_EQ(braking("rendering: {braking: alone}"), rendering::Braking::kAlone);
-  EXPECT_EQ(braking(""), rendering::Braking::kAlone);
+  EXPECT_EQ(braking(""), rendering::Braking::kTogether);
   EXPECT_EQ(
       device_message(13, "rendering: {braking: all}"),
       "device.yaml:13:22: rendering.braking: must be one of alone, together, got 'all', did you "

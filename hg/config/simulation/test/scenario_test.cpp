@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "hg/controller/rendering/catalogue.h"
+#include "hg/core/open_file.h"
 #include "hg/core/test/message_of.h"
+#include "hg/core/test/temporary_folder.h"
 
 namespace hg::config {
 namespace {
@@ -378,6 +380,29 @@ TEST(Scenario, NamesEveryLimitInTheOrderOfTheTasks) {
   EXPECT_EQ(door().limits[19].kind, LimitKind::kTwinJoint);
   EXPECT_EQ(door().limits[19].range.ub, 1.75);
   EXPECT_FALSE(door().limits[18].range.bounded());
+}
+
+TEST(Scenario, DrivesThatFollowPositionsHaveMotorsThatTheLawKnows) {
+  const SimulatedDeviceConfig arm = load_simulated_device("models/arms/ur5e/device.yaml");
+  EXPECT_EQ(arm.control.method, tracking::Method::kDrives);
+  EXPECT_EQ(arm.control.error_max, kInfinity);
+  EXPECT_EQ(arm.model.motors().size(), 6u);
+  EXPECT_TRUE(arm.model.has_rated_accelerations());
+  EXPECT_EQ(plant_of(arm), PlantKind::kPositionDrives);
+  EXPECT_FALSE(door().device.model.has_rated_accelerations());
+
+  std::string text = read_file("models/arms/ur5e/device.yaml", 1'000'000);
+  const std::string control = "control: {method: drives}";
+  text.replace(text.find(control), control.size(), "control: {method: drives, latency_s: 0.01}");
+  const TemporaryFolder folder;
+  for (const char* file : {"ur5e.urdf", "simulation.yaml"}) {
+    folder.write(std::string("ur5e/") + file,
+                 read_file(std::string("models/arms/ur5e/") + file, 1'000'000));
+  }
+  folder.write("handle.yaml", read_file("models/arms/handle.yaml", 1'000'000));
+  const std::string message =
+      message_of([&] { (void)load_device(folder.write("ur5e/device.yaml", text)); });
+  EXPECT_NE(message.find("latency_s"), std::string::npos) << message;
 }
 
 TEST(Scenario, WithoutMotorModelItHasNoMotorLimitsAndTheSameEvents) {

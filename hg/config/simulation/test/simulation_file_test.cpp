@@ -75,11 +75,11 @@ TEST(SimulationFile, DrivesNeedAMotorForEveryJointAndLoopsApart) {
             std::string::npos);
 }
 
-TEST(SimulationFile, ADeviceThatTakesTorquesHasNoPositionDrives) {
+TEST(SimulationFile, ADeviceWithActuatorsOfItsOwnNeedsNoOthers) {
   SimulationTarget device = kDevice;
-  device.has_torque_drives = true;
+  device.has_actuators = true;
   EXPECT_NE(message(std::string(kDrives) + "    lift: *drive\n", device)
-                .find("its 'actuators' stand in device.yaml"),
+                .find("the 'actuators' of this device stand in device.yaml"),
             std::string::npos);
 }
 

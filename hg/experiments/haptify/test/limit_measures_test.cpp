@@ -27,6 +27,7 @@ const config::Scenario& walk() {
 config::Scenario sluggish() {
   config::Scenario scenario = walk();
   scenario.device.control.method = tracking::Method::kDrives;
+  scenario.device.model.actuators.clear();
   config::settle_law(scenario);
   for (CartesianLimit& limit : scenario.device.model.cartesian_limits) {
     for (limits::JointLimits& axis : limit.axes) axis.ddq_max = 1.0;

@@ -67,7 +67,7 @@ TEST(PlanOfRequest, ValuesOutOfRangeAreRefusedAsOnTheCommandLine) {
   EXPECT_EQ(refusal(R"({"priority": 100})"), "--priority: must be from 0 to 99, got 100");
   EXPECT_EQ(refusal(R"({"cpu": -2})"), "--cpu: must be at least 0, got -2");
   EXPECT_EQ(refusal(R"({"law": "gaus"})"),
-            "--law: expected one of gauss, gantry, together, paper, paper_bounds, got 'gaus', did "
+            "--law: expected one of together, gauss, gantry, paper, paper_bounds, got 'gaus', did "
             "you mean 'gauss'?");
   expect_part(refusal(R"({"embedded_in": ["x"]})"), "--embedded-in: expected the origin of a page");
 }
