@@ -58,7 +58,7 @@ safety::MonitoredParts parts_of(const CycleConfig& config, const DeviceModel& de
   const bool is_paper = config.rendering.bounds == rendering::Bounds::kPaper;
   const double heaviest = rendering::felt_mass(twin).mass.ub;
   return {.has_imu = config.estimation.wrench.has_imu,
-          .has_rated_bounds = !is_paper && device.motors().empty(),
+          .has_rated_bounds = !is_paper && device.has_rated_accelerations(),
           .looks_for_shaking = reaction != passivity::Reaction::kOff,
           .stops_shaking = reaction == passivity::Reaction::kAct,
           .twin_mass = std::isfinite(heaviest) ? heaviest : 0.0};
@@ -367,8 +367,10 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
   const double share = ramp_forces(motion, is_held);
   const bool is_braked = motion == Motion::kHold || state_.touch.is_reported;
   const double ramped_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
+  const bool slows_joints = is_stopping(motion) && share == 0.0 && !state_.touch.is_reported;
   rendering_.step({.robot = robot,
                    .braking_rate = is_braked ? kBrakingRate : ramped_rate,
+                   .joint_braking_rate = slows_joints ? kBrakingRate : 0.0,
                    .force_share = share,
                    .handle_speed_max = speed_max() / std::sqrt(3.0),
                    .most_active_sets = most_active_sets(config_.solver_caps, time_s()),

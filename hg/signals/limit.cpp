@@ -52,6 +52,8 @@ std::string_view to_string(LimitCause cause) noexcept {
       return "contradiction";
     case LimitCause::kTorque:
       return "torque";
+    case LimitCause::kWeight:
+      return "weight";
     case LimitCause::kTorqueRate:
       return "torque_rate";
   }

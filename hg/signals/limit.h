@@ -49,6 +49,7 @@ enum class LimitCause : std::uint8_t {
   kContradiction = 7,  ///< limits of the joint contradict: held between them or at the lock
   kTorque = 8,         ///< the motor is at the largest torque available to the law
   kTorqueRate = 9,     ///< the motor's torque cannot change faster, while there is more of it
+  kWeight = 10,        ///< further out the motor could not hold the weight of the arm and a hand
 };
 
 std::string_view to_string(LimitKind kind) noexcept;

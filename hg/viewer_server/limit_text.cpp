@@ -45,6 +45,8 @@ std::string reason(const LimitReport& report) {
       return "all its torque";
     case LimitCause::kTorqueRate:
       return "its torque is building up";
+    case LimitCause::kWeight:
+      return "carries its share of the arm's weight";
     case LimitCause::kNone:
     case LimitCause::kPosition:
       break;

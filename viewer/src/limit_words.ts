@@ -37,6 +37,7 @@ const CAUSES: Record<ActiveLimit["cause"], string> = {
   contradiction: "held between limits that contradict each other",
   torque: "has no more torque",
   torque_rate: "its torque is building up",
+  weight: "carries its share of the arm's weight",
 };
 
 // "end of its range, joint of the device"

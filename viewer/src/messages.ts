@@ -198,7 +198,7 @@ export interface FeltLimit {
 export interface ActiveLimit {
   index: number; // index in Scene.limits
   state: "inactive" | "lower" | "upper" | "violated";
-  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque" | "torque_rate";
+  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque" | "torque_rate" | "weight";
   excess: number; // [rad or m] distance outside the configured range, >= 0
   reaction: number; // [Nm or N] constraint force or torque in the quantity's own coordinate
   text: string;

@@ -63,7 +63,8 @@ double largest_acceleration(const DeviceModel& device, const DeviceMotion& motio
   solver.solve(problem, {}, active, solution);
   const bool holds =
       std::ranges::none_of(std::span(solution.state).subspan(6, n_m), hqp::is_violated);
-  return holds ? std::max(0.0, solution.x[n_m]) : 0.0;
+  const double rated = device.has_rated_accelerations() ? rating(device, direction) : kInfinity;
+  return holds ? std::clamp(solution.x[n_m], 0.0, rated) : 0.0;
 }
 
 }  // namespace hg::rendering

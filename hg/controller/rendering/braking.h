@@ -19,7 +19,7 @@ struct DeviceMotion {
 /// velocity across and about it and every motor within allowed_torque(): M ddq + J ddq_m + h within
 /// its bounds, M of the links, J of the rotors, h of gravity, Coriolis and w_H. 0 where the motors
 /// cannot even hold the handle. Where the law does not model the motors: rating of the handle along
-/// that direction, infinity without one.
+/// that direction, infinity without one; it is the most also for drives that follow positions.
 double largest_acceleration(const DeviceModel& device, const DeviceMotion& motion,
                             const Eigen::Vector3d& direction);
 

@@ -49,11 +49,12 @@ Interval braking_bounds(const Approach& approach, double reserve, Interval bound
 }
 
 JointBraking::JointBraking(const hqp::Problem& tasks, int fixed, int limits, int first_motor,
-                           int motors)
+                           int motors, int between)
     : fixed_(fixed),
       limits_(limits),
       first_motor_(first_motor),
       motors_(motors),
+      between_(between),
       problem_({.variables = tasks.variables() + 1, .levels = 4, .rows = fixed + limits + 1}),
       solver_(problem_.capacity()),
       solution_(problem_.capacity()),
@@ -98,7 +99,8 @@ double JointBraking::reserve(const hqp::Problem& tasks, std::span<const Interval
       problem_.set_bounds(motor_row++, torque[motor]);
       continue;
     }
-    copy(tasks, fixed_ + limit, row, approaches[limit].need);
+    const int from = fixed_ + limit + (motor < 0 ? 0 : between_);
+    copy(tasks, from, row, approaches[limit].need);
     const Interval room = limit < first_motor_ ? joint_room[limit] : approaches[limit].room;
     problem_.set_bounds(row++, {room.lb - known[limit], room.ub - known[limit]});
   }

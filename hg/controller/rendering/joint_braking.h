@@ -46,8 +46,10 @@ Interval braking_bounds(const Approach& approach, double reserve, Interval bound
 class JointBraking {
  public:
   /// Uses `tasks`: rows 0 .. fixed - 1 always hold; then follow the limits, of which `motors` from
-  /// `first_motor` on are rows of motors and not approached.
-  JointBraking(const hqp::Problem& tasks, int fixed, int limits, int first_motor, int motors);
+  /// `first_motor` on are rows of motors and not approached. `between` further rows, which are not
+  /// used, lie behind those of the motors.
+  JointBraking(const hqp::Problem& tasks, int fixed, int limits, int first_motor, int motors,
+               int between = 0);
 
   /// Returns the reserve: at most kMostReserve, 0 where there is no such motion. `tasks` has this
   /// cycle's rows; `torque` holds the bounds of the motors' rows, `approaches` those of all limits
@@ -60,7 +62,7 @@ class JointBraking {
  private:
   void copy(const hqp::Problem& tasks, int from, int to, double need) noexcept;
 
-  int fixed_, limits_, first_motor_, motors_;
+  int fixed_, limits_, first_motor_, motors_, between_;
   hqp::Problem problem_;
   hqp::Solver solver_;
   hqp::Solution solution_;

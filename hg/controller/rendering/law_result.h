@@ -15,6 +15,9 @@ namespace hg::rendering {
 struct LawInput {
   const RobotState& robot;    ///< Measured device and wrench of the user
   double braking_rate = 0.0;  ///< Rate at which the twin is brought to rest, 1/s; 0: not braked
+  /// Rate at which every joint of the manipulator at least slows down, 1/s, with up to a part of
+  /// its rating; in a stop, so that none gets faster while the handle comes to rest.
+  double joint_braking_rate = 0.0;
   /// Share of the user's wrench, the twin's springs, its weight, its reference wrench and the
   /// surfaces around it, 0..1. With it a run against a leaning hand begins and ends without a jump.
   /// 0 with a braking rate: the twin is a body without friction and without the user.

@@ -71,7 +71,7 @@ struct RenderingOptions {
   Law law = Law::kGauss;
   Bounds bounds = Bounds::kRecoverable;
   Gantry gantry = Gantry::kRule;
-  Braking braking = Braking::kAlone;
+  Braking braking = Braking::kTogether;
   double T_C = 20e-3;    ///< horizon of bounds C, s; the period, as printed in (8), bounces
   double kP_tran = 400;  ///< synchronisation (11), 1/s^2; double pole at 20 rad/s with kD
   double kD_tran = 40;   ///< Synchronisation, translational damping, 1/s

@@ -111,7 +111,7 @@ VectorA Reactions::torque_of_device() const noexcept {
 void Reactions::find_active(const Tasks& tasks, const hqp::Solution& solution) noexcept {
   active_count_ = 0;
   for (int i = 0; i < stop_torque_.cols(); ++i) {
-    const int row = tasks.first_limit_row() + device_limits_ + n_a_ + i;
+    const int row = tasks.limit_rows()[device_limits_ + n_a_ + i].row;
     stop_torque_.col(i) =
         Eigen::Map<const Eigen::VectorXd>(tasks.problem().coefficients(row).data(), n_m_ + n_a_)
             .tail(n_a_);
@@ -122,7 +122,7 @@ void Reactions::find_active(const Tasks& tasks, const hqp::Solution& solution) n
   }
   for (const int limit : active()) {
     if (limit >= device_limits_) break;
-    directions_.find(tasks.problem(), tasks.first_limit_row() + limit, limit);
+    directions_.find(tasks.problem(), tasks.acting_row(limit, solution), limit);
   }
 }
 
@@ -235,11 +235,14 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
   result.limit_count = device_limits_ + n_a_;
   for (int limit = 0; limit < result.limit_count; ++limit) {
     const int acting_row = tasks.acting_row(limit, solution);
-    const Interval ddq =
-        acting_row == rows[limit].rating_row ? tasks.problem().bounds(acting_row) : rows[limit].ddq;
+    const bool is_first = acting_row == rows[limit].row;
+    const Interval ddq = is_first ? rows[limit].ddq : tasks.problem().bounds(acting_row);
     LimitReport& report = result.limits[limit];
     report.state = limit_state(solution.state[acting_row], value_[limit]);
-    report.cause = cause_of(rows[limit], ddq, solution.state[acting_row], value_[limit], felt.dt);
+    report.cause =
+        acting_row == rows[limit].holding_row
+            ? LimitCause::kWeight
+            : cause_of(rows[limit], ddq, solution.state[acting_row], value_[limit], felt.dt);
     report.position = rows[limit].q;
     report.to_lower = rows[limit].q - rows[limit].limits.q_min;
     report.to_upper = rows[limit].limits.q_max - rows[limit].q;

@@ -439,6 +439,7 @@ void Rendering::fill_tasks(const LawInput& input, const VectorA& tau,
                .stops = stops_,
                .tau = tau,
                .handle_speed = input.handle_speed_max,
+               .joint_braking_rate = input.joint_braking_rate,
                .is_braked = input.braking_rate > 0.0});
 }
 
@@ -486,7 +487,7 @@ void Rendering::keep_problem(std::uint64_t cycle, double cycle_time_us) noexcept
 bool Rendering::is_blocked() const noexcept {
   const int count = device_.n_m + static_cast<int>(device_.virtual_joints.size());
   for (int i = 0; i < count; ++i) {
-    const std::size_t row = tasks_.first_limit_row() + i;
+    const std::size_t row = tasks_.limit_rows()[i].row;
     if (hqp::is_violated(solution_.state[row])) return true;
   }
   return false;

@@ -13,9 +13,11 @@
 
 namespace hg::rendering {
 
-/// One limit, in catalogue order: limit i is row first_limit_row() + i. With bounds paper a joint
-/// has a second row, for its acceleration rating.
+/// One limit, in catalogue order. With bounds paper a joint has a second row, for its acceleration
+/// rating; where limits brake together a motor has one for the torque that holds the device.
 struct LimitRow {
+  int row = -1;                ///< Row of the problem
+  int holding_row = -1;        ///< Row of a motor's torque at rest; -1 = none
   Interval range;              ///< Configured positions; of the twin as changed, this cycle
   limits::JointLimits limits;  ///< Limits as rendered: with margins, and this cycle's locks
   limits::RecoverableOptions options;
@@ -55,7 +57,8 @@ struct TaskInput {
   VectorA tau;  ///< Sum of all torques on the twin that are not constraints, without c_a
   /// Largest speed of H along each axis of B, where the device limits H, m/s.
   double handle_speed = kInfinity;
-  bool is_braked = false;  ///< The twin is brought to rest, and so is a joint to spare
+  double joint_braking_rate = 0.0;  ///< Rate at which every joint at least slows down, 1/s
+  bool is_braked = false;           ///< The twin is brought to rest, and so is a joint to spare
 };
 
 }  // namespace hg::rendering

@@ -38,6 +38,10 @@ hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
     capacity.levels += 2;
     capacity.rows += 2 * n_m;
   }
+  if (brakes_together(device, options)) {
+    capacity.levels += 1;
+    capacity.rows += n_m;
+  }
   if (const int led = led_axes(device, options); led > 0) {
     capacity.variables += led;
     capacity.levels += 2;
@@ -91,6 +95,15 @@ Interval lasting_room(const LimitRow& row, double time) noexcept {
           std::max(share * (row.limits.q_max - drift), 0.0)};
 }
 
+// Largest speed of a joint at the end of a sample of a stop: it slows down, but of a stretched arm
+// the motors give no more than a part of its rating.
+double speed_in_stop(double dq, double ddq_max, double rate, double dt) noexcept {
+  constexpr double kShare = 0.3;  // of the rating
+  constexpr double kSlow = 0.02;  // rad/s or m/s
+  const double speed = std::abs(dq);
+  return std::max(speed - dt * std::min(rate * speed, kShare * ddq_max), kSlow);
+}
+
 }  // namespace
 
 double stop_rating(const DeviceModel& device) {
@@ -123,6 +136,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOp
       problem_(capacity_of(device, twin, options, stop_count_)),
       coefficients_(problem_.capacity().variables, 0.0) {
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
+  if (brakes_together(device, options)) holding_.emplace(device);
   problem_.clear(problem_.capacity().variables);
   add_levels(device, twin);
 }
@@ -141,7 +155,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   if (brakes_together(device, options_)) {
     const int limits = device.limit_count();
     lasting_.resize(device.motors().size());
-    joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_);
+    joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_, n_m_);
     approaches_.resize(limits);
     joint_room_.resize(first_motor_);
     known_.resize(limits);
@@ -170,13 +184,20 @@ void Tasks::add_device_limits(const DeviceModel& device) {
       limit_rows_.back().is_motor = true;
     }
   }
+  if (holding_) {
+    problem_.add_level();
+    for (int i = 0; i < n_m_; ++i) {
+      LimitRow& motor = limit_rows_[first_motor_ + i];
+      motor.holding_row = problem_.add_row(coefficients_, {}, weight_of(motor));
+    }
+  }
   for (const CartesianLimit& frame : device.cartesian_limits) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
   }
   if (has_torques_) {
     for (LimitRow& row : limit_rows_) {
-      row.options.is_capped = false;
+      row.options.is_capped = device.has_rated_accelerations();
       row.options.tau_onset = kBrakingOnset;
     }
   }
@@ -225,6 +246,14 @@ void Tasks::add_posture(const DeviceModel& device) {
   for (int i = 0; i < n_m_; ++i) problem_.add_bound(i, {});
 }
 
+int Tasks::acting_row(int limit, const hqp::Solution& solution) const noexcept {
+  const LimitRow& row = limit_rows_[limit];
+  for (const int candidate : {row.row, row.rating_row, row.holding_row}) {
+    if (candidate >= 0 && solution.state[candidate] != hqp::RowState::kInactive) return candidate;
+  }
+  return row.row;
+}
+
 double Tasks::weight_of(const LimitRow& row) const noexcept {
   return options_.law == Law::kPaper ? 1.0 : 1.0 / row.rating;
 }
@@ -233,11 +262,8 @@ void Tasks::add_limit(const limits::JointLimits& limits, int variable, double ma
   limit_rows_.push_back(make_row(limits, margin, dt_));
   limit_rows_.back().is_recoverable = options_.bounds == Bounds::kRecoverable;
   const double weight = weight_of(limit_rows_.back());
-  if (variable >= 0) {
-    problem_.add_bound(variable, {}, weight);
-  } else {
-    problem_.add_row(coefficients_, {}, weight);
-  }
+  limit_rows_.back().row = variable >= 0 ? problem_.add_bound(variable, {}, weight)
+                                         : problem_.add_row(coefficients_, {}, weight);
 }
 
 void Tasks::add_rating(int limit, int variable) {
@@ -253,6 +279,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   fill_device_limits(device, input);
   if (has_torques_) fill_motors(device, input);
   if (joint_braking_) brake_together();
+  if (holding_) keep_holding(device, input);
   fill_twin_limits(twin, input);
   if (stop_count_ > 0) fill_stops(input);
 
@@ -310,7 +337,7 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
   } else {
     row.ddq = limits::bounds_C(limits, q, dq, options_.T_C);
   }
-  problem_.set_bounds(first_limit_row() + limit,
+  problem_.set_bounds(limit_rows_[limit].row,
                       {row.ddq.lb - known_acceleration, row.ddq.ub - known_acceleration});
 }
 
@@ -318,7 +345,7 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
 void Tasks::hold(int limit, double ddq) noexcept {
   LimitRow& row = limit_rows_[limit];
   row.ddq = {ddq, ddq};
-  problem_.set_bounds(first_limit_row() + limit, row.ddq);
+  problem_.set_bounds(limit_rows_[limit].row, row.ddq);
   if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, row.ddq);
 }
 
@@ -326,14 +353,21 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   const ReferenceState& reference = input.reference;
   int limit = 0;
   for (; limit < n_m_; ++limit) {
-    set_limit(limit, limit_rows_[limit].limits, reference.q_m[limit], reference.dq_m[limit], 0.0);
+    limits::JointLimits limits = limit_rows_[limit].limits;
+    limits.dq_max = device.joint_limits[limit].dq_max;
+    if (input.joint_braking_rate > 0.0) {
+      const double slower =
+          speed_in_stop(reference.dq_m[limit], limits.ddq_max, input.joint_braking_rate, dt_);
+      limits.dq_max = std::min(limits.dq_max, slower);
+    }
+    set_limit(limit, limits, reference.q_m[limit], reference.dq_m[limit], 0.0);
   }
 
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (const VirtualJoint& joint : device.virtual_joints) {
     row.head(n_m_) = joint.weights;
-    problem_.set_row(first_limit_row() + limit, coefficients_);
+    problem_.set_row(limit_rows_[limit].row, coefficients_);
     set_limit(limit, limit_rows_[limit].limits, joint.weights.dot(reference.q_m),
               joint.weights.dot(reference.dq_m), 0.0);
     ++limit;
@@ -351,7 +385,7 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
     for (int axis = 0; axis < 3; ++axis) {
       row.head(n_m_) = J.row(axis).segment(device.n_p, n_m_);
       row.tail(n_g_) = J.row(axis).head(n_g_);
-      problem_.set_row(first_limit_row() + limit, coefficients_);
+      problem_.set_row(limit_rows_[limit].row, coefficients_);
       limits::JointLimits limits = limit_rows_[limit].limits;
       limits.dq_max = frame.axes[axis].dq_max;
       if (frame.frame == device.handle) limits.dq_max = std::min(limits.dq_max, input.handle_speed);
@@ -381,7 +415,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   row.setZero();
   for (int i = 0; i < n_m_; ++i) {
     if (!are_torques_known_) {
-      problem_.set_bounds(first_limit_row() + first_motor_ + i, {});
+      problem_.set_bounds(limit_rows_[first_motor_ + i].row, {});
       continue;
     }
     const ActuatorModel& motor = device.motors()[i];
@@ -390,7 +424,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     row.head(n_m_) = M.row(i).segment(device.n_p, n_m_) / inertia;
     row[i] = 1.0;
     row.tail(n_g_) = M.row(i).head(n_g_) / inertia;
-    problem_.set_row(first_limit_row() + first_motor_ + i, coefficients_);
+    problem_.set_row(limit_rows_[first_motor_ + i].row, coefficients_);
     Interval torque = allowed_torque(motor, dq);
     if (joint_braking_) {
       lasting_[i] = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
@@ -403,7 +437,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     limit.inertia = inertia;
-    problem_.set_bounds(first_limit_row() + first_motor_ + i, limit.ddq);
+    problem_.set_bounds(limit_rows_[first_motor_ + i].row, limit.ddq);
   }
 }
 
@@ -437,8 +471,36 @@ void Tasks::brake_together() noexcept {
     if (row.is_motor) continue;
     row.ddq =
         braking_bounds(approaches_[i], braking_reserve_, row.ddq, row.limits, row.options, row.dq);
-    problem_.set_bounds(first_limit_row() + static_cast<int>(i),
-                        {row.ddq.lb - row.known, row.ddq.ub - row.known});
+    problem_.set_bounds(limit_rows_[i].row, {row.ddq.lb - row.known, row.ddq.ub - row.known});
+  }
+}
+
+// Keeps the device where its motors can hold its weight, and a hand besides: the weight on a motor
+// approaches its share of the torque as d exp(-t / kHoldingTime). Beyond it nothing moves outward.
+void Tasks::keep_holding(const DeviceModel& device, const TaskInput& input) noexcept {
+  constexpr double kShare = 0.7;          // of the allowed torque; the rest is for hand and braking
+  constexpr double kNear = 0.6;           // of that; with less the row is not needed
+  constexpr double kHoldingTime = 0.1;    // s
+  constexpr double kOnset = 0.03;         // s, in which the rate is reached
+  constexpr double kLeastGradient = 1.0;  // Nm/rad; below it no posture is easier to hold
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  for (int i = 0; i < n_m_; ++i) {
+    const int holding_row = limit_rows_[first_motor_ + i].holding_row;
+    const double most = kShare * allowed_torque(device.motors()[i], 0.0).ub;
+    const double weight = input.device_chain.gravity()[device.n_p + i];
+    problem_.set_bounds(holding_row, {});
+    if (!are_torques_known_ || std::abs(weight) < kNear * most) continue;
+    const VectorM gradient =
+        holding_->gradient(stacked(input.robot.q_p, input.reference.q_m), input.device_chain, i);
+    const double scale = gradient.norm();
+    if (scale < kLeastGradient) continue;
+    row.head(n_m_) = gradient / scale;
+    problem_.set_row(holding_row, coefficients_);
+    const double rate = gradient.dot(input.reference.dq_m);
+    const auto rate_max = [](double d) { return std::max(d, 0.0) / kHoldingTime; };
+    problem_.set_bounds(holding_row, {(-rate_max(most + weight) - rate) / (kOnset * scale),
+                                      (rate_max(most - weight) - rate) / (kOnset * scale)});
   }
 }
 
@@ -507,11 +569,11 @@ void Tasks::fill_stops(const TaskInput& input) noexcept {
     const Stop& stop = input.stops[i];
     if (stop.surface < 0) {
       limit_rows_[first + i].ddq = {};
-      problem_.set_bounds(first_limit_row() + first + i, {});
+      problem_.set_bounds(limit_rows_[first + i].row, {});
       continue;
     }
     row.segment(n_m_, n_a_) = stop.row;
-    problem_.set_row(first_limit_row() + first + i, coefficients_);
+    problem_.set_row(limit_rows_[first + i].row, coefficients_);
     limits::JointLimits limits = limit_rows_[first + i].limits;
     limits.ddq_max = stop.rating;
     set_limit(first + i, limits, stop.distance, stop.speed, stop.bias);
@@ -565,7 +627,7 @@ void Tasks::find_motor_torques(const hqp::Solution& solution) noexcept {
   motor_torque_.resize(n_m_);
   for (int i = 0; i < n_m_; ++i) {
     LimitRow& limit = limit_rows_[first_motor_ + i];
-    const std::span<const double> row = problem_.coefficients(first_limit_row() + first_motor_ + i);
+    const std::span<const double> row = problem_.coefficients(limit_rows_[first_motor_ + i].row);
     const double ddq = Eigen::Map<const Eigen::VectorXd>(row.data(), problem_.variables()).dot(x);
     limit.q = motor_torque_[i] = known_torque_[i] + limit.inertia * ddq;
   }
@@ -584,7 +646,7 @@ bool Tasks::keeps_joints(const hqp::Solution& solution) const noexcept {
 // the first `count` limits
 bool Tasks::keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept {
   for (int limit = 0; limit < count; ++limit) {
-    for (const int row : {first_limit_row() + limit, limit_rows_[limit].rating_row}) {
+    for (const int row : {limit_rows_[limit].row, limit_rows_[limit].rating_row}) {
       if (row < 0 || problem_.level_of(row) < solution.completed_levels) continue;
       if (!(std::abs(solution.slack[row]) <= tolerance)) return false;
     }
@@ -595,7 +657,7 @@ bool Tasks::keeps(const hqp::Solution& solution, int count, double tolerance) co
 TouchedEnds Tasks::touched_ends(const hqp::Solution& solution) const noexcept {
   TouchedEnds touched;
   for (std::size_t i = 0; i < limit_rows_.size(); ++i) {
-    for (const int row : {first_limit_row() + static_cast<int>(i), limit_rows_[i].rating_row}) {
+    for (const int row : {limit_rows_[i].row, limit_rows_[i].rating_row}) {
       if (row < 0) continue;
       touched.lower[i] = touched.lower[i] || touches_lower(problem_, row, solution.x);
       touched.upper[i] = touched.upper[i] || touches_upper(problem_, row, solution.x);

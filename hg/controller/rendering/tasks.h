@@ -23,6 +23,7 @@
 #include <optional>
 #include <vector>
 
+#include "hg/controller/rendering/holding.h"
 #include "hg/controller/rendering/joint_braking.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/paper_law.h"
@@ -67,13 +68,8 @@ class Tasks {
   int stop_count() const noexcept { return stop_count_; }
   /// Number of limit rows from first_limit_row() on: bounds, then acceleration ratings.
   int limit_row_count() const noexcept { return limit_row_count_; }
-  /// The row of limit `limit` that acts in `solution`: the first one, unless only its rating does.
-  int acting_row(int limit, const hqp::Solution& solution) const noexcept {
-    const int row = first_limit_row() + limit;
-    const int rating_row = limit_rows_[limit].rating_row;
-    const bool acts = solution.state[row] != hqp::RowState::kInactive;
-    return acts || rating_row < 0 ? row : rating_row;
-  }
+  /// The row of limit `limit` that acts in `solution`: the first one, unless only another does.
+  int acting_row(int limit, const hqp::Solution& solution) const noexcept;
   /// Computes the motor torques of `solution`, which solves problem().
   void find_motor_torques(const hqp::Solution& solution) noexcept;
   /// Motor torques found by find_motor_torques(), Nm or N: n_m, or empty where the law does not
@@ -115,6 +111,7 @@ class Tasks {
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void brake_together() noexcept;
+  void keep_holding(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
   bool keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept;
   void fill_gantry(const TaskInput& input) noexcept;
@@ -156,7 +153,8 @@ class Tasks {
   std::vector<double> known_;  ///< Accelerations of these limits without the unknowns
   std::vector<Interval> lasting_, joint_room_;  ///< Of motors once reached; of joints up to walls
   double braking_reserve_ = kMostReserve;
-  std::optional<PaperLaw> paper_;  ///< law paper only
+  std::optional<Holding> holding_;  ///< only where limits brake together
+  std::optional<PaperLaw> paper_;   ///< law paper only
 };
 
 }  // namespace hg::rendering

@@ -83,7 +83,6 @@ TEST(PassivityRun, LeavesTheScenariosAlone) {
                                          {"scenarios/walk"},
                                          {"scenarios/path"},
                                          {"scenarios/surfaces"},
-                                         {"stress/light_fast"},
                                          {"stress/heavy"},
                                          {"scenarios/walk", 1.0},
                                          {"scenarios/walk", 2.0},

@@ -339,6 +339,9 @@ class Thrown {
   }
 };
 
+constexpr RenderingOptions kAlone = {.braking = Braking::kAlone};
+constexpr RenderingOptions kTogether;
+
 void expect_same_bounds(const Tasks& a, const Tasks& b) {
   ASSERT_EQ(a.problem().rows(), b.problem().rows());
   for (int row = 0; row < a.problem().rows(); ++row) {
@@ -349,7 +352,7 @@ void expect_same_bounds(const Tasks& a, const Tasks& b) {
 
 TEST(BrakingTogether, OrElseEachLimitKeepsItsOwnBounds) {
   const Thrown thrown;
-  const Tasks tasks = thrown.tasks({});
+  const Tasks tasks = thrown.tasks(kAlone);
   EXPECT_EQ(tasks.braking_reserve(), kMostReserve);
   for (std::size_t i = 0; i < 6; ++i) {
     const LimitRow& row = tasks.limit_rows()[i];
@@ -362,7 +365,7 @@ TEST(BrakingTogether, OrElseEachLimitKeepsItsOwnBounds) {
 
 TEST(BrakingTogether, BeginsEarlierWhereMotorsAreWeakerThanRatings) {
   const Thrown thrown;
-  const Tasks alone = thrown.tasks({}), together = thrown.tasks({.braking = Braking::kTogether});
+  const Tasks alone = thrown.tasks(kAlone), together = thrown.tasks(kTogether);
   EXPECT_GT(together.braking_reserve(), 0.0);
   EXPECT_LT(together.braking_reserve(), 1.6);
   for (int row = together.first_limit_row(); row < together.first_limit_row() + 6; ++row) {
@@ -381,7 +384,7 @@ TEST(BrakingTogether, AJointThatMeetsItsEndOnTheWayBrakesNoWall) {
     thrown.device.cartesian_limits = {
         {.name = "hand", .frame = thrown.device.handle, .axes = {}, .margin = 0.0}};
     thrown.device.cartesian_limits[0].axes[1] = {y - 0.3, y + 0.3, 3.0, 5.0};
-    return thrown.tasks({.braking = Braking::kTogether}).braking_reserve();
+    return thrown.tasks(kTogether).braking_reserve();
   };
   constexpr double kFar = 3.0, kOnTheWay = 1.5;  // rad; even this is no end that is near
   ASSERT_LT(reserve(kFar), kMostReserve);
@@ -391,17 +394,16 @@ TEST(BrakingTogether, AJointThatMeetsItsEndOnTheWayBrakesNoWall) {
 TEST(BrakingTogether, EqualsBrakingAloneWithoutMotorModel) {
   Thrown thrown;
   thrown.device.has_torque_limits = false;
-  const RenderingOptions together = {.braking = Braking::kTogether};
-  EXPECT_FALSE(brakes_together(thrown.device, together));
-  expect_same_bounds(thrown.tasks(together), thrown.tasks({}));
+  EXPECT_FALSE(brakes_together(thrown.device, kTogether));
+  expect_same_bounds(thrown.tasks(kTogether), thrown.tasks(kAlone));
 }
 
 TEST(BrakingTogether, IsOnlyForLawGaussWithRecoverableBounds) {
   const DeviceModel device = Thrown().device;
-  EXPECT_TRUE(brakes_together(device, {.braking = Braking::kTogether}));
-  EXPECT_FALSE(brakes_together(device, {}));
-  EXPECT_FALSE(brakes_together(device, {.law = Law::kPaper, .braking = Braking::kTogether}));
-  EXPECT_FALSE(brakes_together(device, {.bounds = Bounds::kPaper, .braking = Braking::kTogether}));
+  EXPECT_TRUE(brakes_together(device, kTogether));
+  EXPECT_FALSE(brakes_together(device, kAlone));
+  EXPECT_FALSE(brakes_together(device, {.law = Law::kPaper}));
+  EXPECT_FALSE(brakes_together(device, {.bounds = Bounds::kPaper}));
 }
 
 }  // namespace

@@ -447,6 +447,31 @@ TEST(Rendering, AStepMakesNoAllocation) {
   EXPECT_EQ(result.solver_status, SolverStatus::kSolved);
 }
 
+// Even joints whose motion is none of the twin's.
+TEST(Rendering, SlowsDownEveryJointInAStop) {
+  DeviceModel device = unlimited_device();
+  for (limits::JointLimits& limits : device.joint_limits) limits.ddq_max = 20.0;
+  TwinModel twin =
+      unlimited_twin(model::ChainModel::free_body({.mass = 5.0}, {.gravity = false}), "handle");
+  twin.q_start = floating_at(handle_pose(device, kGantryAtHome, kPosture));
+  Rendering rendering(device, twin, without_synchronisation());
+  RenderingState state = rendering.start(kPosture);
+  state.reference.dq_m = posture({1.5, -2.0, 2.5, 1.0, -0.5, 0.0});
+  LawResult result;
+  for (int k = 0; k < 700; ++k) {
+    const RobotState robot = robot_with(kGantryAtHome, state.reference.q_m, Vector6::Zero());
+    const VectorM before = state.reference.dq_m.cwiseAbs();
+    rendering.step(
+        {.robot = robot, .braking_rate = 20.0, .joint_braking_rate = 20.0, .force_share = 0.0},
+        state, result);
+    rendering.integrate(state);
+    for (int i = 0; i < 6; ++i) {
+      EXPECT_LE(std::abs(state.reference.dq_m[i]), std::max(before[i], 0.02) + 1e-9) << i;
+    }
+  }
+  EXPECT_LT(state.reference.dq_m.lpNorm<Eigen::Infinity>(), 0.03);
+}
+
 TEST(Rendering, RefusesModelsThatDoNotFitTogether) {
   DeviceModel device = unlimited_device();
   device.joint_limits.pop_back();
