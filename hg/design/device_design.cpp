@@ -274,8 +274,8 @@ void set_joints(const safety::MonitorConfig& monitor, const UrdfChange& change,
     const auto k = static_cast<std::size_t>(i);
     device.set("joints." + joint_name(i) + ".ddq_max_rad_per_s2", arms.ddq_max[k]);
     set_actuator(device, joint_name(i), drives.actuators[k]);
-    take(need, safety::stopping_need(change.links[k].velocity, arms.ddq_max[k]));
-    take(old_need, safety::stopping_need(old.joint_limits[k].dq_max, arms.old_ddq_max[k]));
+    take(need, safety::stopping_need(change.links[k].velocity, arms.ddq_max[k], 0.0));
+    take(old_need, safety::stopping_need(old.joint_limits[k].dq_max, arms.old_ddq_max[k], 0.0));
   }
   device.set("monitor.stop_distance_rad",
              three_digits(monitor.stop_distance * need.distance / old_need.distance));

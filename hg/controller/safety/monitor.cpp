@@ -15,6 +15,7 @@ namespace {
 constexpr double kClockMemory = 0.02;       // share of the newest sample in the clock's mean error
 constexpr double kClockErrorMax = 1e6;      // of one sample, periods: one wild stamp is forgotten
 constexpr double kPullMemory_s = 0.2;       // time constant of forgetting shifts of the reference
+constexpr double kRampMemory_s = 1.0;       // of a joint that is off its braking ramp
 constexpr double kGapMemory_s = 2.0;        // time constant of forgetting errors of the drive model
 constexpr double kDriftMemory_s = 60.0;     // the same for slow drift
 constexpr double kDriveError = 0.005;       // allowed drift of a drive, share of its way
@@ -77,6 +78,7 @@ Monitor::Monitor(const MonitorConfig& config, const DeviceModel& device,
       n_p_(device.n_p),
       n_m_(device.n_m),
       dt_(device.dt()),
+      lag_(drive_lag(device.follows_positions)),
       drive_(device.drive),
       gantry_range_(device.gantry_range),
       joint_limits_(device.joint_limits),
@@ -277,15 +279,19 @@ void Monitor::check_braking(const Rendered& rendered, const Watched& watched,
   } else {
     state.ramp_speed += dt_ * rendered.reference.ddq_m;
     state.braking_ramp += dt_ * state.ramp_speed;
+    // a joint that a hand held back for a moment, and that brakes since, is no fault
+    state.braking_ramp += dt_ / kRampMemory_s * (robot.q_m - state.braking_ramp);
     state.braking_ramp_p += dt_ * state.dq_p_model;
   }
   for (int i = 0; i < n_m_; ++i) {
     const bool is_slide = is_slide_[i];
+    const double gap = is_slide ? config_.slide_braking_gap : config_.braking_gap;
+    const double off = is_slide ? config_.slide_braking_deviation : config_.braking_deviation;
+    const limits::JointLimits& rated = joint_limits_[i];
     look<FaultCode::kBrakingPosition>(i, std::abs(robot.q_m[i] - state.braking_ramp[i]),
-                                      is_slide ? config_.slide_braking_gap : config_.braking_gap);
-    look<FaultCode::kBrakingSpeed>(
-        i, std::abs(robot.dq_m[i] - state.ramp_speed[i]),
-        is_slide ? config_.slide_braking_deviation : config_.braking_deviation);
+                                      gap + (lag_ > 0.0 ? lag_ * rated.dq_max : 0.0));
+    look<FaultCode::kBrakingSpeed>(i, std::abs(robot.dq_m[i] - state.ramp_speed[i]),
+                                   off + (lag_ > 0.0 ? lag_ * rated.ddq_max : 0.0));
     look<FaultCode::kStopTooFar>(i, std::abs(robot.q_m[i] - state.stop_from[i]),
                                  kUntilBrakes * config_.stop_distance_of_joint(is_slide));
   }

@@ -79,8 +79,7 @@ struct Watched {
 
 struct MonitorResult {
   Fault fault;  ///< Broken rule with the hardest reaction, or kNone
-  /// Shaking of hand and device, if detected; otherwise the rule nearest to its threshold, once
-  /// beyond its warning level. kNone without either.
+  /// Shaking of hand and device, or the rule nearest to its threshold beyond its warning level.
   Fault warning;
 };
 
@@ -133,6 +132,7 @@ class Monitor {
   MonitoredParts parts_;
   int n_p_, n_m_;
   double dt_;         ///< Period, s
+  double lag_;        ///< Time by which drives that follow positions are behind their reference, s
   DriveModel drive_;  ///< Drive of every gantry axis
   std::vector<Interval> gantry_range_;
   std::vector<limits::JointLimits> joint_limits_;
