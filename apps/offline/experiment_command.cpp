@@ -20,6 +20,7 @@
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/campaign.h"
+#include "apps/offline/hands_command.h"
 #include "apps/offline/paper_experiment_command.h"
 #include "apps/offline/subcommand.h"
 #include "hg/config/simulation/scenario.h"
@@ -372,7 +373,8 @@ void add_experiment(Command app, int& exit_code) {
       "  hapticgiant experiment contact           the arm hits a person in its way\n"
       "  hapticgiant experiment inertial --simulation harder\n"
       "  hapticgiant experiment impedance --device arm.yaml\n"
-      "  hapticgiant experiment seeds free_space --hands own,stiff --count 16");
+      "  hapticgiant experiment seeds free_space --hands own,stiff --count 16\n"
+      "  hapticgiant experiment hands fr3/move_tool --force 30");
   add_paper_experiments(command, exit_code);
   const auto add = [&](const char* name, const char* text, int (*run)(const ExperimentArguments&)) {
     const Command what = command.add_subcommand(name, text);
@@ -396,6 +398,7 @@ void add_experiment(Command app, int& exit_code) {
   add_contact(command, exit_code);
   add_inertial(command, exit_code);
   add_seeds(command, exit_code);
+  add_hands(command, exit_code);
 }
 
 }  // namespace hg::apps
