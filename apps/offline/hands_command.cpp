@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,13 +15,11 @@
 #include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/scenario_options.h"
 #include "apps/hapticgiant/version.h"
-#include "hg/core/error.h"
+#include "hg/core/whole_file.h"
 #include "hg/experiments/hand_search.h"
 
 namespace hg::apps {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct HandsArguments {
   experiments::HandSearch search;
@@ -34,9 +31,7 @@ int experiment_hands(HandsArguments arguments) {
   experiments::HandSearch& search = arguments.search;
   search.folder = arguments.folder;
   check_report_program();  // before minutes of runs
-  std::error_code error;
-  fs::create_directories(search.folder, error);
-  if (error) throw SetupError(search.folder.string() + ": cannot be made: " + error.message());
+  make_folder(arguments.folder);
   print_out(fmt::format("HapticGiant {}  {} hands of up to {:g} N, seed {}\n\n", kVersion,
                         search.count, search.force, search.seed));
   const std::vector<experiments::TriedHand> tried =

@@ -99,8 +99,7 @@ void describe_control(V& v, DeviceDraft& d) {
       "actuators", d.joint_names, "a joint of the URDF",
       [&](auto& child, int index) { describe(child, d.joints[index].actuator.emplace()); },
       "motors and gears of all joints of the manipulator, or of none: without them the drives "
-      "follow "
-      "positions, and the law does not know their torques");
+      "follow positions, and the law does not know their torques");
   v.rule(v.is_given("actuators") || !v.is_given("control"), "control",
          "concerns 'actuators', and there are none");
   if (v.is_given("actuators")) {

@@ -195,11 +195,11 @@ void take_model(model::ChainModel chain, DeviceDraft& draft) {
 void state_stopping(DeviceConfig& device) {
   constexpr double kSpare = 1.25;
   safety::MonitorConfig& monitor = device.monitor;
+  const double lag = safety::drive_lag(device.model.follows_positions);
   std::array<double, 2> need{};  // of revolute and prismatic joints
   for (std::size_t i = 0; i < device.model.joint_limits.size(); ++i) {
     const limits::JointLimits& joint = device.model.joint_limits[i];
     double& most = need[device.model.is_slide(static_cast<int>(i)) ? 1 : 0];
-    const double lag = safety::drive_lag(device.control.method == tracking::Method::kDrives);
     most = std::max(most, safety::stopping_need(joint.dq_max, joint.ddq_max, lag).distance);
   }
   const double gantry = safety::stopping_need(device.model.drive).distance;
@@ -274,8 +274,8 @@ DeviceConfig load_device(const std::filesystem::path& path, SourceReader& reader
     if (!tool->has_dead_man) device.start_test.has_input[kDeadMan] = false;
   }
   take_model(std::move(*chain), draft);
-  state_stopping(device);
   settle_law(device);
+  state_stopping(device);
   if (draft.watches_collisions) watch_collisions(*urdf, draft);
   device.sources = reader.since(first_source);
   device.places = std::move(file.places);

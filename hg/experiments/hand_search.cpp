@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
+#include <nlohmann/json.hpp>
 
-#include "hg/core/error.h"
 #include "hg/core/random.h"
+#include "hg/core/whole_file.h"
 
 namespace hg::experiments {
 namespace {
@@ -94,13 +94,6 @@ std::string person_yaml(const DrawnHand& hand) {
   return text + fmt::format("duration_s: {:.2f}\n", duration_of(hand));
 }
 
-void write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw SetupError(path.string() + ": cannot be written");
-}
-
 std::filesystem::path person_file(const HandSearch& search, const std::string& name) {
   return search.folder / (name + "_person.yaml");
 }
@@ -110,17 +103,20 @@ std::filesystem::path scenario_file(const HandSearch& search, const std::string&
 }
 
 std::string quoted_path(const std::string& file) {
-  return "'" + std::filesystem::absolute(file).lexically_normal().string() + "'";
+  using Json = nlohmann::json;
+  return Json(std::filesystem::absolute(file).lexically_normal().string())
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 config::Scenario load_hand(const HandSearch& search, const config::Scenario& base,
                            const std::string& name, const DrawnHand& hand) {
-  write(person_file(search, name), person_yaml(hand));
-  write(scenario_file(search, name),
-        fmt::format("title: {}\ndescription: A hand that pulls far beyond the reach of {}.\n"
-                    "device: {}\ntwin: {}\nperson: {}_person.yaml\nduration_s: {:.2f}\n",
-                    name, base.device.name, quoted_path(base.device.sources.front().name),
-                    quoted_path(base.twin.sources.front().name), name, duration_of(hand)));
+  write_whole_file(person_file(search, name).string(), person_yaml(hand));
+  write_whole_file(
+      scenario_file(search, name).string(),
+      fmt::format("title: {}\ndescription: A hand that pulls far beyond the reach of {}.\n"
+                  "device: {}\ntwin: {}\nperson: {}_person.yaml\nduration_s: {:.2f}\n",
+                  name, base.device.name, quoted_path(base.device.sources.front().name),
+                  quoted_path(base.twin.sources.front().name), name, duration_of(hand)));
   scenario::ScenarioOptions options = search.world;
   options.scenario = scenario_file(search, name).string();
   options.device.clear();
