@@ -17,7 +17,6 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -27,11 +26,12 @@ import time
 import soak
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-sys.path[1:1] = [str(ROOT / "tests" / part) for part in ("ethercat", "franka", "remote")]
+sys.path[1:1] = [str(ROOT / "tests" / part) for part in ("ethercat", "franka", "packages", "remote")]
 import bus  # noqa: E402
 import harness  # noqa: E402
 import machine_test  # noqa: E402
 import remote_commands_test  # noqa: E402
+from environment import that_lets_late_cycles_pass  # noqa: E402
 
 SKIPPED = 77
 RATE = 1000  # Hz, of each of these machines
@@ -54,15 +54,9 @@ def before_other_programs():
         os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
-def that_lets_late_cycles_pass(model, name, folder):
+def that_is_busy(file, folder):
     """Arguments for the device of this file, without rule 203."""
-    copy = pathlib.Path(shutil.copytree(ROOT / "models" / model, folder / model), name)
-    text = copy.read_text()
-    if "\nmonitor:\n" not in text:
-        text += "\nmonitor:\n"
-    keys = "".join(f"  {key}: 100000\n" for key in ("overruns_in_a_row", "overruns_per_s"))
-    copy.write_text(text.replace("\nmonitor:\n", "\nmonitor:\n" + keys))
-    return ["--device", copy]
+    return ["--device", that_lets_late_cycles_pass(ROOT / "models" / file, folder)]
 
 
 class Udp:
@@ -73,7 +67,7 @@ class Udp:
 
     def start(self, stack, folder, is_busy):
         self.server = stack.enter_context(remote_commands_test.Server("walk"))
-        device = that_lets_late_cycles_pass("haptic_giant", "device.yaml", folder) if is_busy else []
+        device = that_is_busy("haptic_giant/device.yaml", folder) if is_busy else []
         return ["--device-address", self.server.address, *device]
 
     def uncounted(self, summary):
@@ -97,7 +91,7 @@ class Ethercat:
         stack.enter_context(machine_test.segment(plant=address))
         if is_busy:
             return ["--device-address", f"ethercat://{bus.MASTER_END}",
-                    *that_lets_late_cycles_pass("haptic_giant", "device.yaml", folder)]
+                    *that_is_busy("haptic_giant/device.yaml", folder)]
         file = folder / "machine.yaml"
         file.write_text(machine_test.that_keeps_time())
         return ["--device-address", f"ethercat://{bus.MASTER_END}", "--machine", file,
@@ -118,7 +112,7 @@ class Franka:
         self.counts = folder / "robot.json"
         port = stack.enter_context(harness.robot("--pull", "3", "--counts", self.counts,
                                                  *([harness.TOLERANT] if is_busy else [])))
-        device = (that_lets_late_cycles_pass("arms/fr3", "fci.yaml", folder) if is_busy
+        device = (that_is_busy("arms/fr3/fci.yaml", folder) if is_busy
                   else ["--device", "fr3/fci"])
         return [*device, "--device-address", f"franka://127.0.0.1:{port}", "--despite", "lateness"]
 

@@ -11,6 +11,8 @@ import shutil
 import subprocess
 import sys
 
+from environment import that_lets_late_cycles_pass
+
 EXAMPLES = pathlib.Path("examples/cpp").resolve()
 DRIVER = pathlib.Path("examples/driver/cpp").resolve()
 MOVED = re.compile(r"the joints have moved by up to 1\.[4-6][0-9] rad in 2[0-9]{3} cycles")
@@ -106,24 +108,34 @@ def check_own_machine(both, models):
     check(not found, f"own_machine has {found[:3]}")
 
 
+def drive(driver, arm, program):
+    """What a server for this machine and a run of two seconds on it print."""
+    server = subprocess.Popen([driver, arm, "127.0.0.1:0", "--simulated"], text=True,
+                              stdout=subprocess.PIPE)
+    try:
+        address = server.stdout.readline().strip()
+        ran = subprocess.run([program, "run", "free_space", "--device", arm, "--device-address", address,
+                              "--duration", "2", "--no-viewer", "--no-recording"], text=True,
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    finally:
+        server.terminate()
+    served = server.communicate()[0]
+    check(server.returncode == 0, f"my_driver ended with {server.returncode}")
+    return served, ran.stdout
+
+
 def check_driver(work, path, tree, models):
     """The same machine behind a server of its own project, and our program as its controller."""
     driver = work / "driver"
     configure(driver, path, source=DRIVER)
     run("cmake", "--build", driver)
-    arm = models / "examples" / "arm.yaml"
-    server = subprocess.Popen([driver / "my_driver", arm, "127.0.0.1:0", "--simulated"], text=True,
-                              stdout=subprocess.PIPE)
-    try:
-        address = server.stdout.readline().strip()
-        summary = run(tree / "hapticgiant", "run", "free_space", "--device", arm,
-                      "--device-address", address, "--duration", "2", "--no-viewer", "--no-recording")
-    finally:
-        server.terminate()
-    served = server.communicate()[0]
+    arm = that_lets_late_cycles_pass(models / "examples" / "arm.yaml", driver)
+    for _ in range(3):  # a busy computer may keep one of both for longer than the other waits
+        served, summary = drive(driver / "my_driver", arm, tree / "hapticgiant")
+        if "silent" not in served + summary:
+            break
     check(re.search(r"^[0-9]+ periods for hapticgiant", served, re.MULTILINE), f"served: {served}")
-    check(server.returncode == 0, f"my_driver ended with {server.returncode}")
-    check("limits       all held" in summary, f"run on my_driver: {summary}")
+    check("limits       all held" in summary and "FAULT" not in summary, f"my_driver: {summary}")
     refused = run(driver / "my_driver", arm, "nowhere", fails=True)
     check("HOST:PORT" in refused, f"my_driver: {refused}")
 
