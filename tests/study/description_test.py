@@ -6,8 +6,10 @@ import importlib.util
 import itertools
 import json
 import math
+import os
 import pathlib
 import re
+import shutil
 import tempfile
 import threading
 import unittest
@@ -336,12 +338,15 @@ class Faults(unittest.TestCase):
         def answer(out):
             next((out / "sub-P02").glob("*.json")).write_text("{}")
 
+        def trial(out):
+            (out / "sub-P02" / "sub-P02_task-light_run-1_trial.json").write_text("[1]")
+
         def table(out):
             refused(out)
             (out / "answers.csv").write_bytes(b"participant\nP01\n\xff")
 
         for damage, note in ((refused, "did you mean 'within'"), (no_text, "cannot be read"), (edited, "holds another study"),
-                             (no_description, "JSONDecodeError"), (answer, "KeyError"), (table, "answers.csv is deleted")):
+                             (no_description, "dataset_description.json: is damaged"), (answer, "'condition' is missing"), (trial, "_trial.json: is damaged"), (table, "answers.csv is deleted")):
             with tempfile.TemporaryDirectory() as path, self.subTest(damage.__name__):
                 file = self.answered(path)
                 out = file.with_suffix(".study")
@@ -365,6 +370,48 @@ class Faults(unittest.TestCase):
                 self.assertEqual({line.split("  ")[1] for line in lines},
                                  {str(each.relative_to(out)) for each in out.rglob("*")
                                   if each.is_file() and not each.name.startswith(".") and each.name != "hashes.sha256"})
+
+    def test_links_and_pipes_of_a_folder_from_elsewhere_lead_nowhere(self):
+        def link(out, name, target):
+            folder_there = out / name
+            if folder_there.is_dir():
+                shutil.rmtree(folder_there)
+            folder_there.unlink(missing_ok=True)
+            folder_there.symlink_to(target)
+
+        def pipe(out, name, _):
+            (out / name).unlink(missing_ok=True)
+            os.mkfifo(out / name)
+
+        with tempfile.TemporaryDirectory() as path:
+            file = self.answered(path)
+            out, victim, elsewhere = file.with_suffix(".study"), pathlib.Path(path) / "victim", pathlib.Path(path) / "else"
+            elsewhere.mkdir()
+            (elsewhere / "kept").write_text("kept")
+            for name, damage, use in ((".lock", link, "forget"), (".lock", pipe, "forget"), (".tables", link, "tabulate"),
+                                      (".tables", pipe, "tabulate"), ("code", link, "write"), (".running", link, "forget"),
+                                      ("sub-P01", link, "forget")):
+                with self.subTest(name=name, damage=damage.__name__):
+                    victim.write_text("kept")
+                    damage(out, name, victim if name.startswith((".lock", ".tables")) else elsewhere)
+                    there = folder.Folder.as_it_was(file, None)
+                    uses = {"forget": lambda: there.forget("P01"), "tabulate": there.tabulate,
+                            "write": lambda: there.replace(out / "code" / "analysis.py", "")}
+                    if name in (".running", "sub-P01"):  # the link goes, and all else stays
+                        uses[use]()
+                        self.assertFalse((out / name).is_symlink())
+                    else:
+                        with self.assertRaisesRegex(folder.FolderError, f"{name}: "):
+                            uses[use]()
+                        (out / name).unlink()
+                    self.assertEqual(victim.read_text(), "kept")
+                    self.assertEqual([each.name for each in elsewhere.iterdir()], ["kept"])
+
+    def test_what_people_did_is_for_one_user(self):
+        with tempfile.TemporaryDirectory() as path:
+            out = self.answered(path).with_suffix(".study")
+            for each in [out, *out.rglob("*")]:
+                self.assertEqual(each.stat().st_mode & 0o077, 0, each)
 
     def test_a_folder_that_is_none_is_left_alone(self):
         with tempfile.TemporaryDirectory() as path:

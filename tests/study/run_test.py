@@ -311,6 +311,10 @@ class StudyRun(unittest.IsolatedAsyncioTestCase):
                 await running.operator.socket.send_str(text)
             self.assertIn("no such command", await running.operator.ask("operator"))
             self.assertIn("no such command", await running.participant.ask("start"))
+            with self.assertRaises(aiohttp.WSServerHandshakeError) as refused:
+                for _ in range(16):
+                    await running.page("participant")
+            self.assertEqual(refused.exception.status, 503)
             again = await asyncio.create_subprocess_exec(*running.command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             _, said = await again.communicate()
             self.assertEqual(again.returncode, 2)

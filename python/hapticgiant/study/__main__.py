@@ -310,6 +310,7 @@ def main(words):
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGTERM, interrupt)
+    os.umask(os.umask(0o077) | 0o077)  # what people did is for this user alone
     try:
         return exit_code_of("study", lambda: run(arguments),
                             (InputError, FolderError, ExpressionError, TrialError, MarkerError))

@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import errno
 import fcntl
 import io
 import json
@@ -30,6 +31,7 @@ import os
 import pathlib
 import re
 import shutil
+import stat
 import threading
 
 from hapticgiant.study import markers, questionnaires, trials
@@ -45,6 +47,8 @@ WITH_FILES = ("trial", "form")  # kinds of steps that leave a file
 LOCK = ".lock"
 ASIDE = "aside"
 TRIAL = "_trial.json"
+OF_TRIAL = ("position", "condition", "repetition", "measures", "exit_code", "state_hash", "recording_sha256", "recording")
+OF_FORM = ("condition", "form", "answers", "pairs")
 NOTE = re.compile(r"sub-\w+_note-([0-9]+)\.json")
 PARTIAL = re.compile(r"\..+\.[0-9]+")  # a file that is being written, see _put()
 WITHDRAWN = "withdrawn.json"
@@ -125,13 +129,13 @@ class Folder:
 
     def description(self) -> dict:
         try:
-            return json.loads((self.path / DESCRIPTION).read_text(encoding="utf-8"))
+            return _read(self.path / DESCRIPTION, "Study", "Simulated", "Model")
         except FileNotFoundError:
             raise FolderError(f"{self.path}: holds no study; hapticgiant study simulate makes one") from None
 
     def begin(self, version: str, is_simulated: bool, model: str = "") -> None:
         """Makes the folder, or checks that it is of this study; only one process may write there."""
-        self.path.mkdir(parents=True, exist_ok=True)
+        self.path.mkdir(mode=0o700, parents=True, exist_ok=True)
         is_ours = self.exists() or (self.path / LOCK).exists()  # also one whose begin was interrupted
         if not is_ours and any(not each.name.startswith(".") for each in self.path.iterdir()):
             raise FolderError(f"{self.path}: is no study and not empty: take another --out")
@@ -143,16 +147,31 @@ class Folder:
         if self.exists():
             self.require(description)
         else:
-            shutil.copyfile(self.study.file, self.path / STUDY)
+            self.replace(self.path / STUDY, self.study.file.read_bytes())
             people = "Its people are simulated." if is_simulated else "Its people took part in person."
             self.replace(self.path / "README.md",
                          README.format(title=self.study.title, version=version, people=people))
             self.replace(self.path / ".bidsignore", "".join(f"{each}\n" for each in BIDS_IGNORE))
             self.write(self.path / DESCRIPTION, trials.dump(description))
-        shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # what a crash has left
+        _remove(self.path / RUNNING)  # what a crash has left
+
+    def _open_lock(self, name):
+        """A file to lock, for this user alone. A folder from elsewhere may have a link or a pipe under this name: its target
+        is neither emptied nor waited for."""
+        file = self.path / name
+        try:
+            descriptor = os.open(file, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC, 0o600)
+        except OSError as error:
+            if error.errno not in (errno.ELOOP, errno.ENXIO, errno.EISDIR):
+                raise
+        else:
+            if stat.S_ISREG(os.fstat(descriptor).st_mode):
+                return os.fdopen(descriptor, "r+", encoding="utf-8")
+            os.close(descriptor)
+        raise FolderError(f"{file}: expected a file that only this program makes; remove it")
 
     def _take(self):
-        self._lock = open(self.path / LOCK, "w", encoding="utf-8")
+        self._lock = self._open_lock(LOCK)
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -165,7 +184,7 @@ class Folder:
         entered again by its own thread."""
         with self._inner:
             if self._depth == 0:
-                self._tables = open(self.path / ".tables", "w", encoding="utf-8")
+                self._tables = self._open_lock(".tables")
                 fcntl.flock(self._tables, fcntl.LOCK_EX)
             self._depth += 1
             try:
@@ -198,11 +217,13 @@ class Folder:
         self._put(file, text, replaces=True)
 
     def _put(self, file, text, replaces=False):
-        file.parent.mkdir(parents=True, exist_ok=True)
+        self._require_inside(file)
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         partial = file.with_name(f".{file.name}.{os.getpid()}")
         data = text.encode() if isinstance(text, str) else text
         try:
-            with open(partial, "wb") as out:
+            partial.unlink(missing_ok=True)
+            with open(partial, "xb", opener=lambda name, flags: os.open(name, flags, 0o600)) as out:
                 out.write(data)
                 out.flush()
                 os.fsync(out.fileno())
@@ -220,6 +241,14 @@ class Folder:
                 partial.unlink()
         _flush(file.parent)
 
+    def _require_inside(self, file):
+        """Raises FolderError where a link leads out of the folder."""
+        for folder in file.parents:
+            if folder == self.path:
+                return
+            if folder.is_symlink():
+                raise FolderError(f"{folder}: is a link, and what it leads to is not of the study; remove it")
+
     def stem(self, code: str, step: Step) -> pathlib.Path:
         """The beginning of the names of a step's files."""
         task = f"_task-{step.condition}" if step.condition else ""
@@ -234,7 +263,8 @@ class Folder:
         """Moves the files of a trial aside, with the reason. The trial's own file goes first: without it the trial is not done."""
         stem = self.stem(code, step)
         folder = stem.parent / ASIDE
-        folder.mkdir(parents=True, exist_ok=True)
+        self._require_inside(folder / stem.name)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         number = 1
         while any(folder.glob(f"{stem.name}_aside-{number}_*")):
             number += 1
@@ -248,7 +278,8 @@ class Folder:
         """Moves a file of a trial that has ended to where it stays; its new place."""
         stem = self.stem(code, step)
         target = stem.with_name(f"{stem.name}_{tail}")
-        target.parent.mkdir(parents=True, exist_ok=True)
+        self._require_inside(target)
+        target.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         _flush(file)
         os.replace(file, target)
         _flush(target.parent)
@@ -271,11 +302,11 @@ class Folder:
         """The remarks of the operator, in their order."""
         files = {int(found[1]): file for file in (self.path / f"sub-{code}").glob("*_note-*.json")
                  if (found := NOTE.fullmatch(file.name))}
-        return [json.loads(files[number].read_text(encoding="utf-8")) for number in sorted(files)]
+        return [_read(files[number]) for number in sorted(files)]
 
     def withdrawn(self) -> list[str]:
         try:
-            return json.loads((self.path / WITHDRAWN).read_text(encoding="utf-8"))
+            return _read(self.path / WITHDRAWN, kind=list)
         except FileNotFoundError:
             return []
 
@@ -309,15 +340,13 @@ class Folder:
             count = sum(1 for file in folder.rglob("*") if file.is_file())
             # first the note: a crash in between must not let somebody play under this code again
             self.replace(self.path / WITHDRAWN, trials.dump(sorted({*self.withdrawn(), code})))
-            if folder.exists():
-                shutil.rmtree(folder)
-            shutil.rmtree(self.path / RUNNING, ignore_errors=True)  # trials and files of a program that was killed
+            _remove(folder)
+            _remove(self.path / RUNNING)  # trials and files of a program that was killed
             for file in list(self.path.rglob(".*")):
                 if PARTIAL.fullmatch(file.name):
                     file.unlink(missing_ok=True)
             for name in REPORTS:
-                target = self.path / name
-                shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
+                _remove(self.path / name)
             for name in TABLES:
                 (self.path / f"{name}.parquet").unlink(missing_ok=True)
             lost = [note for name in TABLES if (note := self._filter(self.path / f"{name}.csv", code))]
@@ -358,7 +387,7 @@ class Folder:
         study, found = self.study, {name: [] for name in TABLES}
         for participant in self.participants():
             folder, code, out = self.path / f"sub-{participant.code}", participant.code, 0
-            played = sorted((json.loads(file.read_text(encoding="utf-8")) for file in folder.glob(f"*{TRIAL}")),
+            played = sorted((_read(file, *OF_TRIAL) for file in folder.glob(f"*{TRIAL}")),
                             key=lambda each: each["position"])
             for each in played:
                 why = trials.excluded(study, each["measures"], each["exit_code"])
@@ -373,7 +402,7 @@ class Folder:
                 "participant": code, "order": " ".join(participant.conditions), "trials": len(played),
                 "excluded_trials": out, "put_aside": len({file.name.rpartition("_")[0] for file in (folder / ASIDE).glob("*")}), "excluded": why})
             for file in sorted(folder.glob("*_answers.json")):
-                each = json.loads(file.read_text(encoding="utf-8"))
+                each = _read(file, *OF_FORM)
                 common = {"participant": code, "condition": each["condition"], "form": each["form"]}
                 for kind, values in (("answer", each["answers"]), ("pair", each["pairs"]),
                                      ("score", questionnaires.scores_of(study.forms[each["form"]], each["answers"],
@@ -466,7 +495,10 @@ class Folder:
         """Writes hashes.sha256 of every file, in the form that sha256sum reads."""
         known = {}  # of recordings, which are large and never change
         for file in self.path.glob(f"sub-*/**/*{TRIAL}"):
-            trial = json.loads(file.read_text(encoding="utf-8"))
+            try:
+                trial = _read(file, *OF_TRIAL)
+            except FolderError:  # damaged; it has a hash all the same
+                continue
             if trial["recording"]:
                 known[file.with_name(file.name.removesuffix(TRIAL) + "_recording.mcap")] = trial["recording_sha256"]
         lines = []
@@ -476,6 +508,27 @@ class Folder:
                 continue
             lines.append(f"{known.get(file) or trials.digest_of(file)}  {inner}\n")
         self.replace(self.path / "hashes.sha256", "".join(lines))
+
+
+def _read(file, *keys, kind=dict):
+    """What a file of the study holds. Raises FolderError where it is damaged, or lacks one of the keys."""
+    try:
+        found = json.loads(file.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError) as error:
+        raise FolderError(f"{file}: is damaged: {error}") from None
+    if not isinstance(found, kind):
+        raise FolderError(f"{file}: is damaged: expected {'an object' if kind is dict else 'a list'}")
+    if lost := [key for key in keys if key not in found]:
+        raise FolderError(f"{file}: is damaged: '{lost[0]}' is missing")
+    return found
+
+
+def _remove(path):
+    """Deletes a file, a link or a folder, if it is there. What a link leads to stays."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _flush(path):

@@ -21,6 +21,7 @@ from hapticgiant.study.folder import FolderError
 PROTOCOL = "hapticgiant-study"
 LARGEST_MESSAGE = 1 << 18  # bytes
 MOST_WAITING = 64  # commands of a page
+MOST_SOCKETS = 16  # pages that are open at a time
 LIVE_PERIOD_S = 0.2
 PATIENCE_S = 1.0  # with a page that takes no messages
 PAGES = ("operator", "participant")
@@ -113,6 +114,8 @@ class Server:
             raise web.HTTPForbidden(text="the link has another token\n")
         if origin != f"http://{request.host}":
             raise web.HTTPForbidden(text="a page of another server\n")
+        if sum(map(len, self._sockets.values())) >= MOST_SOCKETS:
+            raise web.HTTPServiceUnavailable(text="too many pages are open\n")
         socket = web.WebSocketResponse(protocols=(PROTOCOL,), max_msg_size=LARGEST_MESSAGE, heartbeat=10)
         await socket.prepare(request)
         self._sockets[name][socket] = request
