@@ -29,6 +29,15 @@ bool is_replaced(const std::string& file) {
   return type == fs::file_type::regular || type == fs::file_type::not_found;
 }
 
+// The name under which a file is written until it is whole. A link or pipe of that name, in a
+// foreign folder, is removed: what it leads to is not written.
+std::string partial_of(const std::string& file) {
+  std::string partial = file + ".partial";
+  std::error_code error;
+  if (!is_replaced(partial)) fs::remove(partial, error);
+  return partial;
+}
+
 bool is_whole(const OpenFile& file, std::string_view text, bool (*is_interrupted)() noexcept) {
   auto patient_until = Clock::time_point::max();
   while (!text.empty()) {
@@ -71,7 +80,7 @@ void check_writable(const std::string& file, std::string_view beginning) {
     open_to_write(file, Content::kKept);
     return;
   }
-  const std::string partial = file + ".partial";
+  const std::string partial = partial_of(file);
   const bool existed = fs::exists(partial, error);
   open_to_write(partial, Content::kKept);
   if (!existed) fs::remove(partial, error);
@@ -80,7 +89,7 @@ void check_writable(const std::string& file, std::string_view beginning) {
 void write_whole_file(const std::string& file, std::string_view text,
                       bool (*is_interrupted)() noexcept) {
   const bool replaces = is_replaced(file);
-  const std::string written = replaces ? file + ".partial" : file;
+  const std::string written = replaces ? partial_of(file) : file;
   const bool is_written = is_whole(open_to_write(written, Content::kEmptied), text, is_interrupted);
   std::error_code error;
   if (is_written && replaces) fs::rename(written, file, error);

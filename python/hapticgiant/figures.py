@@ -504,6 +504,8 @@ def save(out, paint):
         figure = Figure()
         FigureCanvasAgg(figure)
         paint(figure)
+        for name in ("figure.svg", "figure.png"):  # a link there leads nowhere
+            (out / name).unlink(missing_ok=True)
         figure.savefig(out / "figure.svg", metadata={"Date": None, "Creator": None},
                        bbox_inches="tight", pad_inches=0.04)
         figure.savefig(out / "figure.png", dpi=200, metadata={"Software": None},

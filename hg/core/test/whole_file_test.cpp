@@ -35,6 +35,19 @@ TEST(WholeFile, AFileOfAnotherKindIsNotReplaced) {
   EXPECT_EQ(message_of([&] { check_writable("", kJson); }), "no error");
 }
 
+TEST(WholeFile, ALinkInPlaceOfThePartialFileLeadsNowhere) {
+  const TemporaryFolder folder;
+  const std::string victim = folder.write("victim", "kept").string();
+  const std::string file = (folder.path() / "file.json").string();
+  std::filesystem::create_symlink(victim, file + ".partial");
+  check_writable(file, kJson);
+  std::filesystem::create_symlink(victim, file + ".partial");
+  write_whole_file(file, "{}");
+  EXPECT_EQ(read_file(victim), "kept");
+  EXPECT_EQ(read_file(file), "{}");
+  EXPECT_EQ(folder.names(), (Names{"file.json", "victim"}));
+}
+
 TEST(WholeFile, AFolderIsMadeUnlessAFileIsThere) {
   const TemporaryFolder folder;
   make_folder((folder.path() / "a" / "b").string());
