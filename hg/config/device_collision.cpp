@@ -122,6 +122,7 @@ void watch_collisions(const UrdfText& text, DeviceDraft& draft) {
   collision.pairs = collision::choose_pairs(collision.shapes, chain, range,
                                             collision.safe_distance + collision::kFarEnough);
   leave_out(draft, urdf, collision);
+  device.model.keeps_apart = !collision.pairs.watched.empty();
 }
 
 }  // namespace hg::config

@@ -357,6 +357,14 @@ double CycleStages::ramp_forces(Motion motion, bool is_held) noexcept {
   return share;
 }
 
+// What the law keeps apart: from the reference, which is what it accelerates.
+CollisionTask CycleStages::keep_apart(Motion motion, const RobotState& robot) noexcept {
+  if (!is_moving(motion) || !rendering_.device().keeps_apart) return {};
+  const ReferenceState& reference = state_.rendering.reference;
+  return guard_.keep_apart(stacked(robot.q_p, reference.q_m), stacked(robot.dq_p, reference.dq_m),
+                           state_.collision);
+}
+
 // Accelerations of device and twin, and their causes. The law also runs while the device stands
 // still: limits and the distance of handle and twin are shown, the distance is checked before
 // arming, and the first motion starts with the active set. Its accelerations are then not used.
@@ -375,7 +383,8 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
                    .handle_speed_max = speed_max() / std::sqrt(3.0),
                    .most_active_sets = most_active_sets(config_.solver_caps, time_s()),
                    .gantry = gantry.task,
-                   .cycle = state_.cycle},
+                   .cycle = state_.cycle,
+                   .collision = keep_apart(motion, robot)},
                   state_.rendering, law_);
   rendering_.gantry_room(state_.room.down, state_.room.up);
   state_.is_blocked = is_moving(motion) && rendering_.is_blocked();

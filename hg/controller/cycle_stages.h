@@ -81,6 +81,7 @@ class CycleStages {
   Supervision supervise(const SensorFrame& sensors, const OperatorFrame& operator_input) noexcept;
   RobotState estimate(const SensorFrame& sensors) noexcept;
   collision::Prediction look_ahead(const SensorFrame& sensors, const RobotState& robot) noexcept;
+  CollisionTask keep_apart(Motion motion, const RobotState& robot) noexcept;
   Motion decide(bool is_usable, bool must_brake) const noexcept;
   VectorM place_reference(Motion motion, const RobotState& robot) noexcept;
   GantryAim preposition(Motion motion, const RobotState& robot) noexcept;

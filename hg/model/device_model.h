@@ -55,6 +55,7 @@ struct DeviceModel {
   bool has_torque_limits = false;
   std::vector<VirtualJoint> virtual_joints;
   std::vector<CartesianLimit> cartesian_limits;  ///< Cartesian limits, highest priority first
+  bool keeps_apart = false;  ///< Whether a row of the law keeps the device's shapes apart
   /// Goals of the manipulator joints (n_m; empty: none), NaN = no goal. The gantry moves so that
   /// they are reached; a manipulator with more joints than the task needs moves there on its own.
   VectorM posture;
@@ -70,7 +71,8 @@ struct DeviceModel {
   /// Number of catalogue entries that belong to the device.
   int limit_count() const noexcept {
     return n_m +
-           static_cast<int>(virtual_joints.size() + motors().size() + 3 * cartesian_limits.size());
+           static_cast<int>(virtual_joints.size() + motors().size() + 3 * cartesian_limits.size()) +
+           (keeps_apart ? 1 : 0);
   }
   const std::string& manipulator_joint(int i) const { return chain.joints()[n_p + i].name; }
   /// Whether a manipulator joint is prismatic.

@@ -62,7 +62,10 @@ bool Clearance::prove(const Body& a, std::size_t i, const Body& b, std::size_t k
 
   int left = kMost;
   const coal::DistanceRequest request;
-  const auto travel = [&](const Cell& cell, int n) { return levers[first + n] * cell.half[n]; };
+  // all of the mesh is within the radius
+  const auto travel = [&](const Cell& cell, int n) {
+    return (levers[first + n] + shape.radius) * cell.half[n];
+  };
   // sets the bound; false when the meshes are too near in the middle
   const auto measure = [&](Cell& cell) {
     for (int n = 0; n < 2; ++n) q[first + n] = cell.middle[n];

@@ -14,6 +14,8 @@ std::string_view to_string(LimitKind kind) noexcept {
       return "motor";
     case LimitKind::kTwinJoint:
       return "twin";
+    case LimitKind::kSelfCollision:
+      return "self_collision";
   }
   return "unknown";
 }

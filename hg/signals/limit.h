@@ -13,17 +13,19 @@
 namespace hg {
 
 /// Kind of a limit, in the order of the catalogue: device first, then twin; within these by the
-/// priorities of [HG] Table II, motors between virtual joints and frames.
+/// priorities of [HG] Table II, motors between virtual joints and frames, self-collision behind
+/// them.
 enum class LimitKind : std::uint8_t {
   kManipulatorJoint = 0,
   kVirtualJoint = 1,
   kMotor = 2,  ///< motor torque of the manipulator; without distances to its ends
   kCartesian = 3,
   kTwinJoint = 4,
+  kSelfCollision = 5,  ///< foreseen distance of the device's shapes beyond the safe one; last of it
 };
 
 inline constexpr int kMaxLimits =
-    2 * kMaxManipulator + kMaxVirtualJoints + 3 * kMaxCartesianFrames + kMaxTwin;
+    2 * kMaxManipulator + kMaxVirtualJoints + 3 * kMaxCartesianFrames + 1 + kMaxTwin;
 
 /// One limited quantity. Its LimitReport has the same index as its entry in the catalogue.
 struct LimitInfo {

@@ -108,6 +108,30 @@ TEST(ElasticThrow, LimitsThatBrakeTogetherHoldInCorners) {
   }
 }
 
+// A wrist that turns fast passes near its own forearm all the time. That is no collision ahead, and
+// the law does not let it become one.
+TEST(ElasticFastHand, OfAnArmMeetsNoCollisionAhead) {
+  bool was_held = false;
+  for (const char* file : {"tests/scenarios/fast/fr3.yaml", "tests/scenarios/fast/ur5e.yaml"}) {
+    SCOPED_TRACE(file);
+    const config::Scenario scenario = scenario::load({.scenario = file, .law = "together"});
+    ASSERT_TRUE(scenario.device.model.keeps_apart);
+    ScenarioRun run(scenario);
+    bool is_near = false;
+    const std::size_t limit = scenario.device.model.limit_count() - 1;
+    run.play([&](const Sample& sample) {
+      is_near = is_near || sample.record.limits[limit].to_lower < 0.03;
+      was_held = was_held || sample.record.limits[limit].state == LimitState::kLower;
+    });
+    EXPECT_EQ(run.summary().fault().code, FaultCode::kNone)
+        << to_string(run.summary().fault().code);
+    EXPECT_EQ(run.quality().allocations, 0u);
+    EXPECT_TRUE(is_near);
+    expect_limits_held_in_truth(run);
+  }
+  EXPECT_TRUE(was_held);
+}
+
 TEST(ElasticSeeds, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
   constexpr double kSeconds = 3.0;
   const Case first = {"door", 1000.0, {}, 1};

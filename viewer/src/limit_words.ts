@@ -24,6 +24,7 @@ const KINDS: Record<SceneLimit["kind"], string> = {
   cartesian: "wall of the workspace",
   motor: "motor of the device",
   twin: "joint of the twin",
+  self_collision: "the device would hit itself or the floor",
 };
 
 const CAUSES: Record<ActiveLimit["cause"], string> = {

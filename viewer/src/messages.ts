@@ -67,7 +67,7 @@ export interface SceneFollower {
 // a limited quantity
 export interface SceneLimit {
   name: string;
-  kind: "manipulator" | "virtual" | "motor" | "cartesian" | "twin";
+  kind: "manipulator" | "virtual" | "motor" | "cartesian" | "twin" | "self_collision";
   unit: "rad" | "m"; // unit of the position; the reaction has that of a torque or of a force
   min: number | null; // [rad or m] lower end; null = unbounded
   max: number | null; // [rad or m] upper end; null = unbounded

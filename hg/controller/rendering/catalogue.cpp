@@ -31,6 +31,9 @@ LimitCatalogue make_catalogue(const DeviceModel& device, const TwinModel& twin) 
                            range_of(limit.axes[axis])});
     }
   }
+  if (device.keeps_apart) {
+    catalogue.push_back({LimitKind::kSelfCollision, "self-collision", false, {}});
+  }
   for (const TwinDof& dof : twin.dofs) {
     catalogue.push_back({LimitKind::kTwinJoint, dof.name, dof.is_angle, range_of(dof.limits)});
   }
@@ -49,6 +52,7 @@ std::vector<std::string> repeated_names(const LimitCatalogue& catalogue) {
 LimitPositions::LimitPositions(const DeviceModel& device)
     : virtual_joints_(device.virtual_joints),
       motors_(device.motors().size()),
+      keeps_apart_(device.keeps_apart),
       chain_(device.chain) {
   for (const CartesianLimit& limit : device.cartesian_limits) frames_.push_back(limit.frame);
 }
@@ -62,6 +66,7 @@ void LimitPositions::find(const VectorP& q_p, const VectorM& q_m, std::vector<do
     const Eigen::Vector3d p = chain_.pose(frame).p;
     positions.insert(positions.end(), p.begin(), p.end());
   }
+  if (keeps_apart_) positions.push_back(0.0);  // has no position
 }
 
 }  // namespace hg::rendering

@@ -31,6 +31,7 @@ class LimitPositions {
  private:
   std::vector<VirtualJoint> virtual_joints_;
   std::size_t motors_;
+  bool keeps_apart_;
   std::vector<int> frames_;  ///< Frames with Cartesian limits
   model::ChainData chain_;   ///< Device in the posture of the last find()
 };

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "hg/signals/collision_task.h"
 #include "hg/signals/gantry_task.h"
 #include "hg/signals/state.h"
 
@@ -27,8 +28,9 @@ struct LawInput {
   double handle_speed_max = kInfinity;
   /// Cap on active sets of a solve, where smaller than in the options; 0 = none.
   std::uint32_t most_active_sets = 0;
-  GantryTask gantry = {};   ///< Accelerations with which the law may lead the gantry
-  std::uint64_t cycle = 0;  ///< Number of the cycle under which its problem is kept
+  GantryTask gantry = {};        ///< Accelerations with which the law may lead the gantry
+  std::uint64_t cycle = 0;       ///< Number of the cycle under which its problem is kept
+  CollisionTask collision = {};  ///< What the law keeps apart
 };
 
 /// What the law found in one cycle, recorded but for the accelerations.

@@ -440,7 +440,8 @@ void Rendering::fill_tasks(const LawInput& input, const VectorA& tau,
                .tau = tau,
                .handle_speed = input.handle_speed_max,
                .joint_braking_rate = input.joint_braking_rate,
-               .is_braked = input.braking_rate > 0.0});
+               .is_braked = input.braking_rate > 0.0,
+               .collision = input.collision});
 }
 
 // Solves the problem, and keeps it where that fails or is slow.

@@ -8,6 +8,7 @@
 #include "hg/core/interval.h"
 #include "hg/limits/acceleration_bounds.h"
 #include "hg/model/chain_data.h"
+#include "hg/signals/collision_task.h"
 #include "hg/signals/gantry_task.h"
 #include "hg/signals/state.h"
 
@@ -59,6 +60,7 @@ struct TaskInput {
   double handle_speed = kInfinity;
   double joint_braking_rate = 0.0;  ///< Rate at which every joint at least slows down, 1/s
   bool is_braked = false;           ///< The twin is brought to rest, and so is a joint to spare
+  CollisionTask collision = {};     ///< What is kept apart; with infinite distance nothing
 };
 
 }  // namespace hg::rendering

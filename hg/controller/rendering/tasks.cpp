@@ -16,6 +16,8 @@ constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its
 constexpr double kJumped = 1.5;              // times the speed of a motor without load
 constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
 
+constexpr double kApartMargin = 3e-3;  // m, of shapes beyond the distance at which a stop begins
+
 int led_axes(const DeviceModel& device, const RenderingOptions& options) noexcept {
   return leads_gantry(device, options) ? device.n_p : 0;
 }
@@ -25,7 +27,7 @@ hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
   const int n_m = device.n_m, n_a = twin.chain.nv();
   const int limits = device.limit_count() + n_a + stops;
   const int frames = static_cast<int>(device.cartesian_limits.size());
-  hqp::Capacity capacity{.variables = n_m + n_a, .levels = 5 + frames, .rows = 6 + limits + n_a};
+  hqp::Capacity capacity{.variables = n_m + n_a, .levels = 6 + frames, .rows = 6 + limits + n_a};
   if (options.bounds == Bounds::kPaper) {
     capacity.levels += 2;
     capacity.rows += n_m + n_a;
@@ -153,7 +155,7 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   add_twin_limits(device, twin);
   limit_row_count_ = problem_.rows() - first_limit_row();
   if (brakes_together(device, options_)) {
-    const int limits = device.limit_count();
+    const int limits = device.limit_count() - (device.keeps_apart ? 1 : 0);
     lasting_.resize(device.motors().size());
     joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_, n_m_);
     approaches_.resize(limits);
@@ -194,6 +196,12 @@ void Tasks::add_device_limits(const DeviceModel& device) {
   for (const CartesianLimit& frame : device.cartesian_limits) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
+  }
+  if (device.keeps_apart) {
+    constexpr double kRating = 10.0;  // m/s^2; scales the row
+    problem_.add_level();
+    add_limit({.q_min = kApartMargin, .ddq_max = kRating}, -1, 0.0);
+    limit_rows_.back().range = {};  // what is foreseen is not left
   }
   if (has_torques_) {
     for (LimitRow& row : limit_rows_) {
@@ -280,6 +288,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   if (has_torques_) fill_motors(device, input);
   if (joint_braking_) brake_together();
   if (holding_) keep_holding(device, input);
+  if (device.keeps_apart) keep_apart(device, input.collision);
   fill_twin_limits(twin, input);
   if (stop_count_ > 0) fill_stops(input);
 
@@ -502,6 +511,30 @@ void Tasks::keep_holding(const DeviceModel& device, const TaskInput& input) noex
     problem_.set_bounds(holding_row, {(-rate_max(most + weight) - rate) / (kOnset * scale),
                                       (rate_max(most - weight) - rate) / (kOnset * scale)});
   }
+}
+
+// Keeps the device where braking joint by joint does not bring its shapes too near each other: the
+// smallest distance on that way shrinks by at most kApartRate times what is left of it. Braking
+// itself never shrinks it, so that joints within their ratings can always meet this row.
+void Tasks::keep_apart(const DeviceModel& device, const CollisionTask& task) noexcept {
+  constexpr double kApartRate = 20.0;  // 1/s
+  constexpr double kLeast = 1e-3;      // s m/rad; a smaller change does not depend on accelerations
+  LimitRow& limit = limit_rows_[device.limit_count() - 1];
+  limit.q = task.distance;
+  limit.dq = task.rate;
+  limit.ddq = {};
+  problem_.set_bounds(limit.row, {});
+  if (!joint_braking_ || !std::isfinite(task.distance)) return;
+  const double scale = task.per_acceleration.lpNorm<Eigen::Infinity>();
+  if (!(scale > kLeast)) return;
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  row.head(n_m_) = task.per_acceleration.tail(n_m_) / scale;
+  row.tail(n_g_) = task.per_acceleration.head(n_g_) / scale;
+  problem_.set_row(limit.row, coefficients_);
+  limit.known = task.per_acceleration.head(device.n_p).dot(ddq_p_) / scale;
+  limit.ddq.lb = (-kApartRate * (task.distance - limit.limits.q_min) - task.rate) / scale;
+  problem_.set_bounds(limit.row, {.lb = limit.ddq.lb - limit.known});
 }
 
 void Tasks::fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept {

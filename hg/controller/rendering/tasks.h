@@ -8,7 +8,7 @@
 ///   then            manipulator joints
 ///   then            virtual joints (singularity)
 ///   then            torques of the motors, where the law models them; motor_torque.h
-///   then            Cartesian limits, a level per frame
+///   then            Cartesian limits, a level per frame, then self-collision
 ///   then            twin joints and locks, virtual surfaces that are stops
 ///   bounds paper    acceleration ratings of the manipulator joints, then of the twin joints
 ///   law gauss       L^T ddq_a = L^-1 tau with M_a = L L^T; x = (ddq_m, ddq_a, ddq_p)
@@ -75,8 +75,7 @@ class Tasks {
   /// Motor torques found by find_motor_torques(), Nm or N: n_m, or empty where the law does not
   /// model the motors.
   const VectorM& motor_torque() const noexcept { return motor_torque_; }
-  /// Whether the gantry's accelerations are unknowns.
-  bool leads_gantry() const noexcept { return n_g_ > 0; }
+  bool leads_gantry() const noexcept { return n_g_ > 0; }  ///< Its accelerations are unknowns
   /// Gantry accelerations demanded by a solution, n_p; only where leads_gantry().
   VectorP gantry_acceleration(const hqp::Solution& solution) const noexcept {
     return Eigen::Map<const Eigen::VectorXd>(solution.x.data() + n_m_ + n_a_, n_g_);
@@ -112,6 +111,7 @@ class Tasks {
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void brake_together() noexcept;
   void keep_holding(const DeviceModel& device, const TaskInput& input) noexcept;
+  void keep_apart(const DeviceModel& device, const CollisionTask& task) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
   bool keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept;
   void fill_gantry(const TaskInput& input) noexcept;

@@ -84,7 +84,7 @@ Monitor::Monitor(const MonitorConfig& config, const DeviceModel& device,
       joint_limits_(device.joint_limits),
       actuators_(device.actuators),
       is_gantry_slide_(device.is_gantry_slide()),
-      end_cartesian_(device.limit_count()),
+      end_cartesian_(device.limit_count() - (device.keeps_apart ? 1 : 0)),
       first_cartesian_(end_cartesian_ - 3 * static_cast<int>(device.cartesian_limits.size())),
       shaking_(dt_, parts.twin_mass) {
   for (int i = 0; i < n_m_; ++i) is_slide_.push_back(device.is_slide(i));

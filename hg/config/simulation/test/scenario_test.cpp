@@ -367,18 +367,20 @@ TEST(Twin, LocksHoldTheJointTheyName) {
 TEST(Scenario, NamesEveryLimitInTheOrderOfTheTasks) {
   std::vector<std::string> names;
   for (const LimitInfo& limit : door().limits) names.push_back(limit.name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{
-                "m1",       "m2",       "m3",       "m4",       "m5",       "m6",       "q4+q5",
-                "motor m1", "motor m2", "motor m3", "motor m4", "motor m5", "motor m6", "hand x",
-                "hand y",   "hand z",   "elbow x",  "elbow y",  "elbow z",  "hinge",    "lever"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"m1",       "m2",       "m3",       "m4",
+                                             "m5",       "m6",       "q4+q5",    "motor m1",
+                                             "motor m2", "motor m3", "motor m4", "motor m5",
+                                             "motor m6", "hand x",   "hand y",   "hand z",
+                                             "elbow x",  "elbow y",  "elbow z",  "self-collision",
+                                             "hinge",    "lever"}));
   EXPECT_EQ(door().limits[6].kind, LimitKind::kVirtualJoint);
   EXPECT_EQ(door().limits[7].kind, LimitKind::kMotor);
   EXPECT_FALSE(door().limits[7].range.bounded());
   EXPECT_EQ(door().limits[13].kind, LimitKind::kCartesian);
   EXPECT_FALSE(door().limits[13].is_angle);
-  EXPECT_EQ(door().limits[19].kind, LimitKind::kTwinJoint);
-  EXPECT_EQ(door().limits[19].range.ub, 1.75);
+  EXPECT_EQ(door().limits[19].kind, LimitKind::kSelfCollision);
+  EXPECT_EQ(door().limits[20].kind, LimitKind::kTwinJoint);
+  EXPECT_EQ(door().limits[20].range.ub, 1.75);
   EXPECT_FALSE(door().limits[18].range.bounded());
 }
 
@@ -447,7 +449,7 @@ TEST(Scenario, ConditionsPointAtLimitsJointsAndCoordinates) {
   const auto& pushed = door().events[0].all_of;
   ASSERT_EQ(pushed.size(), 2u);
   EXPECT_EQ(pushed[0].kind, ConditionKind::kLocked);
-  EXPECT_EQ(pushed[0].index, 19);  // hinge in the catalogue
+  EXPECT_EQ(pushed[0].index, 20);  // hinge in the catalogue
   EXPECT_EQ(pushed[1].kind, ConditionKind::kForceAbove);
   EXPECT_EQ(pushed[1].value, 10.0);
 

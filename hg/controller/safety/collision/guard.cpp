@@ -4,15 +4,17 @@
 #include <cmath>
 #include <string>
 
+#include "hg/controller/safety/collision/braking_path.h"
 #include "hg/core/error.h"
 
 namespace hg::collision {
 namespace {
 
 constexpr double kApproach = 5e-3;  // m: how much nearer a pair may come that began too near
-constexpr double kAhead = 20.0;     // cycles: bounds that may be used up this soon are recomputed
+constexpr double kAhead = 6.0;      // cycles: bounds that may be used up this soon are recomputed
 constexpr double kClose = 0.05;     // m: smaller bounds are recomputed in every cycle
-constexpr int kHalvings = 16;       // largest number of pending intervals of a path
+constexpr double kLeastFading = 1e-9;  // m
+constexpr int kHalvings = 16;          // largest number of pending intervals of a path
 
 void check_collision(const CollisionConfig& config, const Braking& braking,
                      const model::ChainModel& chain) {
@@ -30,50 +32,6 @@ void check_collision(const CollisionConfig& config, const Braking& braking,
 
 }  // namespace
 
-// Braking with all joints at once from the state at time 0.
-struct Guard::Path {
-  const Braking& braking;
-  const VectorPM& q;
-  const VectorPM& dq;
-  VectorPM stop;
-
-  Path(const Braking& b, const VectorPM& from, const VectorPM& speed) noexcept
-      : braking(b), q(from), dq(speed), stop(from) {
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      stop[i] += dq[i] * (b.reaction[i] + 0.5 * std::abs(dq[i]) / b.deceleration[i]);
-    }
-  }
-
-  // time until the joints that move this pair are at rest
-  double duration(const Pair& pair) const noexcept {
-    double longest = 0.0;
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (pair.lever[i] == 0.0 || dq[i] == 0.0) continue;
-      longest = std::max(longest, braking.reaction[i] + std::abs(dq[i]) / braking.deceleration[i]);
-    }
-    return longest;
-  }
-
-  double position(Eigen::Index i, double time) const noexcept {
-    const double reaction = braking.reaction[i], deceleration = braking.deceleration[i];
-    const double since = std::max(0.0, time - reaction);
-    if (since * deceleration >= std::abs(dq[i])) {
-      return time >= reaction ? stop[i] : q[i] + dq[i] * time;
-    }
-    return q[i] + dq[i] * time - std::copysign(0.5 * deceleration * since * since, dq[i]);
-  }
-
-  // bound on what the joints between `begin` and `end` may take from the distance
-  double travel(const Pair& pair, double begin, double end) const noexcept {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (pair.lever[i] == 0.0) continue;
-      sum += pair.lever[i] * std::abs(position(i, end) - position(i, begin));
-    }
-    return sum;
-  }
-};
-
 Braking braking_of(const DeviceModel& device, double gantry) {
   constexpr double kDrive = 0.010;  // s, [HANDBOOK] 6.4
   const int n = device.n_p + device.n_m;
@@ -89,7 +47,7 @@ Braking braking_of(const DeviceModel& device, double gantry) {
   return braking;
 }
 
-int most_distances(double period) noexcept { return std::max(24, static_cast<int>(40e3 * period)); }
+int most_distances(double period) noexcept { return std::max(24, static_cast<int>(60e3 * period)); }
 
 Guard::Guard(const CollisionConfig& config, const Braking& braking, const model::ChainModel& chain)
     : config_(config), braking_(braking), most_distances_(most_distances(braking.period)) {
@@ -122,22 +80,47 @@ double Guard::distance(int pair, const model::ChainData& chain) noexcept {
                           pose(config_.shapes[shapes.b].frame));
 }
 
-double Guard::distance(int pair, const Path& path, double time) noexcept {
-  VectorPM q(path.q.size());
-  for (Eigen::Index i = 0; i < q.size(); ++i) q[i] = path.position(i, time);
-  later_->update_poses(q);
+double Guard::distance(int pair, const BrakingPath& path, double time) noexcept {
+  later_->update_poses(path.positions(time));
   return distance(pair, *later_);
 }
 
+Guard::Place Guard::place(int pair, const model::ChainData& chain, double time) noexcept {
+  const auto pose = [&](int frame) { return frame < 0 ? Pose{} : chain.pose(frame); };
+  const Pair& shapes = config_.pairs.watched[pair];
+  const Pose T_B_a = pose(config_.shapes[shapes.a].frame);
+  const Pose T_B_b = pose(config_.shapes[shapes.b].frame);
+  const Distance::Witnesses found = distances_[pair].witnesses(T_B_a, T_B_b);
+  Place place = {.time = time, .distance = found.distance};
+  const Eigen::Vector3d across = found.b - found.a;
+  const double length = across.norm();
+  place.along = length > 0.0 ? Eigen::Vector3d(T_B_a.R.transpose() * across / length)
+                             : Eigen::Vector3d::Zero();
+  place.T_a_b = inverse(T_B_a) * T_B_b;
+  return place;
+}
+
+// The larger of two bounds: what the joints can take from the distances at both ends, and planes
+// between the shapes at one end, from which points are at the other end, too, and on the line
+// between but for its bend.
+double Guard::bound_between(int pair, const BrakingPath& path, const Place& from,
+                            const Place& to) noexcept {
+  const Pair& watched = config_.pairs.watched[pair];
+  const double by_travel =
+      0.5 * (from.distance + to.distance - path.travel(watched, from.time, to.time));
+  const Distance& shapes = distances_[pair];
+  const double by_planes =
+      std::max(std::min(from.distance, shapes.between_planes(from.along, to.T_a_b)),
+               std::min(to.distance, shapes.between_planes(to.along, from.T_a_b)));
+  return std::max(by_travel, by_planes - path.bend(watched, from.time, to.time));
+}
+
 // Depth first from the start of the path; `ends` holds the ends of pending intervals.
-void Guard::evaluate(int index, const Path& path, bool is_powered, int& budget,
+void Guard::evaluate(int index, const BrakingPath& path, bool is_powered, int& budget,
                      CollisionState& state) noexcept {
-  struct Place {
-    double time, distance;
-  };
   const Pair& pair = config_.pairs.watched[index];
   double& allowed = state.allowed[index];
-  Place from = {0.0, distance(index, *now_)};
+  Place from = place(index, *now_, 0.0);
   --budget;
   const double accepted = std::min(config_.safe_distance, from.distance - kApproach);
   allowed = is_powered ? std::max(allowed, accepted) : accepted;
@@ -145,16 +128,19 @@ void Guard::evaluate(int index, const Path& path, bool is_powered, int& budget,
   double smallest = from.distance;
   std::array<Place, kHalvings> ends;
   int waiting = 0;
+  const auto place_at = [&](double time) {
+    later_->update_poses(path.positions(time));
+    return place(index, *later_, time);
+  };
   if (const double end = path.duration(pair); end > 0.0) {
-    ends[0] = {end, distance(index, path, end)};
+    ends[0] = place_at(end);
     --budget;
     waiting = 1;
   }
   while (waiting > 0) {
     const Place to = ends[waiting - 1];
     const double nearer = std::min(from.distance, to.distance);
-    const double bound = std::min(
-        nearer, 0.5 * (from.distance + to.distance - path.travel(pair, from.time, to.time)));
+    const double bound = std::min(nearer, bound_between(index, path, from, to));
     const bool is_good = bound - allowed >= 0.5 * (nearer - allowed);
     if (is_good || nearer <= allowed || waiting == kHalvings || budget <= 0) {
       smallest = std::min(smallest, bound);
@@ -164,7 +150,7 @@ void Guard::evaluate(int index, const Path& path, bool is_powered, int& budget,
       continue;
     }
     const double middle = 0.5 * (from.time + to.time);
-    ends[waiting++] = {middle, distance(index, path, middle)};
+    ends[waiting++] = place_at(middle);
     --budget;
   }
   state.left[index] = smallest - allowed;
@@ -184,7 +170,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_powered,
   Prediction prediction;
   const auto count = static_cast<int>(config_.pairs.watched.size());
   if (count == 0) return prediction;
-  const Path path(braking_, q, dq);
+  const BrakingPath path(braking_, q, dq);
   now_->update_poses(q);
   const int had_budget = state.count == count ? most_distances_ : 0;
   int budget = had_budget;
@@ -206,11 +192,12 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_powered,
   std::array<bool, kMaxPairs> is_done{};
   while (budget > 1) {
     int next = -1;
-    double least = 0.0;
+    double fewest = kInfinity;  // cycles until the bound may be used up
     for (int i = 0; i < count; ++i) {
-      const double soon = state.left[i] - kAhead * fading_[i] - kClose;
-      if (is_done[i] || soon > least) continue;
-      least = soon;
+      if (is_done[i] || state.left[i] > kAhead * fading_[i] + kClose) continue;
+      const double cycles = state.left[i] / std::max(fading_[i], kLeastFading);
+      if (cycles >= fewest) continue;
+      fewest = cycles;
       next = i;
     }
     if (next < 0) break;

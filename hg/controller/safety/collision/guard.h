@@ -5,8 +5,9 @@
 ///   s_i = q_i + dq_i r_i + dq_i |dq_i| / (2 A_i).
 /// For each pair of shapes the smallest distance on that path is bounded from below. Between two
 /// points of the path with distances D1 and D2 the bound is
-/// (D1 + D2 - sum_i L_i |q_i(t2) - q_i(t1)|) / 2, with the levers L_i of Pair. Intervals for which
-/// this bound is too small are halved.
+/// (D1 + D2 - sum_i L_i |q_i(t2) - q_i(t1)|) / 2, with the levers L_i of Pair; and planes between
+/// the shapes at t1 or t2 hold them apart but for the bend of the path, which shrinks with the
+/// square of t2 - t1. Intervals for which the larger bound is too small are halved.
 ///
 /// Bounds are reused in later cycles. Braking paths from two states differ in joint i by at most
 /// e_i = max(|q_i - q'_i|, |s_i - s'_i|), so a bound shrinks by at most sum_i L_i e_i per cycle. It
@@ -21,6 +22,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,9 +31,12 @@
 #include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/model/device_model.h"
+#include "hg/signals/collision_task.h"
 #include "hg/signals/state.h"
 
 namespace hg::collision {
+
+struct BrakingPath;  // braking_path.h
 
 inline constexpr int kMaxPairs = 96;  ///< Largest number of watched pairs; set-up refuses more
 /// Pairs that always stay farther apart than the safe distance plus this need not be watched, m.
@@ -47,7 +52,7 @@ struct Braking {
   double period = 1e-3;   ///< Time between two predictions, s
 };
 
-/// Largest number of distances computed in a cycle: 40 per millisecond of its `period` (s), at
+/// Largest number of distances computed in a cycle: 60 per millisecond of its `period` (s), at
 /// least
 /// 24. A longer cycle sees more motion, which uses up bounds, and has the time.
 int most_distances(double period) noexcept;
@@ -89,12 +94,32 @@ class Guard {
   Prediction step(const VectorPM& q, const VectorPM& dq, bool is_powered,
                   CollisionState& state) noexcept;
 
- private:
-  struct Path;  // braking path
+  /// Task of the law from `q` and `dq` of its reference, for the pairs that are near in `state`:
+  /// the distance beyond what they are allowed, rounded off where several are alike.
+  CollisionTask keep_apart(const VectorPM& q, const VectorPM& dq,
+                           const CollisionState& state) noexcept;
 
+ private:
+  struct Place {
+    double time = 0.0;
+    double distance = 0.0;                            ///< Of the pair, m
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< From `a` to `b`, in the frame of `a`
+    Pose T_a_b;                                       ///< Of their frames
+  };
+  Place place(int pair, const model::ChainData& chain, double time) noexcept;
+  double bound_between(int pair, const BrakingPath& path, const Place& from,
+                       const Place& to) noexcept;
+
+  struct Foreseen;  // nearest place of a pair on a braking path
+
+  void foresee(std::span<Foreseen> near, const BrakingPath& path,
+               const CollisionState& state) noexcept;
+  void refine(Foreseen& best, const BrakingPath& path, double allowed) noexcept;
+  void add_change(const Foreseen& nearest, const BrakingPath& path, double share,
+                  CollisionTask& task) noexcept;
   double distance(int pair, const model::ChainData& chain) noexcept;
-  double distance(int pair, const Path& path, double time) noexcept;
-  void evaluate(int pair, const Path& path, bool is_powered, int& budget,
+  double distance(int pair, const BrakingPath& path, double time) noexcept;
+  void evaluate(int pair, const BrakingPath& path, bool is_powered, int& budget,
                 CollisionState& state) noexcept;
   void fade(const VectorPM& q, const VectorPM& stop, CollisionState& state) noexcept;
 

@@ -17,8 +17,9 @@ namespace hg::collision {
 struct Pair {
   int a = 0;
   int b = 0;
-  /// Bound per joint on the speed of any point of `b` relative to `a`, per unit of joint speed, in
-  /// every posture: m/rad, or 1 for a prismatic joint between the two, 0 for others.
+  /// Bound per joint on the speed of any point of `b` without its radius relative to `a`, per unit
+  /// of joint speed, in every posture: m/rad, or 1 for a prismatic joint between the two, 0 for
+  /// others.
   VectorPM lever;
 };
 

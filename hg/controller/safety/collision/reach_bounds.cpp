@@ -67,7 +67,7 @@ VectorPM ReachBounds::of(const Shape& shape, int from) const {
   return lever;
 }
 
-// The largest distance from the axis of a joint that a point of the shape can have: the offsets
+// The largest distance from the axis of a joint that a point of the core can have: the offsets
 // from joint to joint, added up. While all axes are parallel only what is across them counts.
 double ReachBounds::lever(int joint, const Shape& shape) const {
   constexpr double kParallel = 1e-9;
@@ -87,7 +87,7 @@ double ReachBounds::lever(int joint, const Shape& shape) const {
   for (const Eigen::Vector3d& corner : corners(shape, T_B_shape)) {
     farthest = std::max(farthest, part(corner - origin_[shape.body - 1]));
   }
-  return sum + farthest + shape.radius;
+  return sum + farthest;
 }
 
 }  // namespace hg::collision

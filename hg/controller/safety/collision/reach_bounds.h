@@ -1,4 +1,5 @@
-/// Bounds on how far joints can move points of a shape, valid in every posture. Set-up only.
+/// Bounds on how far joints can move the core of a shape, valid in every posture: of a capsule its
+/// segment, of a box all of it. Distances change by no more. Set-up only.
 #pragma once
 
 #include <vector>
