@@ -34,7 +34,9 @@ bool is_replaced(const std::string& file) {
 std::string partial_of(const std::string& file) {
   std::string partial = file + ".partial";
   std::error_code error;
-  if (!is_replaced(partial)) fs::remove(partial, error);
+  if (!is_replaced(partial) && !fs::is_directory(fs::symlink_status(partial, error))) {
+    fs::remove(partial, error);
+  }
   return partial;
 }
 

@@ -73,11 +73,18 @@ std::vector<std::string> pair_names(const CollisionConfig& config) {
   return names;
 }
 
-double Guard::distance(int pair, const model::ChainData& chain) noexcept {
-  const auto pose = [&](int frame) { return frame < 0 ? Pose{} : chain.pose(frame); };
+std::array<Pose, 2> Guard::poses(int pair, const model::ChainData& chain) const noexcept {
+  const auto pose = [&](int shape) {
+    const int frame = config_.shapes[shape].frame;
+    return frame < 0 ? Pose{} : chain.pose(frame);
+  };
   const Pair& shapes = config_.pairs.watched[pair];
-  return distances_[pair](pose(config_.shapes[shapes.a].frame),
-                          pose(config_.shapes[shapes.b].frame));
+  return {pose(shapes.a), pose(shapes.b)};
+}
+
+double Guard::distance(int pair, const model::ChainData& chain) noexcept {
+  const auto [T_B_a, T_B_b] = poses(pair, chain);
+  return distances_[pair](T_B_a, T_B_b);
 }
 
 double Guard::distance(int pair, const BrakingPath& path, double time) noexcept {
@@ -86,10 +93,7 @@ double Guard::distance(int pair, const BrakingPath& path, double time) noexcept 
 }
 
 Guard::Place Guard::place(int pair, const model::ChainData& chain, double time) noexcept {
-  const auto pose = [&](int frame) { return frame < 0 ? Pose{} : chain.pose(frame); };
-  const Pair& shapes = config_.pairs.watched[pair];
-  const Pose T_B_a = pose(config_.shapes[shapes.a].frame);
-  const Pose T_B_b = pose(config_.shapes[shapes.b].frame);
+  const auto [T_B_a, T_B_b] = poses(pair, chain);
   const Distance::Witnesses found = distances_[pair].witnesses(T_B_a, T_B_b);
   Place place = {.time = time, .distance = found.distance};
   const Eigen::Vector3d across = found.b - found.a;

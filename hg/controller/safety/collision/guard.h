@@ -117,6 +117,8 @@ class Guard {
   void refine(Foreseen& best, const BrakingPath& path, double allowed) noexcept;
   void add_change(const Foreseen& nearest, const BrakingPath& path, double share,
                   CollisionTask& task) noexcept;
+  /// Poses of the frames that the shapes of a pair are fixed to, in B.
+  std::array<Pose, 2> poses(int pair, const model::ChainData& chain) const noexcept;
   double distance(int pair, const model::ChainData& chain) noexcept;
   double distance(int pair, const BrakingPath& path, double time) noexcept;
   void evaluate(int pair, const BrakingPath& path, bool is_powered, int& budget,

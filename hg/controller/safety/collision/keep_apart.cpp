@@ -65,9 +65,8 @@ void Guard::add_change(const Foreseen& nearest, const BrakingPath& path, double 
   const Pair& pair = config_.pairs.watched[nearest.pair];
   const std::array<int, 2> frames = {config_.shapes[pair.a].frame, config_.shapes[pair.b].frame};
   later_->update_kinematics(path.positions(nearest.time), path.dq);
-  const auto pose = [&](int frame) { return frame < 0 ? Pose{} : later_->pose(frame); };
-  const Distance::Witnesses found =
-      distances_[nearest.pair].witnesses(pose(frames[0]), pose(frames[1]));
+  const std::array<Pose, 2> T_B = poses(nearest.pair, *later_);
+  const Distance::Witnesses found = distances_[nearest.pair].witnesses(T_B[0], T_B[1]);
   Eigen::Vector3d normal = found.b - found.a;
   if (!(normal.norm() > 0.0)) return;
   normal *= (found.distance < 0.0 ? -share : share) / normal.norm();
@@ -77,7 +76,7 @@ void Guard::add_change(const Foreseen& nearest, const BrakingPath& path, double 
     if (frames[side] < 0) continue;
     const model::Jacobian& J = later_->jacobian(frames[side]);
     const Eigen::Vector3d& point = side == 0 ? found.a : found.b;
-    const Eigen::Vector3d turn = (point - later_->pose(frames[side]).p).cross(normal);
+    const Eigen::Vector3d turn = (point - T_B[side].p).cross(normal);
     const double sign = side == 0 ? -1.0 : 1.0;
     per_position.noalias() += sign * J.topRows<3>().transpose() * normal;
     per_position.noalias() += sign * J.bottomRows<3>().transpose() * turn;
@@ -95,7 +94,7 @@ CollisionTask Guard::keep_apart(const VectorPM& q, const VectorPM& dq,
   CollisionTask task;
   std::array<Foreseen, kMaxPairs> all;
   int count = 0;
-  for (int i = 0; i < state.count && count < kMaxPairs; ++i) {
+  for (int i = 0; i < state.count; ++i) {
     if (state.left[i] < kNear) all[count++].pair = i;
   }
   if (count == 0) return task;

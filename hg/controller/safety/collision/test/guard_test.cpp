@@ -111,6 +111,18 @@ class Wanderer {
   VectorPM goal_;
 };
 
+// A device whose joints wander, watched by a guard and by the judge.
+struct Watch {
+  explicit Watch(unsigned from) : seed(from), wanderer(device, seed) {}
+
+  const unsigned seed;
+  const TestDevice device = device_of(folding_urdf());
+  Guard guard{device.config, device.braking, device.chain};
+  Judge judge{device};
+  Wanderer wanderer;
+  CollisionState state;
+};
+
 TEST(Guard, ReportsFreeOnlyWhereBrakingStaysFree) {
   const TestDevice device = device_of(folding_urdf());
   Guard guard(device.config, device.braking, device.chain);
@@ -143,13 +155,9 @@ TEST(Guard, ReportsFreeOnlyWhereBrakingStaysFree) {
 }
 
 TEST(Guard, RemembersBoundsThatHold) {
-  const TestDevice device = device_of(folding_urdf());
-  Guard guard(device.config, device.braking, device.chain);
-  Judge judge(device);
-  const unsigned seed = 12;
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  Wanderer wanderer(device, seed);
-  CollisionState state;
+  Watch watch(12);
+  SCOPED_TRACE("seed " + std::to_string(watch.seed));
+  auto& [seed, device, guard, judge, wanderer, state] = watch;
   long distances = 0;
   int worst = 0;
   constexpr int kCycles = 20000;
@@ -257,13 +265,9 @@ TEST(Guard, LetsADeviceLeaveAPlaceThatIsTooNear) {
 
 // Joints that turn about the axes of what lies along them: levers alone would see collisions.
 TEST(Guard, TakesNoTurnOnTheSpotForACollision) {
-  const TestDevice device = device_of(folding_urdf());
-  Guard guard(device.config, device.braking, device.chain);
-  Judge judge(device);
-  const unsigned seed = 21;
-  SCOPED_TRACE("seed " + std::to_string(seed));
-  Wanderer wanderer(device, seed);
-  CollisionState state;
+  Watch watch(21);
+  SCOPED_TRACE("seed " + std::to_string(watch.seed));
+  auto& [seed, device, guard, judge, wanderer, state] = watch;
   int braked = 0;
   for (int n = 0; n < 30000; ++n) {
     wanderer.move();
