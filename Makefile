@@ -245,7 +245,7 @@ soak-machines:
 DOCS_VENV := build/docs_venv
 $(DOCS_VENV)/bin/mkdocs: tools/requirements-docs.txt
 	@python3 -m venv $(DOCS_VENV)
-	@$(DOCS_VENV)/bin/pip install --quiet --requirement $<
+	@$(DOCS_VENV)/bin/pip install --quiet --require-hashes --no-deps --only-binary=:all: --requirement $<
 	@touch $@
 
 docs: $(DOCS_VENV)/bin/mkdocs

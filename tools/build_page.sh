@@ -20,15 +20,15 @@ install_node() {
   if node_works; then return; fi
   [ -x .venv/bin/python ] || return 1
   say "installing node into .venv"
-  .venv/bin/python -m pip install --quiet --disable-pip-version-check -r tools/requirements-node.txt &&
-    node_works
+  .venv/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-deps \
+    --only-binary=:all: -r tools/requirements-node.txt && node_works
 }
 page_packages=viewer/node_modules/.hapticgiant-lock
 install_page_packages() {
   if cmp -s viewer/package-lock.json "$page_packages"; then return; fi
   install_node || return 1
   say "installing the viewer's packages"
-  (cd viewer && npm ci --loglevel=error --no-audit --no-fund >/dev/null) &&
+  (cd viewer && npm ci --ignore-scripts --loglevel=error --no-audit --no-fund >/dev/null) &&
     cp viewer/package-lock.json "$page_packages"
 }
 page_stamp=viewer/dist/.hapticgiant-sources

@@ -124,17 +124,20 @@ if [ -d .venv ] && ! { .venv/bin/python -c '' && grep -qF "$PWD/.venv/bin/" .ven
   say "removing a .venv that does not work here"
   rm -rf .venv
 fi
-install_wheels() { .venv/bin/python -m pip install --quiet --disable-pip-version-check -r "$@"; }
-install_list() {  # install_list LIST STAMP WHAT [OPTION...]
+# these files and no others: their hashes are in the list
+install_wheels() {
+  .venv/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --no-deps \
+    --only-binary=:all: -r "$1"
+}
+install_list() {  # install_list LIST STAMP WHAT
   if cmp -s "$1" "$2"; then return; fi
   say "installing wheels into .venv ($3)"
   [ -d .venv ] || "$(find_python)" -m venv .venv
-  install_wheels "$1" "${@:4}"
+  install_wheels "$1"
   cp "$1" "$2"
 }
-# these files and no others: their hashes are in the list
 install_list tools/requirements-linked.txt .venv/.hapticgiant-requirements-linked \
-  "Pinocchio, Coal, Eigen, Boost headers" --require-hashes --no-deps --only-binary=:all:
+  "Pinocchio, Coal, Eigen, Boost headers"
 install_list tools/requirements.txt .venv/.hapticgiant-requirements "figures, reader of recordings"
 if [ "$purpose" = test ]; then
   install_list tools/requirements-test.txt .venv/.hapticgiant-requirements-test "robots, nanobind and MuJoCo for the tests, clang-tidy"

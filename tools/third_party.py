@@ -314,6 +314,20 @@ def write_texts(file):
     file.write_text(f"\n\n{line}\n".join(parts) + "\n")
 
 
+def unpinned():
+    """What a script of ours would install as it comes: wheels without a version or a hash, and packages of
+    the page that run a script of theirs."""
+    found = []
+    for file in sorted((ROOT / "tools").glob("requirements*.txt")):
+        text = file.read_text().replace("\\\n", " ")
+        for line in text.splitlines():
+            if line and not line.startswith("#") and not re.match(r"[\w.-]+(\[\w+\])?==.* --hash=sha256:", line):
+                found.append(f"tools/{file.name}: {line.split()[0]} has no version or no hash")
+    if "ignore-scripts=true" not in (ROOT / "viewer/.npmrc").read_text().split():
+        found.append("viewer/.npmrc: npm runs the install scripts of packages: needs ignore-scripts=true")
+    return found
+
+
 def faults():
     rows = [tuple(cell.strip() for cell in line.strip("|\n").split("|"))
             for line in PAGE.read_text().splitlines() if line.startswith("| ")][2:]
@@ -325,10 +339,7 @@ def faults():
               for component in sorted(listed - wanted)]
     found += [f"{row[1]}: licence '{row[3]}' is not among those allowed" for row in rows
               if not is_allowed(row[3])]
-    hashes = (ROOT / "tools/requirements-linked.txt").read_text()
-    for block in re.split(r"(?m)^(?=[\w-]+==)", hashes)[1:]:
-        if "--hash=sha256:" not in block:
-            found.append(f"tools/requirements-linked.txt: {block.split()[0]} has no hash")
+    found += unpinned()
     return found
 
 

@@ -227,6 +227,14 @@ class Experiments(Folders):
         self.assertEqual(self.path(0.06).failures[0],
                          "checkpoint 1 was passed at 6.0 cm, expected within 5 cm")
 
+    def test_one_sample_without_a_value_leaves_none_to_a_stretch(self):
+        for place in range(3):
+            values = np.arange(3.0)
+            values[place] = math.nan
+            found = experiments.Stretch(values)
+            for value in (found.mean, found.least, found.most, found.magnitude, experiments.largest(values)):
+                self.assertEqual(experiments.text(value, 1), "-")
+
     def test_a_report_of_two_laws_and_its_verdict(self):
         one = self.run_folder(table(), facts(), name="gauss")
         two = self.run_folder(table(), facts(times=DOOR_EVENTS | {"pulled": None}),
@@ -287,6 +295,13 @@ class Comparison(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("1 cycles are in the first only, 2 in the second only", text)
         self.assertNotIn("different from", text)
+
+    def test_a_value_that_is_missing_in_one_is_reported(self):
+        for wrong in (None, math.nan, math.inf):
+            other = summary(force={"mean_N": wrong, "max_N": 9.0, "max_torque_Nm": 1.0})
+            code, text = self.compare(table(), table(), summary=other)
+            self.assertEqual(code, 1)
+            self.assertIn("forces         mean has no value in the second", text)
 
     def test_timing_alone_is_no_difference(self):
         other = summary(cycle_time_us={"median": 15.0, "p99_9": 20.0, "max": 0.0})

@@ -4,6 +4,7 @@
 """
 
 import json
+import math
 import os
 import pathlib
 import signal
@@ -183,18 +184,25 @@ class Sweep(TemporaryFolder):
         lines = file.read_bytes().splitlines(keepends=True)
         lines[1] = lines[1][:40] + b"\n"  # cut in its middle
         lines[2] = b"\0\xff\0\n"  # what a power cut leaves
+        whole = json.loads(lines[0])
+        other = [{"run": [1]}, {"run": "1"}, {"exit_code": None}, {"measures": []}, {"measures": {"a": math.nan}},
+                 {"results": {"a": 1}}]
+        lines += [json.dumps(whole | each).encode() + b"\n" for each in other]
+        lines += [b"[" * 100_000 + b"\n", b"null\n", b"{}\n", b"\n"]
         file.write_bytes(b"".join(lines))
         out, err = self.sweep(self.file)
         self.assertIn("manifest.jsonl:2: is damaged", err)
         self.assertIn("manifest.jsonl:3: is damaged", err)
+        self.assertEqual(err.count("is damaged; its run is played again\n"), 12)
+        self.assertNotIn("Traceback", err)
         self.assertIn("2 of them from before", out)
         self.assertEqual(self.table(), before)
 
     def test_a_folder_whose_header_is_lost_or_damaged_is_refused_until_again(self):
         self.sweep(self.file)
         header = self.out / "sweep.json"
-        for text in ("", "[]", '{"format": 1}', None):
-            header.unlink() if text is None else header.write_text(text)
+        for text in ("", "[]", '{"format": 1}', "null", "NaN", "[" * 100_000, "\udcff", None):
+            header.unlink() if text is None else header.write_text(text, errors="surrogateescape")
             for words in ([], ["merge"], ["check"]):
                 _, err = self.sweep(*words, self.file, code=2)
                 self.assertIn("--again", err)

@@ -19,6 +19,26 @@ def only_for_tests():
     setup = (ROOT / "tools/setup.sh").read_text()
     return set(re.findall(r'\[ "\$purpose" != test \] \|\| need (\S+)', setup))
 
+LEAST = {"aiohttp": "3.14.3", "jinja2": "3.1.6", "pyarrow": "14.0.1", "pyyaml": "5.4"}
+"""Versions before have known holes that an attacker reaches here: CVE-2026-69243, CVE-2025-27516, CVE-2023-47248,
+CVE-2020-14343."""
+
+
+def number(version):
+    return tuple(map(int, version.split(".")))
+
+
+class Versions(unittest.TestCase):
+    def test_none_that_may_be_installed_has_a_known_hole(self):
+        bounds = re.findall(r'"([\w-]+)>=([0-9.]+)"', (ROOT / "pyproject.toml").read_text())
+        self.assertLessEqual(set(LEAST), {name for name, _ in bounds})
+        for name, version in bounds:
+            self.assertGreaterEqual(number(version), number(LEAST.get(name, "0")), name)
+        least = dict(bounds)
+        for file in (ROOT / "tools").glob("requirements*.txt"):
+            for name, version in re.findall(r"(?m)^([\w-]+)==([0-9.]+)", file.read_text()):
+                self.assertGreaterEqual(number(version.strip(".")), number(least.get(name, "0")), (file.name, name))
+
 
 class Licences(unittest.TestCase):
     def test_packages_need_no_text_of_what_only_tests_install(self):

@@ -1,8 +1,10 @@
 """Parts of `hapticgiant study` that need no program: orders, expressions, scores, faults of study.yaml."""
 
 import collections
+import contextlib
 import fnmatch
 import importlib.util
+import io
 import itertools
 import json
 import math
@@ -10,6 +12,9 @@ import os
 import pathlib
 import re
 import shutil
+import signal
+import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -18,7 +23,9 @@ from unittest import mock
 
 import numpy as np
 import without_compiled_part  # noqa: F401
-from hapticgiant.study import description, expressions, folder, markers, order, people, planning, questionnaires, trials
+from hapticgiant.study import __main__ as study_command
+from hapticgiant.study import (analysis, description, expressions, folder, inference, markers, order, people, planning,
+                               questionnaires, trials)
 from hapticgiant.sweep.reader import InputError
 
 STUDY = """\
@@ -117,6 +124,26 @@ class Expressions(unittest.TestCase):
             expressions.evaluate(expressions.parse("max(abs(x, y))"), expressions.Trial(columns))
         np.testing.assert_array_equal(columns["y"], [0, 0])
 
+    def test_a_sample_without_a_value_is_in_no_measure(self):
+        """A comparison with it is not false, and it is not counted."""
+        time = np.arange(6) / 10
+        x = np.array([1.0, 2, np.nan, 4, 5, 6])
+        trial = expressions.Trial({"time_s": time, "x": x, "inf": np.where(np.isnan(x), np.inf, x), "huge": np.full(6, 1e308)})
+        for text in ("max(x)", "mean(x)", "sum(x)", "median(x)", "std(x)", "rms(x)", "count(x > 3)", "spells(x > 3, 0.1)",
+                     "integral(x > 3)", "mean(not (x > 3))", "count(x > 3 and x < 5)", "count(x > 9 or x < 2)", "mean(x ** 0)",
+                     "mean(x != 3)", "path_length(x)", "max(derivative(x))", "count(x)", "max(norm(x, x))"):
+            self.assertTrue(math.isnan(expressions.evaluate(expressions.parse(text), trial)), text)
+        for text in ("max(inf)", "mean(inf)", "sum(huge)", "mean(huge)", "rms(huge)", "std(huge)", "max(norm(huge))"):
+            value = expressions.evaluate(expressions.parse(text), trial)
+            self.assertFalse(math.isfinite(value), text)
+            self.assertIsNone(json.loads(trials.dump({"a": value}))["a"])
+        for text, value in (("count(inf > 3)", 4), ("first(x)", 1), ("count(time_s > 0.1 or x > 9)", 4),
+                            ("count(time_s < 0.1 and x > 9)", 0), ("(3 > 1) + (3 > 2)", 2)):
+            self.assertEqual(expressions.evaluate(expressions.parse(text), trial), value, text)
+        for text in ("not (x > 3)", "x != 3", "x > 3 or not x"):
+            self.assertFalse(expressions.is_true(text, {"x": math.nan, "code": 1}), text)
+        self.assertTrue(expressions.is_true("x > 3 or code == 1", {"x": math.nan, "code": 1}))
+
     def test_a_value_per_sample_is_no_measure(self):
         with self.assertRaisesRegex(expressions.ExpressionError, "value per sample"):
             self.value("x + 1", x=[1, 2])
@@ -194,6 +221,9 @@ class Faults(unittest.TestCase):
                 ("peak_force_N}]", "peak_force_N, test: kruskal}]", ":15:", "not for a design within"),
                 ("williams", "wiliams", ":5:", "did you mean 'williams'"),
                 ("participants: 16", "participants: 0", ":5:", "expected a whole number from 1"),
+                ("participants: 16", f"participants: 1{'0' * 400}", ":5:", "expected a number"),
+                ("between: 3", "between: 1e308", ":20:", "expected a number"),
+                ("participants: 16", "participants: " + "[" * 10_000, "not valid YAML: nested too deeply"),
                 ("trial: peak_force_N", "trial: peak", ":13:", "no such measure"),
                 ("scenario: door", "scenari: door", ":4:", "did you mean 'scenario'"),
                 ("scenario: door", "seed: 1", ":2:", "is drawn for each trial"),
@@ -370,6 +400,105 @@ class Faults(unittest.TestCase):
                 self.assertEqual({line.split("  ")[1] for line in lines},
                                  {str(each.relative_to(out)) for each in out.rglob("*")
                                   if each.is_file() and not each.name.startswith(".") and each.name != "hashes.sha256"})
+
+    def said(self, *words):
+        """The exit code of `hapticgiant study`, and what it says on its standard error."""
+        said, mask, handler = io.StringIO(), os.umask(0o077), signal.getsignal(signal.SIGTERM)
+        try:
+            with contextlib.redirect_stderr(said), contextlib.redirect_stdout(io.StringIO()):
+                return study_command.main([str(word) for word in words]), said.getvalue()
+        finally:
+            os.umask(mask)
+            signal.signal(signal.SIGTERM, handler)
+
+    def test_a_damaged_file_is_named_in_one_sentence(self):
+        damages = (b"", b'{"condition": "li', b"[]", b"null", b"NaN", b"3", b"[" * 100_000, b'{"a":' * 100_000, b"\xff\xfe{}",
+                   b"[1, {}, null]")
+        with tempfile.TemporaryDirectory() as path:
+            file = self.answered(path)
+            out = file.with_suffix(".study")
+            self.trial(out / "sub-P01" / "sub-P01_task-light_run-1_trial.json")
+            (out / "sub-P01" / "sub-P01_note-1.json").write_text('{"step": 1, "text": "a remark"}')
+            there = folder.Folder(description.load_study(file))
+            for name in ("dataset_description.json", "withdrawn.json", "sub-P01/sub-P01_task-light_run-1_trial.json",
+                         "sub-P01/sub-P01_task-light_form-tlx_answers.json"):
+                before = (out / name).read_bytes() if (out / name).exists() else None
+                for damage in damages:
+                    if name == "withdrawn.json" and damage == b"[]":
+                        continue
+                    (out / name).write_bytes(damage)
+                    code, said = self.said("report", file)
+                    self.assertEqual((code, said.count("\n")), (2, 1), (name, damage[:20], said[-300:]))
+                    self.assertIn(f"{pathlib.Path(name).name}: is damaged", said)
+                (out / name).unlink() if before is None else (out / name).write_bytes(before)
+            for damage in damages:
+                (out / "sub-P01" / "sub-P01_note-1.json").write_bytes(damage)
+                self.assertRaisesRegex(folder.FolderError, "note-1.json: is damaged", there.remarks, "P01")
+            self.assertEqual(self.said("report", file)[0], 0)
+
+    def trial(self, file, **other):
+        """Writes the file of a trial, with these keys instead."""
+        file.write_text(json.dumps({
+            "position": 1, "condition": "light", "repetition": 1, "measures": {"peak_force_N": 1.0, "half": 2.0},
+            "exit_code": 0, "state_hash": "", "recording_sha256": "", "recording": None} | other))
+
+    def test_a_value_that_no_file_of_ours_has_is_damage(self):
+        with tempfile.TemporaryDirectory() as path:
+            file = self.answered(path)
+            out = file.with_suffix(".study")
+            there = folder.Folder(description.load_study(file))
+            own = out / "sub-P01" / "sub-P01_task-light_run-1_trial.json"
+            for other in ({"position": None}, {"position": 10**400}, {"exit_code": "0"}, {"condition": "none"}, {"measures": []},
+                          {"measures": {"peak_force_N": 1.0}}, {"measures": {"peak_force_N": math.inf, "half": 1.0}},
+                          {"measures": {"peak_force_N": "1", "half": 1.0}}, {"measures": {"peak_force_N": 10**400, "half": 1}},
+                          {"recording": 3}, {"state_hash": {}}):
+                self.trial(own, **other)
+                with self.assertRaisesRegex(folder.FolderError, "run-1_trial.json: is damaged", msg=other):
+                    there.rows()
+            self.trial(own, measures={"peak_force_N": None, "half": 1.0})
+            self.assertIsNone(there.rows()["trials"][0]["peak_force_N"])
+            form = out / "sub-P01" / "sub-P01_task-light_form-tlx_answers.json"
+            filled = json.loads(form.read_text())
+            for other in ({"form": "none"}, {"condition": "none"}, {"answers": {}}, {"pairs": {}},
+                          {"answers": {**filled["answers"], "mental": 1e999}}):
+                form.write_text(json.dumps(filled | other))
+                self.assertRaisesRegex(folder.FolderError, "tlx_answers.json: is damaged", there.rows)
+            form.write_text(json.dumps(filled))
+            said = json.loads((out / "dataset_description.json").read_text())
+            for other in ({"Simulated": {}}, {"Study": None}, {"Model": 3}, {"GeneratedBy": []}, {"GeneratedBy": [{}]}):
+                (out / "dataset_description.json").write_text(json.dumps(said | other))
+                self.assertRaisesRegex(folder.FolderError, "description.json: is damaged", there.description)
+
+    def test_the_analysis_alone_names_what_is_damaged_and_what_is_missing(self):
+        with tempfile.TemporaryDirectory() as path:
+            file = self.answered(path)
+            out = file.with_suffix(".study")
+            for person in ("P01", "P02"):
+                for condition in ("light", "heavy"):
+                    self.trial(out / f"sub-{person}" / f"sub-{person}_task-{condition}_run-1_trial.json", condition=condition)
+            self.assertEqual(self.said("report", file)[0], 0)
+            trials_csv, plan = (out / name for name in ("trials.csv", "code/plan.json"))
+            table, planned = trials_csv.read_text(), plan.read_text()
+            first = "P01,1,heavy,1,time,,1.0,2.0"
+            self.assertIn(first, table)
+
+            for cell in ("nan", "inf", "-inf", "1e308", "1e999", ""):
+                trials_csv.write_text(table.replace(first, f"P01,1,heavy,1,time,,{cell},2.0"))
+                data = analysis.Data(out)
+                self.assertIn(["P01", "heavy 1", "peak_force_N has no value" + (f": {cell}" if cell else "")],
+                              analysis.exclusion_rows(data))
+                self.assertIn(["peak_force_N", "heavy", "1", "1"], [row[:4] for row in analysis.description_rows(data)])
+            word = table.replace(first, f"{first[:-7]}one,2.0")
+            for file, damages in ((trials_csv, ("participant\nP01\n", word, table[:-20], "\0")),
+                                  (plan, ("", "[]", "{}", "[" * 100_000, planned.replace('"paired_t"', "3"), planned[:99]))):
+                for damage in damages:
+                    self.assertNotIn(damage, (table, planned))
+                    file.write_text(damage)
+                    with self.assertRaisesRegex(analysis.UnreadableError, file.name, msg=damage[:40]):
+                        analysis.tests(analysis.Data(out))
+                trials_csv.write_text(table)
+            done = subprocess.run([sys.executable, out / "code" / "analysis.py"], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (1, "", 1), done.stderr)
 
     def test_links_and_pipes_of_a_folder_from_elsewhere_lead_nowhere(self):
         def link(out, name, target):

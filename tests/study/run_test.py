@@ -277,6 +277,11 @@ class StudyRun(unittest.IsolatedAsyncioTestCase):
             (self.out / "sub-P01" / "sub-P01_note-1 (copy).json").write_text("of a file manager")
             self.assertIsNone(await running.operator.ask("note", text="the last one"))
             await running.operator.until(lambda each: each["notes"][-1]["text"] == "the last one")
+            (self.out / "sub-P01" / "sub-P01_note-99.json").write_text("[" * 100_000)
+            self.assertIn("note-99.json: is damaged", await running.operator.ask("note", text="none after this one"))
+            await running.operator.until(lambda each: "note-99.json: is damaged" in (each["problem"] or ""))
+            again = await running.page("operator")
+            self.assertEqual((await again.until(lambda each: each["participant"] == "P01"))["notes"], [])
             for page in pages:
                 page._conn.transport.abort()
 

@@ -326,6 +326,15 @@ class Mixed(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, message):
                 inference.run(test, [0.1 + 0.2, 0.3, 6, 6] * 4, conditions, people)
 
+    def test_a_value_that_is_no_number_gives_no_figure(self):
+        for test in inference.TESTS:
+            people = list(range(12)) if test in ("welch_t", "mann_whitney", "anova", "kruskal") else [i // 2 for i in range(12)]
+            for wrong in (np.nan, np.inf, -np.inf, 1e308, 1e101):
+                with self.assertRaisesRegex(ValueError, "is among the values", msg=test):
+                    inference.run(test, [wrong, *range(11)], ["a", "b"] * 6, people)
+            if test != "friedman":  # needs three conditions
+                self.assertTrue(0 <= inference.run(test, [1e100, *range(11)], ["a", "b"] * 6, people).p <= 1, test)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -86,13 +86,18 @@ def text(value, digits):
     return "-" if math.isnan(value) else f"{value + 0.0:.{digits}f}"
 
 
+def largest(values):
+    """Of these values; not a number where one of them is none, which max() may pass over."""
+    return float(np.max(list(values)))
+
+
 class Stretch:
     """Statistics of a signal over a time interval; NaN for an empty one: an event is missing."""
 
     def __init__(self, values):
         self.mean, self.least, self.most = (
             (values.mean(), values.min(), values.max()) if len(values) else (math.nan,) * 3)
-        self.magnitude = max(abs(self.least), abs(self.most))
+        self.magnitude = largest((abs(self.least), abs(self.most)))
 
 
 class Measured(Run):
@@ -195,7 +200,7 @@ def measure_cartesian(run):
     def force(from_s, to_s):
         return over("force_N", from_s, to_s)
 
-    others = max((over(f"m{joint}_rad_per_s", d, d + 0.5).magnitude for joint in range(1, 5)))
+    others = largest(over(f"m{joint}_rad_per_s", d, d + 0.5).magnitude for joint in range(1, 5))
     return [
         ("t_a: turn of joint 1", "a full turn is completed",
          f"at {text(a, 2)} s; force until then at most {text(force(1.0, a).most, 1)} N"),
@@ -236,8 +241,8 @@ def measure_excavator(run):
     a, b, c, d, e = map(t, ("t_a", "t_b", "t_c", "t_d", "t_e"))
 
     def others(from_s, to_s):
-        return max(over(f"{name}_rad_per_s", from_s, to_s).magnitude
-                   for name in ("boom", "stick", "bucket"))
+        return largest(over(f"{name}_rad_per_s", from_s, to_s).magnitude
+                       for name in ("boom", "stick", "bucket"))
 
     return [
         ("t_a: bucket at its upper limit, boom at its lower one",

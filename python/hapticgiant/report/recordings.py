@@ -1,5 +1,6 @@
 """`hapticgiant plot` and `hapticgiant compare`: figures of recordings, and what differs in two."""
 
+import math
 import pathlib
 
 import numpy as np
@@ -83,9 +84,13 @@ def events(first, second):
 
 
 def change(what, values, least, unit, digits, scale=1.0):
-    """ "mean 10.5 -> 11.2 N"; nothing where the difference is at most `least`."""
+    """ "mean 10.5 -> 11.2 N"; nothing where the difference is at most `least`, or both have no value."""
     before, after = values
-    if None not in values and abs(after - before) > least:
+    missing = [value is None or not math.isfinite(value) for value in values]
+    if any(missing):
+        if not all(missing):
+            yield f"{what} has no value in the {'first' if missing[0] else 'second'}"
+    elif abs(after - before) > least:
         yield f"{what} {scale * before:.{digits}f} -> {scale * after:.{digits}f} {unit}"
 
 

@@ -23,19 +23,64 @@ else:
     import inference
 
 
+OF_PLAN = {"people": str, "title": str, "conditions": list, "alpha": float, "correction": str, "outcomes": dict, "tests": list}
+"""Keys of plan.json, and what each holds."""
+COLUMNS = {"participants": ("participant", "excluded"), "trials": ("participant", "condition", "repetition", "excluded"),
+           "answers": ("participant", "condition", "form", "item", "kind", "value")}
+"""Of the tables, those that are always read."""
+
+
+class UnreadableError(ValueError):
+    """A file of the study that cannot be read; the message says which."""
+
+
 class Data:
     """Values of a study that count, by outcome."""
 
     def __init__(self, folder: pathlib.Path):
-        self.plan = json.loads((folder / "code" / "plan.json").read_text(encoding="utf-8"))
+        self.plan = self._plan(folder / "code" / "plan.json")
+        measures = tuple(outcome for outcome in self.plan["outcomes"] if "." not in outcome)
         self.participants, self.trials, self.answers = (
-            self._table(folder / f"{name}.csv") for name in ("participants", "trials", "answers"))
+            self._table(folder / f"{name}.csv", columns + measures * (name == "trials")) for name, columns in COLUMNS.items())
         self.left_out = {row["participant"] for row in self.participants if row["excluded"]}
 
     @staticmethod
-    def _table(file):
-        with open(file, newline="", encoding="utf-8") as lines:
-            return list(csv.DictReader(lines))
+    def _plan(file):
+        try:
+            plan = json.loads(file.read_text(encoding="utf-8"))
+        except (ValueError, RecursionError) as error:
+            raise UnreadableError(f"{file}: is damaged: {error}") from None
+        for key, kind in OF_PLAN.items():
+            if not isinstance(plan, dict) or not isinstance(plan.get(key), kind):
+                raise UnreadableError(f"{file}: is damaged: '{key}' is missing, or is of another type")
+        outcomes = list(plan["outcomes"])
+        for test in plan["tests"]:
+            if not isinstance(test, dict) or test.get("outcome") not in outcomes or test.get("test") not in inference.TESTS:
+                raise UnreadableError(f"{file}: is damaged: no such test: {json.dumps(test)[:80]}")
+        return plan
+
+    @staticmethod
+    def _table(file, columns):
+        try:
+            with open(file, newline="", encoding="utf-8") as lines:
+                reader = csv.DictReader(lines, strict=True)
+                rows, names = list(reader), reader.fieldnames or columns  # without rows there may be no names
+        except (ValueError, csv.Error) as error:
+            raise UnreadableError(f"{file}: is damaged: {error}") from None
+        for number, row in enumerate([dict.fromkeys(names, ""), *rows]):
+            if lost := [column for column in columns if row.get(column) is None]:
+                raise UnreadableError(f"{file}: row {number} has no '{lost[0]}'")
+        return rows
+
+    @staticmethod
+    def _number(outcome, cell):
+        """The number in a cell; None: there is none, or one that nothing can be computed with."""
+        try:
+            value = float(cell) if cell else math.nan
+        except ValueError:
+            table = "answers.csv" if "." in outcome else "trials.csv"
+            raise UnreadableError(f"{table}: {outcome}: expected a number, got '{cell[:40]}'") from None
+        return value if abs(value) <= inference.LARGEST else None
 
     def values(self, outcome: str) -> tuple[list[float], list[str], list[str]]:
         """Values with their conditions and participants, without what is excluded."""
@@ -45,11 +90,17 @@ class Data:
                     if row["form"] == form and row["item"] == item and row["kind"] in ("answer", "score")]
         else:
             rows = [(row, row[outcome]) for row in self.trials if not row["excluded"]]
-        rows = [(row, float(value)) for row, value in rows if value and row["participant"] not in self.left_out]
+        rows = [(row, number) for row, value in rows if row["participant"] not in self.left_out
+                and (number := self._number(outcome, value)) is not None]
         rank = {name: i for i, name in enumerate(self.plan["conditions"])}
         rows.sort(key=lambda each: rank.get(each[0]["condition"], -1))  # the order of study.yaml
         return ([value for _, value in rows], [row["condition"] for row, _ in rows],
                 [row["participant"] for row, _ in rows])
+
+    def without(self, outcome: str) -> list[tuple[dict, str]]:
+        """Trials that count, but have no value of this measure; what their cells hold."""
+        return [(row, row[outcome]) for row in self.trials if "." not in outcome and not row["excluded"]
+                and row["participant"] not in self.left_out and self._number(outcome, row[outcome]) is None]
 
     def people(self, outcome: str) -> dict[str, np.ndarray]:
         """Means of people by condition; "" where it was asked once."""
@@ -149,16 +200,23 @@ def exclusion_rows(data: Data) -> list[list[str]]:
     rows += [[row["participant"], "all", row["excluded"]] for row in data.participants if row["excluded"]]
     rows += [[row["participant"], f"{row['condition']} {row['repetition']}", row["excluded"]]
              for row in data.trials if row["excluded"]]
+    for outcome in data.plan["outcomes"]:  # a mean of the others would hide them
+        rows += [[row["participant"], f"{row['condition']} {row['repetition']}", f"{outcome} has no value{cell and ': ' + cell}"]
+                 for row, cell in data.without(outcome)]
     return rows
 
 
 def main() -> None:
-    data = Data(pathlib.Path(__file__).resolve().parents[1])
-    found = tests(data)
+    try:
+        data = Data(pathlib.Path(__file__).resolve().parents[1])
+        found = tests(data)
+        tables = (("tests", test_rows(data, found)), ("pairs", pair_rows(data, found)),
+                  ("assumptions and notes", assumption_rows(found)), ("means of people", description_rows(data)),
+                  ("left out", exclusion_rows(data)))
+    except (OSError, UnreadableError) as error:
+        sys.exit(str(error))
     print(data.plan["people"])
-    for title, rows in (("tests", test_rows(data, found)), ("pairs", pair_rows(data, found)),
-                        ("assumptions and notes", assumption_rows(found)), ("means of people", description_rows(data)),
-                        ("left out", exclusion_rows(data))):
+    for title, rows in tables:
         print(f"\n{title}")
         csv.writer(sys.stdout, lineterminator="\n").writerows(rows)
 

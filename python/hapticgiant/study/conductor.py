@@ -136,6 +136,7 @@ class Conductor:
 
     def operator_state(self, participant_link: str) -> dict:
         session = self._session
+        notes, damage = self._notes()
         known = []
         for each in self._plan:
             done, count = self._progress[each.code]
@@ -150,11 +151,17 @@ class Conductor:
             "steps": [{**dataclasses.asdict(step), "is_done": session.is_done(i)} for i, step in enumerate(session.steps)]
             if session else [],
             "position": session.position if session else None, "phase": self.phase(),
-            "problem": self._problem or self._wanted() or (self._markers.problem if self._markers else None) or None,
+            "problem": self._problem or self._wanted() or (self._markers.problem if self._markers else None) or damage,
             "run": self.run_state(), "last": self._last,
-            "notes": [{"step": note["step"], "text": note["text"]} for note in self.folder.remarks(session.code)]
-            if session else [],
-            "markers": self._markers.state() if self._markers else [], "can": self.can()}
+            "notes": notes, "markers": self._markers.state() if self._markers else [], "can": self.can()}
+
+    def _notes(self):
+        """The operator's remarks, and what is wrong with their files."""
+        try:
+            remarks = self.folder.remarks(self._session.code) if self._session else []
+        except (FolderError, OSError) as error:
+            return [], str(error)
+        return [{"step": note["step"], "text": note["text"]} for note in remarks], None
 
     def _wanted(self):
         """What the device waits for before it moves to the start."""

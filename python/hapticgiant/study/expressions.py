@@ -42,12 +42,25 @@ SHIPPED = {
 }
 """Measures that need no expression: expression, unit, meaning."""
 
+def _known(function):
+    """The same of numbers, and no number where one of them is none: a comparison would be false, a power 1."""
+    return lambda *x: np.where(np.any([np.isnan(each) for each in np.broadcast_arrays(*x)], axis=0), np.nan, function(*x))
+
+
+def _and(a, b):
+    return np.where((a == 0) | (b == 0), 0, np.where(np.isnan(a) | np.isnan(b), np.nan, 1))
+
+
+def _or(a, b):
+    return 1 - _and(1 - np.sign(np.abs(a)), 1 - np.sign(np.abs(b)))
+
+
 FUNCTIONS = {
     "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos,
     "max": np.max, "min": np.min, "mean": np.mean, "median": np.median, "sum": np.sum,
     "std": lambda x: np.std(x, ddof=1), "rms": lambda x: np.sqrt(np.mean(np.square(x))),
     "first": lambda x: np.atleast_1d(x)[0], "last": lambda x: np.atleast_1d(x)[-1],
-    "count": np.count_nonzero,
+    "count": lambda x: np.nan if np.isnan(x).any() else np.count_nonzero(x),
     "norm": lambda *x: np.sqrt(sum(np.square(each) for each in x)),
     "path_length": lambda *x: np.sum(np.sqrt(sum(np.square(np.diff(each)) for each in x))),
 }
@@ -57,11 +70,11 @@ OF_A_TRIAL = {"event": 1, "events": 1, "first_event": 0, "last_event": 0, "durat
 OF_SEVERAL = ("norm", "path_length")
 """Functions of one argument or more; every other one of FUNCTIONS takes one."""
 OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
-             ast.Div: np.divide, ast.Mod: np.mod, ast.Pow: np.float_power,
-             ast.UAdd: operator.pos, ast.USub: operator.neg, ast.Not: np.logical_not,
-             ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge,
-             ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.And: np.logical_and,
-             ast.Or: np.logical_or}
+             ast.Div: np.divide, ast.Mod: np.mod, ast.Pow: _known(np.float_power),
+             ast.UAdd: operator.pos, ast.USub: operator.neg, ast.Not: _known(np.logical_not),
+             ast.Lt: _known(operator.lt), ast.LtE: _known(operator.le), ast.Gt: _known(operator.gt),
+             ast.GtE: _known(operator.ge), ast.Eq: _known(operator.eq), ast.NotEq: _known(operator.ne),
+             ast.And: _and, ast.Or: _or}
 
 
 def parse(text: str) -> ast.expr:
@@ -169,6 +182,8 @@ class Trial:
         if name == "duration":
             return time[-1] - time[0] if len(time) else np.nan
         if name == "spells":  # of truth, joined over gaps shorter than the second argument, s
+            if np.isnan(args[0]).any():
+                return np.nan
             at = time[np.broadcast_to(np.asarray(args[0], bool), time.shape)]
             return np.count_nonzero(np.diff(at) > args[1]) + (1 if len(at) else 0)
         values = np.broadcast_to(np.asarray(args[0], float), time.shape)  # a truth value is 0 or 1

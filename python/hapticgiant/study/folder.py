@@ -32,6 +32,7 @@ import pathlib
 import re
 import shutil
 import stat
+import sys
 import threading
 
 from hapticgiant.study import markers, questionnaires, trials
@@ -47,8 +48,12 @@ WITH_FILES = ("trial", "form")  # kinds of steps that leave a file
 LOCK = ".lock"
 ASIDE = "aside"
 TRIAL = "_trial.json"
-OF_TRIAL = ("position", "condition", "repetition", "measures", "exit_code", "state_hash", "recording_sha256", "recording")
-OF_FORM = ("condition", "form", "answers", "pairs")
+OF_STUDY = {"Study": str, "Simulated": bool, "Model": str, "GeneratedBy": list}  # keys of files, and what each holds
+OF_TRIAL = {"position": int, "condition": str, "repetition": int, "measures": dict, "exit_code": int, "state_hash": str,
+            "recording_sha256": str, "recording": str | None}
+OF_FORM = {"condition": str, "form": str, "answers": dict, "pairs": dict}
+OF_NOTE = {"step": int, "text": str}
+LARGEST = 1 << 53  # of whole numbers
 NOTE = re.compile(r"sub-\w+_note-([0-9]+)\.json")
 PARTIAL = re.compile(r"\..+\.[0-9]+")  # a file that is being written, see _put()
 WITHDRAWN = "withdrawn.json"
@@ -129,9 +134,12 @@ class Folder:
 
     def description(self) -> dict:
         try:
-            return _read(self.path / DESCRIPTION, "Study", "Simulated", "Model")
+            found = _read(self.path / DESCRIPTION, OF_STUDY)
         except FileNotFoundError:
             raise FolderError(f"{self.path}: holds no study; hapticgiant study simulate makes one") from None
+        if not all(isinstance(each, dict) and isinstance(each.get("Version"), str) for each in found["GeneratedBy"] or [0]):
+            raise FolderError(f"{self.path / DESCRIPTION}: is damaged: 'GeneratedBy' has no version")
+        return found
 
     def begin(self, version: str, is_simulated: bool, model: str = "") -> None:
         """Makes the folder, or checks that it is of this study; only one process may write there."""
@@ -302,13 +310,16 @@ class Folder:
         """The remarks of the operator, in their order."""
         files = {int(found[1]): file for file in (self.path / f"sub-{code}").glob("*_note-*.json")
                  if (found := NOTE.fullmatch(file.name))}
-        return [_read(files[number]) for number in sorted(files)]
+        return [_read(files[number], OF_NOTE) for number in sorted(files)]
 
     def withdrawn(self) -> list[str]:
         try:
-            return _read(self.path / WITHDRAWN, kind=list)
+            found = _read(self.path / WITHDRAWN)
         except FileNotFoundError:
             return []
+        if not all(isinstance(code, str) for code in found):
+            raise FolderError(f"{self.path / WITHDRAWN}: is damaged: expected codes of participants")
+        return found
 
     def participants(self) -> list[Participant]:
         """Those that have files and have not withdrawn, in the order of the plan."""
@@ -387,7 +398,7 @@ class Folder:
         study, found = self.study, {name: [] for name in TABLES}
         for participant in self.participants():
             folder, code, out = self.path / f"sub-{participant.code}", participant.code, 0
-            played = sorted((_read(file, *OF_TRIAL) for file in folder.glob(f"*{TRIAL}")),
+            played = sorted((self._trial(file) for file in folder.glob(f"*{TRIAL}")),
                             key=lambda each: each["position"])
             for each in played:
                 why = trials.excluded(study, each["measures"], each["exit_code"])
@@ -402,7 +413,7 @@ class Folder:
                 "participant": code, "order": " ".join(participant.conditions), "trials": len(played),
                 "excluded_trials": out, "put_aside": len({file.name.rpartition("_")[0] for file in (folder / ASIDE).glob("*")}), "excluded": why})
             for file in sorted(folder.glob("*_answers.json")):
-                each = _read(file, *OF_FORM)
+                each = self._form(file)
                 common = {"participant": code, "condition": each["condition"], "form": each["form"]}
                 for kind, values in (("answer", each["answers"]), ("pair", each["pairs"]),
                                      ("score", questionnaires.scores_of(study.forms[each["form"]], each["answers"],
@@ -416,6 +427,27 @@ class Folder:
                         found["answers"].append({**common, "kind": kind, "item": item,
                                                  "value": float(value) if is_number else None,
                                                  "text": "" if is_number else value})
+        return found
+
+    def _trial(self, file):
+        """A trial of this study. Raises FolderError."""
+        found = _read(file, OF_TRIAL)
+        measures = found["measures"]
+        if found["condition"] not in self.study.conditions or measures.keys() != self.study.measures.keys():
+            raise FolderError(f"{file}: is damaged: the study has other conditions or measures")
+        for name, value in measures.items():  # null: has no value
+            if value is not None and not (type(value) in (int, float) and abs(value) <= sys.float_info.max):
+                raise FolderError(f"{file}: is damaged: '{name}' cannot be {json.dumps(value)[:40]}")
+        return found
+
+    def _form(self, file):
+        """A filled form of this study. Raises FolderError."""
+        found = _read(file, OF_FORM)
+        form = self.study.forms.get(found["form"])
+        if form is None or found["condition"] not in ("", *self.study.conditions):
+            raise FolderError(f"{file}: is damaged: the study has other conditions or forms")
+        if problem := questionnaires.problem_of(form, found["answers"], found["pairs"]):
+            raise FolderError(f"{file}: is damaged: {problem[:200]}")
         return found
 
     def _participant_excluded(self, count, excluded_trials):
@@ -496,7 +528,7 @@ class Folder:
         known = {}  # of recordings, which are large and never change
         for file in self.path.glob(f"sub-*/**/*{TRIAL}"):
             try:
-                trial = _read(file, *OF_TRIAL)
+                trial = _read(file, OF_TRIAL)
             except FolderError:  # damaged; it has a hash all the same
                 continue
             if trial["recording"]:
@@ -510,16 +542,25 @@ class Folder:
         self.replace(self.path / "hashes.sha256", "".join(lines))
 
 
-def _read(file, *keys, kind=dict):
-    """What a file of the study holds. Raises FolderError where it is damaged, or lacks one of the keys."""
+def _read(file, keys=None):
+    """What a file of the study holds: an object with these keys, of these types, or without keys a list. Raises FolderError
+    where it is damaged."""
+    def refuse(word):
+        raise ValueError(f"{word} is no number of JSON")
+
     try:
-        found = json.loads(file.read_text(encoding="utf-8"))
+        found = json.loads(file.read_text(encoding="utf-8"), parse_constant=refuse)
     except (ValueError, RecursionError) as error:
         raise FolderError(f"{file}: is damaged: {error}") from None
-    if not isinstance(found, kind):
-        raise FolderError(f"{file}: is damaged: expected {'an object' if kind is dict else 'a list'}")
-    if lost := [key for key in keys if key not in found]:
-        raise FolderError(f"{file}: is damaged: '{lost[0]}' is missing")
+    if not isinstance(found, list if keys is None else dict):
+        raise FolderError(f"{file}: is damaged: expected {'a list' if keys is None else 'an object'}")
+    for key, kind in (keys or {}).items():
+        if key not in found:
+            raise FolderError(f"{file}: is damaged: '{key}' is missing")
+        value = found[key]
+        is_right = isinstance(value, kind) and (kind is not int or type(value) is int and abs(value) < LARGEST)
+        if not is_right:
+            raise FolderError(f"{file}: is damaged: '{key}' cannot be {json.dumps(value)[:40]}")
     return found
 
 

@@ -16,6 +16,9 @@ import numpy as np
 from scipy import stats
 
 
+TESTS = ("paired_t", "wilcoxon", "friedman", "mixed", "welch_t", "mann_whitney", "anova", "kruskal")
+LARGEST = 1e100
+"""A value beyond this cannot be squared, and is none."""
 MOST_EXACT = 49
 """Values of a sample for which p of ranks is exact."""
 ZERO_VARIANCE = 1e-6
@@ -468,10 +471,13 @@ def run(test: str, values, conditions, people, alpha=0.05, correction="holm") ->
     Tests other than the mixed model take the mean of a person's trials of a condition. Within
     people, those without a value in every condition are left out, which is noted.
     """
+    values, conditions, people = list(map(float, values)), list(conditions), list(people)
+    if wrong := [value for value in values if not abs(value) <= LARGEST]:
+        raise ValueError(f"{wrong[0]:g} is among the values")
     names = list(dict.fromkeys(conditions))
     cells: dict[tuple[str, str], list[float]] = {}
     for value, condition, person in zip(values, conditions, people):
-        cells.setdefault((person, condition), []).append(float(value))
+        cells.setdefault((person, condition), []).append(value)
     persons = list(dict.fromkeys(people))
     is_within = test in ("paired_t", "wilcoxon", "friedman", "mixed")
     complete = [p for p in persons if all((p, c) in cells for c in names)] if is_within else persons
@@ -496,7 +502,7 @@ def run(test: str, values, conditions, people, alpha=0.05, correction="holm") ->
         result = between(groups, test, alpha, correction)
     else:
         result = two_conditions(test, groups, alpha, len(complete) if is_within else sum(map(len, groups.values())))
-    if len(cells) < len(list(values)):
+    if len(cells) < len(values):
         result.notes.append("a person's trials of a condition are averaged")
     if left := len(persons) - len(complete):
         result.notes.append(f"{left} people without values in every condition are left out")

@@ -12,6 +12,7 @@ import pathlib
 import secrets
 import signal
 import traceback
+from socket import create_server
 
 from aiohttp import WSMsgType, web
 
@@ -22,13 +23,48 @@ PROTOCOL = "hapticgiant-study"
 LARGEST_MESSAGE = 1 << 18  # bytes
 MOST_WAITING = 64  # commands of a page
 MOST_SOCKETS = 16  # pages that are open at a time
+MOST_STRANGERS = 32  # connections that are no page; these four are those of a run's page, hg/viewer_server
+REQUEST_S = 5.0  # from connecting to a whole request
+ANSWER_S = 15.0  # until its answer is taken
+LARGEST_HEADER = 8192  # bytes
+ACCEPT_PAUSE_S = 0.1  # where this program may open no more files
 LIVE_PERIOD_S = 0.2
 PATIENCE_S = 1.0  # with a page that takes no messages
 PAGES = ("operator", "participant")
 POLICY = ("default-src 'self'; connect-src 'self'; frame-src http://127.0.0.1:*; img-src 'self' data:; "
           "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'")
+TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".json": "application/json",
+         ".svg": "image/svg+xml", ".png": "image/png", ".woff2": "font/woff2", ".wasm": "application/wasm", ".txt": "text/plain"}
 HEADERS = {"Content-Security-Policy": POLICY, "Cache-Control": "no-store", "Referrer-Policy": "no-referrer",
            "X-Content-Type-Options": "nosniff", "Cross-Origin-Opener-Policy": "same-origin"}
+
+
+class Strangers:
+    """Connections that are no page, or none yet: few, and none of them for long."""
+
+    def __init__(self):
+        self._ends: dict[asyncio.Transport, asyncio.TimerHandle] = {}  # the oldest first
+
+    def admit(self, connection: asyncio.Transport) -> None:
+        """A new one; the oldest has to go where there are too many."""
+        for each in [each for each in self._ends if each.is_closing()]:
+            self.release(each)
+        if len(self._ends) >= MOST_STRANGERS:
+            oldest = next(iter(self._ends))
+            self.release(oldest)
+            oldest.abort()
+        self._ends[connection] = asyncio.get_running_loop().call_later(REQUEST_S, connection.abort)
+
+    def keep(self, connection: asyncio.Transport | None) -> None:
+        """It has sent its request, and is answered."""
+        if connection in self._ends:
+            self._ends[connection].cancel()
+            self._ends[connection] = asyncio.get_running_loop().call_later(ANSWER_S, connection.abort)
+
+    def release(self, connection: asyncio.Transport | None) -> None:
+        """It has become a page, or has gone."""
+        if end := self._ends.pop(connection, None):
+            end.cancel()
 
 
 class Server:
@@ -37,24 +73,50 @@ class Server:
     conductor: Conductor
 
     def __init__(self, pages: pathlib.Path, address: str, port: int):
-        self._pages, self._address, self._port = pages, address, port
+        self._address, self._port = address, port
+        self._files = {f"/{file.relative_to(pages).as_posix()}": file.read_bytes() for file in pages.rglob("*")
+                       if file.is_file() and not file.is_symlink()}  # 1 MB, and no other can be asked for
         self._tokens = {name: secrets.token_hex(16) for name in PAGES}
         self._sockets: dict[str, dict[web.WebSocketResponse, web.Request]] = {name: {} for name in PAGES}
         self._news = asyncio.Event()
         self._end = asyncio.Event()
         self._runner: web.AppRunner | None = None
+        self._strangers = Strangers()
+        self._door: asyncio.Task | None = None
 
     async def open(self) -> None:
         """Binds the port. Raises OSError."""
         app = web.Application(middlewares=[self._guard])
         for name in PAGES:
             app.router.add_get(f"/ws/{name}", self._talk)
-        app.router.add_static("/", self._pages, follow_symlinks=False)
-        self._runner = web.AppRunner(app, access_log=None)
+        app.router.add_get("/{file:.*}", self._show)
+        self._runner = web.AppRunner(app, access_log=None, lingering_time=0, auto_decompress=False)
         await self._runner.setup()
-        site = web.TCPSite(self._runner, self._address, self._port)
-        await site.start()
-        self._port = self._runner.addresses[0][1]
+        listening = create_server((self._address, self._port), backlog=128)
+        listening.setblocking(False)
+        self._port = listening.getsockname()[1]
+        self._door = asyncio.create_task(self._accept(listening))
+
+    async def _accept(self, listening):
+        loop = asyncio.get_running_loop()
+        while True:
+            try:
+                connected, _ = await loop.sock_accept(listening)
+                connection, _ = await loop.connect_accepted_socket(self._runner.server, connected)
+                self._strangers.admit(connection)
+            except OSError:  # it has gone, or this program has too many open files
+                await asyncio.sleep(ACCEPT_PAUSE_S)
+            except asyncio.CancelledError:
+                listening.close()
+                raise
+
+    async def close(self) -> None:
+        """Ends all connections."""
+        self._door.cancel()
+        for sockets in self._sockets.values():
+            for socket in list(sockets):
+                await socket.close()
+        await self._runner.cleanup()
 
     def origins(self) -> list[str]:
         """Addresses of the pages."""
@@ -80,23 +142,31 @@ class Server:
         await self.conductor.close()
         for task in tasks:
             task.cancel()
-        for sockets in self._sockets.values():
-            for socket in list(sockets):
-                await socket.close()
-        await self._runner.cleanup()
+        await self.close()
 
     @web.middleware
     async def _guard(self, request, handler):
-        if not self._is_own(request.host):
-            raise web.HTTPForbidden(text="this server is not called that\n", headers=HEADERS)
+        self._strangers.keep(request.transport)
         try:
+            self._require(request)
             answer = await handler(request)
         except web.HTTPException as error:
             error.headers.update(HEADERS)
+            error.force_close()
             raise
         if not answer.prepared:
             answer.headers.update(HEADERS)
+            answer.force_close()  # a request for each connection: no one waits for the next
         return answer
+
+    def _require(self, request):
+        """Raises HTTPException for a request that no page makes."""
+        if not self._is_own(request.host):
+            raise web.HTTPForbidden(text="this server is not called that\n")
+        if sum(len(name) + len(value) for name, value in request.raw_headers) > LARGEST_HEADER:
+            raise web.HTTPRequestHeaderFieldsTooLarge()
+        if request.body_exists:
+            raise web.HTTPBadRequest(text="expected no body\n")
 
     def _is_own(self, host):
         """Whether a Host header is an address of this machine: only names can be redirected here by others."""
@@ -104,6 +174,13 @@ class Server:
         if port != str(self._port):
             return False
         return name in ("127.0.0.1", "localhost", self._address)
+
+    async def _show(self, request):
+        if request.path not in self._files:
+            raise web.HTTPNotFound()
+        kind = TYPES.get(pathlib.PurePath(request.path).suffix, "application/octet-stream")
+        return web.Response(body=self._files[request.path], content_type=kind,
+                            charset="utf-8" if kind.startswith("text/") else None)
 
     async def _talk(self, request):
         name = request.path.rpartition("/")[2]
@@ -118,6 +195,7 @@ class Server:
             raise web.HTTPServiceUnavailable(text="too many pages are open\n")
         socket = web.WebSocketResponse(protocols=(PROTOCOL,), max_msg_size=LARGEST_MESSAGE, heartbeat=10)
         await socket.prepare(request)
+        self._strangers.release(request.transport)
         self._sockets[name][socket] = request
         self._count()
         orders: asyncio.Queue[dict] = asyncio.Queue(MOST_WAITING)

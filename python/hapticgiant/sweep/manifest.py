@@ -18,6 +18,7 @@ import sys
 HEADER = "sweep.json"
 KEYS = {"format", "title", "runs", "sweep", "version", "program", "files"}  # of the header
 LINES = re.compile(r"manifest(\.\d+of\d+)?\.jsonl")
+OF_RUN = {"run": int, "exit_code": int, "state_hash": str | None, "fault": str | int | None, "measures": dict | None}
 TABLES = ("results.parquet", "results.csv", "repeat.sh")
 
 
@@ -41,7 +42,7 @@ class Folder:
                                  "--again forgets them") from None
             self._refuse_files_of_others()
             return None
-        except ValueError:
+        except (ValueError, RecursionError):
             header = None
         if not isinstance(header, dict) or not KEYS <= header.keys():
             raise SweepError(f"{self.path / HEADER}: is damaged: --again forgets the runs")
@@ -99,7 +100,7 @@ class Folder:
     def _has_header(self):
         try:
             header = json.loads((self.path / HEADER).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+        except (OSError, ValueError, RecursionError):
             return False
         return isinstance(header, dict) and KEYS <= header.keys()
 
@@ -117,12 +118,22 @@ class Folder:
 
 
 def _read(line):
+    def refuse(word):
+        raise ValueError(word)
+
     try:
-        record = json.loads(line)
-    except ValueError:
+        record = json.loads(line, parse_constant=refuse)
+    except (ValueError, RecursionError):
         return None
-    is_whole = isinstance(record, dict) and {"run", "state_hash", "exit_code"} <= record.keys()
-    return record if is_whole else None
+    is_whole = isinstance(record, dict) and all(
+        key in record and isinstance(record[key], kind) for key, kind in OF_RUN.items())
+    return record if is_whole and _is_table(record.get("results")) else None
+
+
+def _is_table(results):
+    """Whether these are the results of a command: none, or by the number of the part what it has found."""
+    return results is None or isinstance(results, dict) and all(
+        number.isdecimal() and isinstance(found, dict) for number, found in results.items())
 
 
 def _lock(descriptor):

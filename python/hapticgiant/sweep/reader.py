@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import functools
 import json
-import math
 import os
 import pathlib
 
@@ -23,6 +22,7 @@ RETIRED = {"bounds": "device.rendering.bounds", "gantry": "device.rendering.gant
 FILES = ("scenario", "device", "twin", "user", "simulation")  # options that may name a file
 PARTS = ("scenario", "device", "simulation", "twin", "script")  # before the dot of a key
 MOST = 1_000_000  # of anything that is counted
+LARGEST = 1e100  # of numbers: a larger one cannot be squared
 
 
 class InputError(ValueError):
@@ -120,6 +120,8 @@ class Reader:
             root = yaml.compose(text, Loader=yaml.SafeLoader)
         except (OSError, UnicodeDecodeError) as error:
             raise InputError(f"{self.file}: cannot be read: {error}") from None
+        except RecursionError:
+            raise InputError(f"{self.file}: not valid YAML: nested too deeply") from None
         except yaml.YAMLError as error:
             mark = getattr(error, "problem_mark", None)
             place = f"{self.file}:{mark.line + 1}:{mark.column + 1}" if mark else str(self.file)
@@ -186,7 +188,7 @@ class Reader:
 
     def number(self, node, item):
         value = value_of(self.words(node))
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not abs(value) <= LARGEST:
             self.fault(node, item, f"expected a number, got '{self.words(node)}'")
         return value
 
