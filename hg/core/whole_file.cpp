@@ -29,14 +29,12 @@ bool is_replaced(const std::string& file) {
   return type == fs::file_type::regular || type == fs::file_type::not_found;
 }
 
-// The name under which a file is written until it is whole. A link or pipe of that name, in a
-// foreign folder, is removed: what it leads to is not written.
+// The name under which a file is written until it is whole. A link of that name, in a foreign
+// folder, is removed: what it leads to is not written. A named pipe or folder is refused later.
 std::string partial_of(const std::string& file) {
   std::string partial = file + ".partial";
   std::error_code error;
-  if (!is_replaced(partial) && !fs::is_directory(fs::symlink_status(partial, error))) {
-    fs::remove(partial, error);
-  }
+  if (fs::is_symlink(fs::symlink_status(partial, error))) fs::remove(partial, error);
   return partial;
 }
 
