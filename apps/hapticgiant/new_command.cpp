@@ -17,6 +17,8 @@
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
 #include "hg/check/ignored_urdf.h"
+#include "hg/check/twin_bodies.h"
+#include "hg/check/unit_inspection.h"
 #include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
@@ -74,6 +76,21 @@ void print_not_read(const std::filesystem::path& urdf, check::UrdfUse use) {
   for (const check::Finding& finding : found.findings) print_out("note        {}\n", finding.what);
 }
 
+// Numbers of the URDF that can only be in another unit, or placeholders.
+void print_doubted_units(const new_files::ChainPart& part) {
+  const std::string file = part.urdf.string();
+  const std::vector<config::SourceText> sources = {{file, read_file(part.urdf)}};
+  const config::Places places;
+  check::Collector found(sources, places);
+  const std::vector<std::string> joints = check::joint_names(new_files::read_part(part));
+  check::inspect_units(sources, joints, found);
+  check::inspect_bodies(sources, joints, found);
+  for (const check::Finding& finding : found.findings) {
+    print_error("WARNING {}:{}: {}: {}\n  to fix: {}\n", finding.file, finding.place.line,
+                finding.item, finding.what, finding.fix);
+  }
+}
+
 }  // namespace
 
 int new_device(const NewArguments& arguments) {
@@ -81,9 +98,10 @@ int new_device(const NewArguments& arguments) {
   const fs::path simulation = output.parent_path() / (output.stem().string() + "_simulation.yaml");
   const new_files::Drives drives = drives_named(arguments.drives);
   if (drives != new_files::Drives::kIdeal) check_new(arguments, simulation);
+  const new_files::ChainPart part = device_part(arguments);
   const new_files::DeviceFiles files =
-      new_files::draft_device(device_part(arguments), output.parent_path(), drives,
-                              simulation.filename().string(), progress_of("self-collision"));
+      new_files::draft_device(part, output.parent_path(), drives, simulation.filename().string(),
+                              progress_of("self-collision"));
   if (!files.simulation.empty()) {
     write_output(simulation.string(), files.simulation);
     print_out("{} written: its simulated drives and sensors, typical ones ([A]: assumed).\n",
@@ -95,6 +113,7 @@ int new_device(const NewArguments& arguments) {
   }
   write_output(output.string(), files.device);
   print_not_read(arguments.part.urdf, check::UrdfUse::kDevice);
+  print_doubted_units(part);
   for (const std::string& line : files.news) print_out("note        {}\n", line);
   for (const std::string& line : files.doubts)
     print_error("WARNING {}: {}\n", output.string(), line);
@@ -115,6 +134,7 @@ int new_twin(const NewArguments& arguments) {
                                                            device, progress_of("placements"));
   write_output(output.string(), draft.yaml);
   print_not_read(arguments.part.urdf, check::UrdfUse::kTwin);
+  print_doubted_units(arguments.part);
   if (!draft.note.empty()) print_out("note        {}\n", draft.note);
   if (!draft.doubt.empty()) print_error("WARNING {}: {}\n", output.string(), draft.doubt);
   if (!draft.problem.empty()) {

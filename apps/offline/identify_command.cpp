@@ -11,6 +11,7 @@
 #include "hg/config/shipped_files.h"
 #include "hg/core/open_file.h"
 #include "hg/identify/payload.h"
+#include "hg/identify/payload_units.h"
 #include "hg/identify/static_poses.h"
 
 namespace hg::apps {
@@ -100,6 +101,10 @@ int identify_payload(const IdentifyArguments& arguments) {
   const PayloadEstimate found = identify::identify_payload(poses);
   print_estimate(found);
   print_comparison(found, device.estimation.wrench.payload);
+  for (const std::string& doubt :
+       identify::payload_doubts(found, device.estimation.wrench.payload)) {
+    print_error("WARNING {}\n", doubt);
+  }
   if (!found.missing.empty()) {
     print_error("not usable: {}\n", found.missing);
     return 2;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hg/controller/safety/collision/guard.h"
+#include "hg/core/unit_doubt.h"
 
 namespace hg::check {
 
@@ -35,7 +36,8 @@ void inspect_collisions(const config::DeviceConfig& device, Collector& out) {
     const double size = collision::reach(shape);
     if (shape.is_surrounding || size <= kLargest) continue;
     out.add(Severity::kWarning, "collision",
-            fmt::format("shape {} reaches {:.3g} m: millimetres?", shape.name, size),
+            fmt::format("shape {} reaches {:.3g} m; {}", shape.name, size,
+                        suspected_unit(size, {0.0, kLargest}, kOtherLengths, "m")),
             "give lengths in metres, and meshes in millimetres a scale of 0.001");
   }
   const auto count = [&](collision::Exclusion reason) {

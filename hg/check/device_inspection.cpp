@@ -13,6 +13,8 @@
 #include "hg/check/ignored_urdf.h"
 #include "hg/check/stopping_rule.h"
 #include "hg/check/twin_bodies.h"
+#include "hg/check/unit_comparison.h"
+#include "hg/check/unit_inspection.h"
 #include "hg/model/chain_data.h"
 #include "hg/workspace/workspace.h"
 
@@ -90,8 +92,9 @@ void inspect_joints(const config::DeviceConfig& device, const workspace::Survey&
     } else if (survey.gravity_max.size() > static_cast<Eigen::Index>(i) &&
                survey.gravity_max[i] > joint.effort_max) {
       out.add_at_urdf(Severity::kFault, "joint", joint.name,
-                      fmt::format("needs {:.3g} to hold the device itself, its rating is {:g}",
-                                  survey.gravity_max[i], joint.effort_max),
+                      fmt::format("needs {:.3g} to hold the device itself, its rating is {:g}{}",
+                                  survey.gravity_max[i], joint.effort_max,
+                                  doubt_of_weight(survey.gravity_max[i], joint.effort_max)),
                       "give the true effort and masses, or limit the joints to postures it bears");
     }
   }
@@ -255,7 +258,9 @@ Findings inspect(const config::DeviceConfig& device, const workspace::Survey& su
   inspect_stopping(device, out);
   inspect_singularities(device, survey, out);
   inspect_collisions(device, out);
-  inspect_bodies(device.sources, out);
+  inspect_bodies(device.sources, joint_names(device.model.chain), out);
+  inspect_units(device.sources, joint_names(device.model.chain), out);
+  compare_units(device, survey, out);
   inspect_ignored(device.sources, UrdfUse::kDevice, out);
   inspect_floor(device, survey, out);
   return std::move(out.findings);

@@ -11,7 +11,9 @@
 #include "hg/check/machine_inspection.h"
 #include "hg/check/scenario_inspection.h"
 #include "hg/check/stiffness.h"
+#include "hg/check/twin_bodies.h"
 #include "hg/check/twin_inspection.h"
+#include "hg/check/unit_inspection.h"
 #include "hg/config/bus/machine_file.h"
 #include "hg/config/file_kind.h"
 #include "hg/config/simulation/scenario.h"
@@ -20,6 +22,7 @@
 #include "hg/config/tool.h"
 #include "hg/config/twin.h"
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/model/urdf.h"
 #include "hg/workspace/survey.h"
 
@@ -54,6 +57,14 @@ bool try_to(const std::string& file, Check& check, const std::function<void()>& 
   }
 }
 
+// Numbers of files that no device or twin brings along.
+void inspect_units_of(const std::vector<config::SourceText>& sources, Check& check) {
+  const config::Places places;
+  Collector out(sources, places);
+  inspect_units(sources, {}, out);
+  add(std::move(out.findings), check);
+}
+
 // A URDF alone: nothing says which of its parts are used, so all count.
 void load_urdf(const std::string& file, Check& check) {
   check.report.files.push_back({file, "URDF"});
@@ -69,6 +80,12 @@ void load_urdf(const std::string& file, Check& check) {
       for (Finding& finding : found) finding.severity = Severity::kWarning;  // it may stand still
       add(std::move(found), check);
     }
+    const std::vector<config::SourceText> sources = {{file, read_file(file)}};
+    const config::Places places;
+    Collector out(sources, places);
+    inspect_bodies(sources, {}, out);
+    add(std::move(out.findings), check);
+    inspect_units_of(sources, check);
   });
 }
 
@@ -98,11 +115,13 @@ void load(const std::string& file, Check& check) {
       case FileKind::kTool: {
         config::SourceReader reader;
         config::load_tool(file, reader);
+        inspect_units_of(reader.texts(), check);
         break;
       }
       case FileKind::kSimulation: {
         config::SourceReader reader;
         config::load_simulation(file, reader, {});
+        inspect_units_of(reader.texts(), check);
         break;
       }
       case FileKind::kMachine: {

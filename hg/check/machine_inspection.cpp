@@ -12,12 +12,22 @@
 namespace hg::check {
 namespace {
 
+constexpr double kFactor = 3.0;                   // between two ratings of one joint
 constexpr std::uint32_t kLargestTorque = 0x6072;  // CiA 402, in counts of target_torque
+
+// "; suspected scale 0.09" where a thousandth or a thousandfold makes the torque fit the rating.
+std::string scale_instead(double scale, double torque, double rating) {
+  for (const double factor : {1e-3, 1e3}) {
+    const double mended = factor * torque;
+    if (mended > kFactor * rating || rating > kFactor * mended) continue;
+    return fmt::format("; suspected scale {:.4g}", factor * scale);
+  }
+  return "";
+}
 
 // A drive whose largest torque is another than the joint's rating: its scale is wrong.
 void inspect_torque(const ethercat::Slave& slave, std::size_t index, double rating,
                     Collector& out) {
-  constexpr double kFactor = 3.0;
   const auto setting =
       std::ranges::find(slave.settings, kLargestTorque, &ethercat::Setting::object);
   const auto target = std::ranges::find(slave.outputs, ethercat::Output::kTargetTorque,
@@ -28,8 +38,8 @@ void inspect_torque(const ethercat::Slave& slave, std::size_t index, double rati
   out.add(Severity::kWarning,
           fmt::format("slaves[{}].outputs[{}].scale", index, target - slave.outputs.begin()),
           fmt::format("object 0x6072, {:g}, times this scale is {:.3g} Nm; the joint's rating is "
-                      "{:g} Nm",
-                      setting->value, torque, rating),
+                      "{:g} Nm{}",
+                      setting->value, torque, rating, scale_instead(target->scale, torque, rating)),
           "give Nm per count: for per mille of the rated torque, that over 1000");
 }
 

@@ -9,6 +9,8 @@
 #include "hg/check/ignored_urdf.h"
 #include "hg/check/stiffness.h"
 #include "hg/check/twin_bodies.h"
+#include "hg/check/unit_comparison.h"
+#include "hg/check/unit_inspection.h"
 #include "hg/controller/rendering/twin_elements.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/chain_data.h"
@@ -227,7 +229,9 @@ Findings inspect(const config::Twin& twin, double dt) {
   const TwinFigures figures = twin_figures(twin, twin_postures(twin, kPostures, kSeed));
   inspect_mass_matrix(figures, out);
   inspect_weight(figures, out);
-  inspect_bodies(twin.sources, out);
+  inspect_bodies(twin.sources, joint_names(twin.model.chain), out);
+  inspect_units(twin.sources, joint_names(twin.model.chain), out);
+  compare_units(twin, figures.mass, out);
   inspect_followers(twin, out);
   inspect_ignored(twin.sources, UrdfUse::kTwin, out);
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {

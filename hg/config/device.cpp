@@ -8,6 +8,7 @@
 #include "hg/config/device_collision.h"
 #include "hg/config/device_schema.h"
 #include "hg/config/loader.h"
+#include "hg/config/suspected_unit.h"
 #include "hg/config/tool.h"
 #include "hg/controller/safety/stopping.h"
 #include "hg/core/error.h"
@@ -126,7 +127,7 @@ void check_joints(Loader& loader, const model::ChainModel& chain, const DeviceDr
     loader.rule(
         std::isnan(posture[i]) || (limits.q_min <= posture[i] && posture[i] <= limits.q_max),
         "posture", draft.manipulator_names[i] + " must be within the limits of the joint",
-        model::to_text(posture[i]));
+        with_suspected_degrees(posture[i], limits, draft.joints[draft.manipulator[i]].unit));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "hg/config/suspected_unit.h"
 #include "hg/core/error.h"
 #include "hg/core/nearest_name.h"
 #include "hg/core/visible.h"
@@ -386,7 +387,8 @@ bool Loader::read_number(const YAML::Node& node, const std::string& item, std::s
     return false;
   }
   if (!bounds.contains(*number)) {
-    fault(node, item, "must be " + bounds.text() + ", got " + node.Scalar());
+    fault(node, item,
+          "must be " + bounds.text() + ", got " + node.Scalar() + suspected_of(*number, unit));
     return false;
   }
   value = *number;

@@ -9,6 +9,7 @@
 #include "hg/config/force_schema.h"
 #include "hg/config/parameter_schema.h"
 #include "hg/config/schema.h"
+#include "hg/config/suspected_unit.h"
 #include "hg/config/twin_draft.h"
 
 namespace hg::config {
@@ -61,7 +62,7 @@ void describe(V& v, TwinJoint& joint) {
     v.rule(std::isnan(joint.start) ||
                (dof.limits.q_min <= joint.start && joint.start <= dof.limits.q_max),
            kStart.of(joint.unit), "the start must be within the limits",
-           model::to_text(joint.start));
+           with_suspected_degrees(joint.start, dof.limits, joint.unit));
   }
   if (v.covers(is_floating)) describe(v, joint.floating);
 }

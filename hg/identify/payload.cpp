@@ -8,6 +8,7 @@
 #include "hg/core/cross.h"
 #include "hg/core/interval.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/identify/payload_units.h"
 
 namespace hg::identify {
 namespace {
@@ -71,6 +72,13 @@ std::string missing_poses(const Spread& spread, std::size_t poses, const Payload
   if (poses < kFewestPoses) {
     return fmt::format("{} poses, at least {} are needed", poses, kFewestPoses);
   }
+  constexpr double kCertain = 5.0;  // standard deviations
+  if (result.mass < -kCertain * result.mass_deviation) {
+    return fmt::format(
+        "the mass is {:.3g} kg: a must be acceleration minus gravity, which at rest points up, and "
+        "f the force on the sensor: one has the wrong sign",
+        result.mass);
+  }
   if (!(result.mass > 0.0)) return "no weight was measured: is there a payload, and is w_S in N?";
   if (result.mass_deviation > kMassAccuracy * result.mass || result.com_deviation > kComAccuracy) {
     return "the poses contradict each other: was the handle touched, did something move? "
@@ -112,7 +120,8 @@ PayloadEstimate identify_payload(std::span<const StaticPose> poses) {
   result.com_deviation =
       deviation(result.torque_residual, spread.worst()) / std::max(1e-9, std::abs(result.mass));
   result.condition = spread.worst() < 1e-9 ? kInfinity : std::sqrt(spread.best() / spread.worst());
-  result.missing = missing_poses(spread, poses.size(), result);
+  result.missing = acceleration_fault(poses);
+  if (result.missing.empty()) result.missing = missing_poses(spread, poses.size(), result);
   return result;
 }
 

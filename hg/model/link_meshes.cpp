@@ -4,6 +4,8 @@
 
 #include <sstream>
 
+#include "hg/model/urdf_vectors.h"
+
 namespace hg::model {
 namespace {
 
@@ -34,10 +36,19 @@ void add_meshes(const XMLElement& link, const char* kind, std::vector<LinkMesh>&
     const XMLElement* geometry = e->FirstChildElement("geometry");
     const XMLElement* mesh = geometry ? geometry->FirstChildElement("mesh") : nullptr;
     if (mesh == nullptr || mesh->Attribute("filename") == nullptr) continue;
-    meshes.push_back({.link = link.Attribute("name", nullptr),
-                      .name = mesh->Attribute("filename"),
-                      .T_link_mesh = origin(*e),
-                      .scale = vector3(mesh, "scale", Eigen::Vector3d::Ones())});
+    LinkMesh& added = meshes.emplace_back(LinkMesh{.link = link.Attribute("name", nullptr),
+                                                   .name = mesh->Attribute("filename"),
+                                                   .T_link_mesh = origin(*e),
+                                                   .fault = {}});
+    const char* text = mesh->Attribute("scale");
+    if (text == nullptr) continue;
+    const std::optional<Eigen::Vector3d> scale = vector3_of(text);
+    if (scale) {
+      added.scale = *scale;
+    } else {
+      added.fault = std::to_string(mesh->GetLineNum()) + ": link " + added.link +
+                    ": <mesh> scale must be three numbers, got '" + text + "'";
+    }
   }
 }
 

@@ -13,6 +13,7 @@ struct LinkMesh {
   std::string name;  ///< File name as it stands in the URDF
   Pose T_link_mesh;
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+  std::string fault;  ///< What is wrong with its scale, with the line before it; empty: nothing
 };
 
 /// The meshes of the <collision> elements, and those of the <visual> elements of links that have no

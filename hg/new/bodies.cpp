@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "hg/core/error.h"
 #include "hg/core/mesh_file.h"
 #include "hg/core/open_file.h"
 #include "hg/model/link_meshes.h"
@@ -188,6 +189,7 @@ std::vector<Body> read_bodies(const ChainPart& part, const model::Urdf& urdf,
   for (const model::LinkMesh& mesh : model::link_meshes(read_file(part.urdf))) {
     const auto place = std::ranges::find(places, mesh.link, &collision::Shape::name);
     if (place == places.end()) continue;
+    if (!mesh.fault.empty()) throw SetupError(part.urdf.generic_string() + ":" + mesh.fault);
     const std::vector<Triangle> triangles = read_mesh(find_mesh(part.urdf, mesh.name), mesh);
     if (triangles.empty()) {
       if (std::ranges::find(unread, mesh.name) == unread.end()) unread.push_back(mesh.name);

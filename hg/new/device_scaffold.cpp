@@ -331,7 +331,8 @@ std::vector<std::string> doubts_of(const DeviceDraft& d, const Reach& reach) {
   const double extent = (reach.upper - reach.lower).maxCoeff();
   if (extent > kFarthest) {
     doubts.push_back(fmt::format(
-        "the handle moves through {:.3g} m: are the lengths of the URDF millimetres?", extent));
+        "the handle moves through {:.3g} m: are the lengths of the URDF millimetres? {:.3g} m",
+        extent, 1e-3 * extent));
   }
   return doubts;
 }

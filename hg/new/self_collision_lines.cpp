@@ -113,8 +113,9 @@ std::vector<std::string> doubts_of(const SelfCollision& shapes) {
   for (const FittedBody& body : shapes.bodies) {
     if (body.size > kLargest) {
       doubts.push_back(fmt::format(
-          "link {}: {} is {:.3g} m large: millimetres? <mesh scale=\"0.001 0.001 0.001\">",
-          body.link, names_of(body), body.size));
+          "link {}: {} is {:.3g} m large: millimetres? <mesh scale=\"0.001 0.001 0.001\"> makes it "
+          "{:.3g} m",
+          body.link, names_of(body), body.size, 1e-3 * body.size));
     } else if (body.size < kSmallest) {
       doubts.push_back(fmt::format("link {}: {} is smaller than 1 mm: is its scale right?",
                                    body.link, names_of(body)));

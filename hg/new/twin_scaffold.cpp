@@ -86,8 +86,8 @@ std::string doubt_of(const Mechanism& d) {
     const double way = is_slide ? d.ranges[i].ub - d.ranges[i].lb : d.lever[i];
     if (way < kFarthest) continue;
     return fmt::format(
-        "joint {} moves {} by up to {:.3g} m{}: are the lengths of the URDF millimetres?",
-        joint(d, i).name, held, way, is_slide ? "" : " per rad");
+        "joint {} moves {} by up to {:.3g} m{}: are the lengths of the URDF millimetres? {:.3g} m",
+        joint(d, i).name, held, way, is_slide ? "" : " per rad", 1e-3 * way);
   }
   if (d.lever.maxCoeff() > kOnAxis) return "";
   return fmt::format(

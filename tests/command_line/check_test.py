@@ -131,11 +131,52 @@ class Check(unittest.TestCase):
         wrong.write_text(machine.read_text().replace("scale: 0.09}", "scale: 90}"))
         _, out, _ = check(DEVICE, wrong)
         self.assertRegex(out, r"machine\.yaml:\d+:\d+: warning: slaves\[\d\]\.outputs\[1\]\.scale: "
-                              r"object 0x6072, 1956, times this scale is 1\.76e\+05 Nm; the joint's rating is 176 Nm")
+                              r"object 0x6072, 1956, times this scale is 1\.76e\+05 Nm; the joint's rating is 176 Nm; "
+                              r"suspected scale 0\.09")
 
     def test_a_machine_of_another_device_is_not_held_against_it(self):
         code, out, _ = check(MODELS / "arms/ur5e/device.yaml", DEVICE.with_name("machine.yaml"))
         self.assertEqual((code, "must be a joint of the device" in out), (0, False), out)
+
+    def test_numbers_in_another_unit_are_doubted_at_their_places(self):
+        posture = self.changed(MODELS / "examples", "arm.yaml", (
+            "handle: handle\n", "handle: handle\nposture: {turn: 0, shoulder: -45, elbow: 90}\n"))
+        code, out, _ = check(posture)
+        self.assertEqual(code, 2)
+        for joint, degrees, radians in (("shoulder", "-45", "-0.7854"), ("elbow", "90", "1.571")):
+            self.assertIn(f"posture: {joint} must be within the limits of the joint, got {degrees}; "
+                          f"suspected degrees: {radians} rad", out)
+        urdf = self.folder / "arm.urdf"
+        urdf.write_text((MODELS / "examples" / "arm.urdf").read_text().replace(
+            'lower="-1.9" upper="1.9"', 'lower="-110" upper="110"'))
+        code, out, _ = check(urdf)
+        self.assertEqual(code, 0)
+        self.assertIn("arm.urdf:14:1: warning: joint shoulder: <limit> -110 .. 110: 110 rad are 17.51 turns; "
+                      "suspected degrees: 1.92 rad", out)
+
+    def test_new_doubts_what_check_doubts_of_a_urdf(self):
+        urdf = self.folder / "arm.urdf"
+        text = (MODELS / "examples" / "arm.urdf").read_text().replace('lower="-1.9" upper="1.9"',
+                                                                      'lower="-110" upper="110"')
+        text = re.sub(r'mass value="[^"]*"', 'mass value="0.01"', text)
+        urdf.write_text(re.sub(r'(ixx|iyy|izz)="[^"]*"', r'\1="0.001"', text))
+        made = subprocess.run([PROGRAM, "new", "device", urdf, "-o", self.folder / "d.yaml"],
+                              capture_output=True, text=True, timeout=120)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("arm.urdf:14: joint shoulder: <limit> -110 .. 110: 110 rad are 17.51 turns", made.stderr)
+        self.assertIn("all 6 moving links have its inertia, 0.06 kg in all", made.stderr)
+
+    def test_a_scale_that_is_no_scale_is_refused_where_it_matters(self):
+        urdf = self.folder / "arm.urdf"
+        text = (MODELS / "examples" / "arm.urdf").read_text()
+        shape = '<collision><geometry><mesh filename="m.stl" scale="0.001 0.001"/></geometry></collision>'
+        urdf.write_text(text.replace('<link name="upper_arm">', '<link name="upper_arm">' + shape))
+        what = "<mesh> scale must be three numbers"
+        self.assertRegex(check(urdf)[1], rf"arm\.urdf:19:1: warning: link upper_arm: {what}")
+        made = subprocess.run([PROGRAM, "new", "device", urdf, "-o", self.folder / "d.yaml"],
+                              capture_output=True, text=True, timeout=120)
+        self.assertNotEqual(made.returncode, 0)
+        self.assertIn(f"arm.urdf:19: link upper_arm: {what}, got '0.001 0.001'", made.stderr)
 
     def test_a_folder_of_another_encoding_is_no_internal_error(self):
         folder = pathlib.Path(os.fsdecode(os.fsencode(self.folder) + b"/T\xfcr"))

@@ -608,31 +608,44 @@ TEST(IgnoredUrdf, FrictionOfADeviceIsNotTakenFromItsUrdf) {
       << all_of(device);
 }
 
-// links of 0.2 and 0.3 m, each with 10 g
+// A chain of links of 0.1, 0.2, ... m with these masses, kg, and moments, kg m^2.
+Findings findings_of_links(const std::vector<std::pair<double, Eigen::Vector3d>>& links,
+                           const std::vector<std::string>& joints = {}) {
+  std::string urdf = "<robot name=\"r\"><link name=\"l0\"/>";
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const auto& [mass, I] = links[i];
+    urdf += fmt::format(
+        "<link name=\"l{0}\"><inertial><mass value=\"{1}\"/><inertia ixx=\"{2}\" iyy=\"{3}\" "
+        "izz=\"{4}\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link><joint name=\"j{0}\" "
+        "type=\"continuous\"><parent link=\"l{5}\"/><child link=\"l{0}\"/><origin xyz=\"0 0 "
+        "{6}\"/></joint>",
+        i + 1, mass, I.x(), I.y(), I.z(), i, 0.1 * static_cast<double>(i + 1));
+  }
+  const std::vector<config::SourceText> sources = {{"f.yaml", ""}, {"r.urdf", urdf + "</robot>"}};
+  const config::Places places;
+  Collector out(sources, places);
+  inspect_bodies(sources, joints, out);
+  return out.findings;
+}
+
 TEST(Bodies, PlaceholdersAreNamed) {
-  const auto findings_with = [](const char* mass_of_b) {
-    std::string urdf = "<robot name=\"r\"><link name=\"o\"/>";
-    const char* const names[] = {"a", "b", "c"};
-    for (int i = 0; i < 3; ++i) {
-      urdf += fmt::format(
-          "<link name=\"{0}\"><inertial><mass value=\"{1}\"/><inertia ixx=\"1\" iyy=\"1\" "
-          "izz=\"1\" "
-          "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link><joint name=\"j{0}\" "
-          "type=\"continuous\"><parent link=\"{2}\"/><child link=\"{0}\"/><origin xyz=\"0 0 {3}\"/>"
-          "</joint>",
-          names[i], i == 1 ? mass_of_b : "0.01", i == 0 ? "o" : names[i - 1], 0.1 * (i + 1));
-    }
-    const std::vector<config::SourceText> sources = {{"f.yaml", ""}, {"r.urdf", urdf + "</robot>"}};
-    const config::Places places;
-    Collector out(sources, places);
-    inspect_bodies(sources, out);
-    return out.findings;
+  const Eigen::Vector3d slim(0.02, 0.02, 0.01), ball(0.02, 0.02, 0.02), own(0.03, 0.03, 0.01);
+  const auto says = [](const Findings& findings, const char* what) {
+    return find(findings, "link l1", what) != nullptr;
   };
-  const Findings alike = findings_with("0.01");
-  EXPECT_NE(find(alike, "link a", "all 3 moving links have its mass and inertia, 0.03 kg"), nullptr)
-      << all_of(alike);
-  const Findings own = findings_with("0.02");
-  EXPECT_EQ(find(own, "link a", "have its mass"), nullptr) << all_of(own);
+  EXPECT_TRUE(says(findings_of_links({{1, slim}, {1, slim}, {1, slim}}),
+                   "all 3 moving links have its inertia, 3 kg in all, but not its length"));
+  EXPECT_TRUE(says(findings_of_links({{1, slim}, {1, slim}, {1, slim}, {2, own}}),
+                   "3 of 4 moving links have its inertia"));
+  EXPECT_TRUE(says(findings_of_links({{1, ball}, {2, ball}, {3, ball}}),
+                   "all 3 moving links have its inertia, 6 kg in all"));
+  for (const auto& fair :
+       {findings_of_links({{1, slim}, {1, slim}, {1, slim}}, {"j1", "j2"}),
+        findings_of_links({{1, slim}, {2, slim}, {3, slim}}),
+        findings_of_links({{1, slim}, {1, slim}, {1, own}}),
+        findings_of_links({{1, slim}, {1, slim}, {1, slim}, {2, own}, {3, own}, {4, own}})}) {
+    EXPECT_FALSE(says(fair, "have its inertia")) << all_of(fair);
+  }
 }
 
 TEST(Findings, TakesMessagesApart) {
