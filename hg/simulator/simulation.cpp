@@ -43,6 +43,7 @@ Simulation::Simulation(const SimulatorConfig& config, const model::ChainModel& c
     throw SetupError("simulation: latency must be at most " + std::to_string(kMaxLatency) +
                      " periods, got " + std::to_string(config_.latency) + " s");
   }
+  interpolator_ = DriveInterpolator(config_.sensed.period);
   look({});
   at_work_ = silence(truth_);
   sample();
@@ -56,6 +57,7 @@ void Simulation::step(const CommandFrame& command, const HardwareFaults& faults)
   const bool is_new = command.sequence == 0 || command.sequence != last_number_;
   silent_s_ = is_new ? 0.0 : silent_s_ + config_.sensed.period;
   last_number_ = command.sequence;
+  is_cut_off_ = is_cut_off_ || (at_work_.enable && silent_s_ > config_.drive_watchdog);
   const bool leaves = config_.leaves_handle_for_key && command.panel.override_key;
   has_left_handle_ = (has_left_handle_ || leaves) && !command.hand_target.active;
   for (int i = 0; i < config_.steps; ++i) {
@@ -86,16 +88,18 @@ void Simulation::watch_over(const SafetyPanel& panel) noexcept {
 
 void Simulation::take_due_command() noexcept {
   while (waiting_count_ > 0 && waiting_[first_waiting_].due <= steps_) {
-    at_work_ = waiting_[first_waiting_].command;
-    arrived_ = waiting_[first_waiting_].due;
+    const CommandFrame& command = waiting_[first_waiting_].command;
+    const bool is_new = command.sequence == 0 || command.sequence != at_work_.sequence;
+    if (is_new) interpolator_.take({command.q_m, command.dq_m, command.ddq_m});
+    at_work_ = command;
+    is_cut_off_ = is_cut_off_ && at_work_.enable;
     first_waiting_ = (first_waiting_ + 1) % waiting_.size();
     --waiting_count_;
   }
 }
 
 void Simulation::move(const CommandFrame& command) noexcept {
-  const bool is_watched = silent_s_ <= config_.drive_watchdog;
-  const bool is_on = command.enable && is_watched && safety_plc_.has_power();
+  const bool is_on = command.enable && !is_cut_off_ && safety_plc_.has_power();
   if (auto* ideal = std::get_if<IdealPlant>(&plant_)) {
     ideal->step(command, is_on);
     return;
@@ -106,12 +110,14 @@ void Simulation::move(const CommandFrame& command) noexcept {
                       .faults = faults_,
                       .dq_p_command = command.dq_p,
                       .w_H = w_H_};
-  if (plant.config().position_loop) {
-    const double age = static_cast<double>(steps_ + 1 - arrived_) * config_.sensed.step;
-    input.reference =
-        interpolated({command.q_m, command.dq_m, command.ddq_m}, age, config_.sensed.period);
+  if (plant.config().position_loop && is_on) {
+    if (!interpolator_.has_command()) {
+      interpolator_.take({command.q_m, command.dq_m, command.ddq_m});
+    }
+    input.reference = interpolator_.advance(config_.sensed.step);
   }
   if (!is_on) {
+    interpolator_.rest();
     input.tau_command = VectorM::Zero(truth_.q_m.size());
     input.dq_p_command = VectorP::Zero(truth_.q_p.size());
   }
@@ -153,6 +159,7 @@ void Simulation::sample() noexcept {
   take_due_command();  // a command that arrives at the moment of the sample is in effect
   sensors_.sample(truth_, frame_);
   frame_.answered_sequence = at_work_.sequence;
+  frame_.driver_fault = is_cut_off_ ? FaultCode::kCommandsLost : FaultCode::kNone;
   frame_.dead_man = config_.has_dead_man && is_held();
 }
 

@@ -36,8 +36,9 @@ struct SimulatorConfig {
   /// is active
   bool leaves_handle_for_key = false;
   SafetyPlcConfig safety;  ///< its period is that of the loop
-  /// Time without a new command after which the drives switch themselves off, s; [HANDBOOK] 6.6. A
-  /// command is new when its number is; commands without a number (0) are always new.
+  /// Time without a new command after which the drives switch themselves off and report
+  /// kCommandsLost, until they are commanded off, s; [HANDBOOK] 6.6. A command is new when its
+  /// number is; commands without a number (0) are always new.
   double drive_watchdog = 0.01;
 };
 
@@ -85,11 +86,12 @@ class Simulation {
   std::uint64_t steps_ = 0;  ///< steps of the plant so far
   std::array<Waiting, kMaxLatency + 1> waiting_;
   std::size_t first_waiting_ = 0, waiting_count_ = 0;
-  std::uint64_t last_number_ = 0;  ///< number of the last command
-  double silent_s_ = 0.0;          ///< time since the last new command, s
-  bool has_left_handle_ = false;   ///< the person keeps off for the override key
-  CommandFrame at_work_;           ///< the newest command that has reached the drives
-  std::uint64_t arrived_ = 0;      ///< step of the plant at which it did
+  std::uint64_t last_number_ = 0;   ///< number of the last command
+  double silent_s_ = 0.0;           ///< time since the last new command, s
+  bool has_left_handle_ = false;    ///< the person keeps off for the override key
+  bool is_cut_off_ = false;         ///< the drives have switched themselves off
+  CommandFrame at_work_;            ///< the newest command that has reached the drives
+  DriveInterpolator interpolator_;  ///< of drives that follow positions
   Vector6 w_H_ = Vector6::Zero();
   Truth truth_;
   SensorFrame frame_;

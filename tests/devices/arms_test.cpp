@@ -71,6 +71,64 @@ TEST_P(PushedArm, StopsAtItsWalls) {
   }
 }
 
+// A hand moves the tool, and again and again the drives get no commands for some milliseconds:
+// their joints stay within their ratings, as without that, or a fault that says so stops them.
+class ArmWithGaps : public testing::TestWithParam<const char*> {
+ protected:
+  struct Played {
+    double acceleration = 0.0;  ///< largest of any joint in motion, as a share of its rating
+    FaultCode fault = FaultCode::kNone;
+  };
+  Played played(int gap_ms) const {
+    const TemporaryFolder folder;
+    const std::string arm = std::filesystem::absolute("models/arms").string() + "/" + GetParam();
+    folder.write("move.yaml",
+                 "frame: base\nhand: {preset: normal, force_max_N: 60}\nsegments:\n"
+                 "  - {start_s: 1, duration_s: 0.6, by: {x_m: 0.1, y_m: 0.2}}\n"
+                 "  - {start_s: 1.6, duration_s: 0.6, by: {y_m: -0.3, z_m: 0.1}}\n"
+                 "  - {start_s: 2.2, duration_s: 0.6, by: {x_m: -0.1, y_m: 0.2}}\nduration_s: 3\n");
+    std::string text = "title: Gaps\ndescription: Lost commands.\ndevice: " + arm +
+                       "/device.yaml\ntwin: " + arm +
+                       "/tool.yaml\nperson: move.yaml\nduration_s: 3\nfaults:\n";
+    for (int k = 0; k < 5 && gap_ms > 0; ++k) {
+      text += "  - {fault: commands_lost, at_s: " + std::to_string(1.9 + 0.23 * k) +
+              ", for_s: " + std::to_string(1e-3 * gap_ms) + "}\n";
+    }
+    if (gap_ms == 0) text += "  []\n";
+    ScenarioRun run(config::load_scenario(folder.write("gaps.yaml", text)));
+    const DeviceModel& device = run.scenario().device.model;
+    Played result;
+    VectorM before;
+    run.play([&](const Sample& sample) {
+      const VectorM& dq = sample.truth.dq_m;
+      for (Eigen::Index i = 0; i < before.size() && sample.record.time_s > 1.8; ++i) {
+        const double ddq = std::abs(dq[i] - before[i]) / device.dt();
+        result.acceleration = std::max(result.acceleration, ddq / device.joint_limits[i].ddq_max);
+      }
+      before = dq;
+    });
+    result.fault = run.summary().fault().code;
+    return result;
+  }
+};
+
+TEST_P(ArmWithGaps, MovesWithinItsRatingsOrStops) {
+  const Played whole = played(0);
+  EXPECT_EQ(whole.fault, FaultCode::kNone);
+  for (const int gap_ms : {2, 5, 8}) {
+    const Played gaps = played(gap_ms);
+    EXPECT_EQ(gaps.fault, FaultCode::kNone) << gap_ms;
+    EXPECT_LT(gaps.acceleration, std::max(1.0, 1.5 * whole.acceleration)) << gap_ms;
+  }
+  for (const int gap_ms : {20, 60}) {
+    const Played gaps = played(gap_ms);
+    EXPECT_EQ(gaps.fault, FaultCode::kCommandsLost) << gap_ms;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, ArmWithGaps,
+                         testing::Values("fr3", "iiwa14", "ur5e", "ur10e", "xarm7", "gen3"),
+                         [](const auto& arm) { return std::string(arm.param); });
 INSTANTIATE_TEST_SUITE_P(Arms, PushedArm,
                          testing::Values("fr3", "iiwa14", "ur5e", "ur10e", "xarm7", "gen3"),
                          [](const auto& arm) { return std::string(arm.param); });

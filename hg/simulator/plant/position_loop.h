@@ -22,9 +22,35 @@ struct DriveReference {
   VectorM q, dq, ddq;
 };
 
-/// Reference at `age` (s) after the arrival of a command that asks for q, dq, ddq one `period` (s)
-/// after it. A command that has no successor ends there.
-DriveReference interpolated(const DriveReference& command, double age, double period) noexcept;
+/// What such drives make of their commands. A command asks for q, dq, ddq one period after its
+/// arrival. Without a successor it continues with its acceleration; the difference to the one that
+/// then comes vanishes within kCatchUp_s, so that neither steps the joints.
+class DriveInterpolator {
+ public:
+  static constexpr double kCatchUp_s = 0.1;
+
+  DriveInterpolator() = default;
+  /// `period`: between two commands, s.
+  explicit DriveInterpolator(double period) noexcept : period_(period) {}
+
+  /// A command arrives; advance() has been called up to now.
+  void take(const DriveReference& command) noexcept;
+  /// Reference after another `step`, s.
+  DriveReference advance(double step) noexcept;
+  /// Without power: the next command is taken as it is.
+  void rest() noexcept { *this = DriveInterpolator(period_); }
+  bool has_command() const noexcept { return command_.q.size() > 0; }
+
+ private:
+  DriveReference commanded() const noexcept;
+  DriveReference present() const noexcept;
+
+  double period_ = 0.0;
+  double age_ = 0.0;        // of the command, s
+  double since_ = 0.0;      // of the end of the last gap, s
+  DriveReference command_;  // empty: none has come
+  DriveReference gap_;      // difference at the end of the last gap; empty: none
+};
 
 class PositionLoop {
  public:

@@ -70,12 +70,49 @@ TEST(PositionLoop, ItsTorqueEndsAtThatOfTheMotor) {
   EXPECT_GT(plant.truth().q_m[0], 0.1) << "the hand is stronger and pushes it away";
 }
 
-TEST(PositionLoop, ACommandIsReachedAPeriodAfterItsArrival) {
-  const DriveReference command = at(1.0, 2.0, 4.0);
-  EXPECT_DOUBLE_EQ(interpolated(command, 1e-3, 1e-3).q[0], 1.0);
-  EXPECT_DOUBLE_EQ(interpolated(command, 0.0, 1e-3).q[0], 1.0 - 2e-3 + 2e-6);
-  EXPECT_DOUBLE_EQ(interpolated(command, 0.0, 1e-3).dq[0], 2.0 - 4e-3);
-  EXPECT_DOUBLE_EQ(interpolated(command, 5e-3, 1e-3).q[0], 1.0) << "no successor: it ends there";
+TEST(DriveInterpolator, ReachesACommandAPeriodAfterItsArrivalAndContinuesIt) {
+  DriveInterpolator drive(1e-3);
+  drive.take(at(1.0, 2.0, 4.0));
+  EXPECT_NEAR(drive.advance(0.5e-3).dq[0], 2.0 - 2e-3, 1e-12);
+  EXPECT_NEAR(drive.advance(0.5e-3).q[0], 1.0, 1e-12);
+  EXPECT_NEAR(drive.advance(2e-3).q[0], 1.0 + 4e-3 + 8e-6, 1e-12) << "no successor";
+}
+
+// A sine whose commands stay away for up to 8 ms, at the worst moment: its acceleration turns.
+TEST(DriveInterpolator, AGapInTheCommandsStepsNeitherPositionNorSpeed) {
+  constexpr double kPeriod = 1e-3, w = 40.0, kMost = 0.2 * w * w;
+  for (const int periods : {1, 2, 5, 8}) {
+    DriveInterpolator drive(kPeriod);
+    DriveReference before;
+    for (int k = 0; k < 400; ++k) {
+      const double t = (k + 1) * kPeriod;
+      const bool is_lost = k >= 150 && k < 150 + periods;
+      if (!is_lost) {
+        drive.take(at(0.2 * std::sin(w * t), 0.2 * w * std::cos(w * t), -kMost * std::sin(w * t)));
+      }
+      const DriveReference now = drive.advance(kPeriod);
+      if (k > 0) {
+        EXPECT_LT(std::abs(now.dq[0] - before.dq[0]), 1.3 * kMost * kPeriod) << periods << " " << k;
+        EXPECT_LT(std::abs(now.q[0] - before.q[0] - kPeriod * now.dq[0]),
+                  kMost * kPeriod * kPeriod);
+      }
+      before = now;
+      const bool has_caught_up = k > 151 + periods + 100;
+      if (k < 150 || has_caught_up) {
+        EXPECT_NEAR(now.q[0], 0.2 * std::sin(w * t), 1e-9);
+      }
+    }
+  }
+}
+
+TEST(DriveInterpolator, WithoutPowerTheNextCommandIsTakenAsItIs) {
+  DriveInterpolator drive(1e-3);
+  drive.take(at(1.0, 0.0, 0.0));
+  drive.advance(20e-3);
+  drive.rest();
+  EXPECT_FALSE(drive.has_command());
+  drive.take(at(2.0, 0.0, 0.0));
+  EXPECT_DOUBLE_EQ(drive.advance(1e-3).q[0], 2.0);
 }
 
 TEST(Simulation, PositionDrivesReportTheirMotorsAndNoTorques) {
