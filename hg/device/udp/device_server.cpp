@@ -24,6 +24,8 @@ namespace {
 constexpr std::int64_t kLook = 100'000'000;  // ns, between two checks whether to stop
 constexpr int kGoodbyes = 3;                 // not acknowledged: one may be lost
 constexpr std::size_t kMostCandidates = 16;  // remembered candidates
+constexpr std::size_t kMostAnswer = 2;  // times the bytes of a hello, whose sender may be forged
+constexpr std::size_t kNetwork = 28;    // bytes of the headers of IPv4 and UDP
 
 std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
@@ -301,12 +303,12 @@ void Server::refuse(ConnectionRefusal refusal, const std::string& reason, std::u
                     const Peer& to) {
   ++refused_;
   Outbox outbox(0);  // without a tag, so that a client with another key or none can read it
-  send(Welcome{.nonce = nonce,
-               .refusal = refusal,
-               .actual = config_.actual,
-               .server = config_.server,
-               .reason = reason},
-       outbox, to);
+  const std::span<const std::byte> answer = outbox.encode(Welcome{.nonce = nonce,
+                                                                  .refusal = refusal,
+                                                                  .actual = config_.actual,
+                                                                  .server = config_.server,
+                                                                  .reason = reason});
+  if (answer.size() + kNetwork <= kMostAnswer * (datagram_.size + kNetwork)) send_bytes(answer, to);
 }
 
 bool Server::wait_for_client(const std::atomic<bool>& stop) {

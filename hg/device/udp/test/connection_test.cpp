@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstring>
 #include <memory>
 #include <random>
 #include <thread>
@@ -269,6 +270,29 @@ TEST(Connection, AnotherVersionIsNamedOnBothSides) {
   ASSERT_TRUE(decode(datagram.view(), welcome));
   EXPECT_EQ(welcome.refusal, ConnectionRefusal::kProtocol);
   EXPECT_EQ(welcome.reason.view(), "protocol: version 2, expected 9");
+}
+
+// Whoever forges the address of a sender must not make the server send more than that sender could.
+TEST(Connection, AnswersHaveAtMostTwiceTheBytesOfTheQuestion) {
+  constexpr std::size_t kNetwork = 28 + 4;  // headers of IPv4 and UDP, and the checksum
+  EXPECT_LE(size_of<Welcome>() + size_of<Header>() + kNetwork,
+            2 * (size_of<Hello>() + size_of<Header>() + kNetwork));
+  Serving serving(true);
+  UdpSocket other = UdpSocket::talking_to(serving.address());
+  Datagram datagram;
+  encode({.version = 9}, Ready{}, datagram);  // as short as can be, and made a hello
+  const auto hello = static_cast<std::uint16_t>(MessageType::kHello);
+  std::memcpy(datagram.bytes.data() + 6, &hello, sizeof hello);
+  const std::uint32_t crc = checksum(datagram.view().first(datagram.size - sizeof crc));
+  std::memcpy(datagram.bytes.data() + datagram.size - sizeof crc, &crc, sizeof crc);
+  other.send(datagram.view());
+  encode({.version = 8}, Hello{}, datagram);
+  other.send(datagram.view());
+  Peer from;
+  while (!other.receive(datagram, from)) other.wait(now_ns() + 1'000'000'000);
+  Welcome welcome;
+  ASSERT_TRUE(decode(datagram.view(), welcome));
+  EXPECT_EQ(welcome.reason.view(), "protocol: version 2, expected 8") << "none to the first";
 }
 
 TEST(Connection, AMissingDeviceIsOneClearSentence) {
