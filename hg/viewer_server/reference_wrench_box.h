@@ -1,6 +1,6 @@
 /// Mailbox for reference wrenches of live clients: the program takes the newest.
 ///
-/// One client gives it at a time: the first, until it ends, leaves, or is silent for 0.5 s; then
+/// One client gives it at a time: the first, until it ends, leaves, or is silent for 0.12 s; then
 /// the wrench is zero. Times are arguments. Not synchronised.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace hg::viewer_server {
 
 class ReferenceWrenchBox {
  public:
-  static constexpr double kSilence_s = 0.5;
+  static constexpr double kSilence_s = 0.12;
 
   /// Stores a wrench, resolved in B; false when another client gives one: it is ignored.
   bool put(std::uint64_t client, const Vector6& w, double now_s) {

@@ -10,6 +10,7 @@ namespace hg::rendering {
 namespace {
 
 constexpr double kApproach = 0.1;  // s; a person feels a change, not a blow
+constexpr double kEnd = 0.02;      // s; of a reference wrench that ends: its source may be gone
 constexpr double kArrived = 1e-9;  // of the larger of 1 and the target
 
 void approach(double& now, double target, double share) noexcept {
@@ -176,7 +177,10 @@ void advance_parameters(const TwinModel& twin, const TwinState& state, double dt
         limits::advanced(parameters.moving[i], target_range(twin, dof, parameters),
                          position_of(twin, dof, state.q_a), v_rec, dt);
   }
-  for (int i = 0; i < 6; ++i) approach(now.w_ref[i], target.w_ref[i], share);
+  const double end_share = -std::expm1(-dt / kEnd);
+  for (int i = 0; i < 6; ++i) {
+    approach(now.w_ref[i], target.w_ref[i], target.w_ref[i] == 0.0 ? end_share : share);
+  }
   approach(now.loads.mass, target.loads.mass, share);
   approach(now.loads.gravity, target.loads.gravity, share);
 }

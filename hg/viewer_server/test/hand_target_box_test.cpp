@@ -4,6 +4,7 @@
 #include <rapidcheck.h>
 
 #include "hg/viewer_server/message_rate.h"
+#include "hg/viewer_server/reference_wrench_box.h"
 
 namespace hg::viewer_server {
 namespace {
@@ -75,6 +76,20 @@ TEST(HandTargetBox, ClampsTargetsToTheLimitsPlusHalfAMetre) {
     RC_ASSERT(grown.contains(target.p_B));
     RC_ASSERT((target.p_B - p).norm() <= grown.exteriorDistance(p) + 1e-12);
   });
+}
+
+TEST(ReferenceWrenchBox, ASilentClientsWrenchEndsOnce) {
+  ReferenceWrenchBox box;
+  Vector6 w;
+  std::uint64_t client = 0;
+  box.put(7, Vector6::Constant(5.0), 10.0);
+  ASSERT_TRUE(box.take(w, client, 10.1));
+  EXPECT_EQ(w[0], 5.0);
+  EXPECT_FALSE(box.take(w, client, 10.11));
+  ASSERT_TRUE(box.take(w, client, 10.13));
+  EXPECT_TRUE(w.isZero());
+  EXPECT_EQ(client, 0U);
+  EXPECT_FALSE(box.take(w, client, 20.0));
 }
 
 TEST(MessageRate, AdmitsTheBurstAndThenTheRate) {

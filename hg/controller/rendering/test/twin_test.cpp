@@ -286,6 +286,19 @@ TEST(Changes, OfAnyValueReachItWithoutABump) {
   }
 }
 
+// Whoever gave it may be gone: what is left after 80 ms is nothing that a hand feels.
+TEST(Changes, AReferenceWrenchEndsSoonerThanItBegins) {
+  HeldDoor door;
+  const auto wrench_after = [&](double value, int periods) {
+    EXPECT_EQ(door.change(Parameter::kReferenceWrench, 0, value), ChangeStatus::kTaken);
+    door.hold(periods);
+    return door.state.inner.parameters.now.w_ref[0];
+  };
+  EXPECT_NEAR(wrench_after(20.0, 100), 20.0 * (1.0 - std::exp(-1.0)), 0.2);
+  wrench_after(20.0, 3000);
+  EXPECT_LT(wrench_after(0.0, 80), 0.5);
+}
+
 TEST(Changes, MoveTheStopThatTheJointRestsOn) {
   HeldDoor door;
   door.run(3.0, 0, 30.0);
