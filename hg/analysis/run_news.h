@@ -1,5 +1,5 @@
-/// What is new in a sample of a run and worth a line while it lasts: results of requests, contacts
-/// of the arm, faults.
+/// What is new in a sample of a run and worth a line while it lasts: results of requests, a device
+/// that stands outside of its limits, contacts of the arm, faults.
 #pragma once
 
 #include <string>
@@ -30,6 +30,7 @@ class RunNews {
   TareStatus tare_ = TareStatus::kNone;  ///< last result, the same after retries
   FaultCode fault_ = FaultCode::kNone;
   bool is_touched_ = false;
+  bool has_waited_ = false;  ///< the device was ready in the last sample
 };
 
 }  // namespace hg::analysis

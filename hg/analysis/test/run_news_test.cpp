@@ -25,6 +25,26 @@ TEST(RunNews, AResultIsReportedOnceAndARefusalEachTime) {
   EXPECT_EQ(one(news, sample), "request: not reset: there is no fault");
 }
 
+TEST(RunNews, ADeviceThatWaitsOutsideOfALimitIsReportedOnce) {
+  RunNews news({.limits = {{LimitKind::kManipulatorJoint, "m1", true, {-1.0, 2.0}},
+                           {LimitKind::kCartesian, "hand x", false, {-0.5, 0.5}},
+                           {LimitKind::kTwinJoint, "hinge", true, {0.0, 1.0}}}});
+  Sample sample;
+  CycleRecord& record = sample.record;
+  record.limit_count = 3;
+  record.limits[0].excess = 0.02;  // no more than a hand leaves behind
+  record.limits[1].excess = 0.1;
+  record.limits[2].excess = 0.1;
+  EXPECT_EQ(one(news, sample), "nothing") << "the drives are on, or will never be";
+  record.mode = Mode::kReady;
+  EXPECT_EQ(
+      one(news, sample),
+      "outside: hand x stands 100 mm outside of its range of -0.5 to 0.5: once the drives are "
+      "on, it moves back slowly without a hand; keep clear, or move it back by the arm's own "
+      "controls, or widen the range");
+  EXPECT_EQ(one(news, sample), "nothing");
+}
+
 TEST(RunNews, AContactBeginsOnceAndNamesItsJoint) {
   RunNews news({.joints = {"m1", "m2"}});
   Sample sample;
