@@ -164,7 +164,9 @@ Start numeric_start(const config::DeviceConfig& config, const config::Twin& twin
     return !find_violation(device, chain, q) && shapes.distance(chain) > 0.0;
   };
   const model::InverseResult found = model::inverse_kinematics(device.chain, problem);
-  if (!found.is_solved) {
+  // what rounded numbers place at a singular posture is beyond it by a hair
+  constexpr double kHair = 1e-5;  // m and rad
+  if (!found.is_solved && !(std::max(found.position_error, found.angle_error) < kHair)) {
     const Eigen::Vector3d& p = start.T_B_H.p;
     throw SetupError(fmt::format(
         "twin {}: the device cannot hold its handle at ({:.2f}, {:.2f}, {:.2f}) m: the nearest "

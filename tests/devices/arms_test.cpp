@@ -5,9 +5,11 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hg/config/simulation/scenario.h"
+#include "hg/core/open_file.h"
 #include "hg/core/test/temporary_folder.h"
 #include "hg/scenario/names.h"
 #include "tests/scenarios/trace.h"
@@ -126,6 +128,65 @@ TEST_P(ArmWithGaps, MovesWithinItsRatingsOrStops) {
   }
 }
 
+// The wrist of a UR is singular at 0, and a hand that has let go leaves the noise of the force
+// sensor: it moves no joint by more than what a free tool drifts anywhere.
+class SingularStart : public testing::TestWithParam<std::pair<const char*, const char*>> {
+ protected:
+  config::Scenario singular() const {
+    const auto& [name, start] = GetParam();
+    const TemporaryFolder folder;
+    const std::filesystem::path arms = std::filesystem::absolute("models/arms");
+    std::string device = read_file(arms / name / "device.yaml");
+    const auto replace = [&device](const std::string& from, const std::string& to) {
+      const std::size_t at = device.find(from);
+      ASSERT_NE(at, std::string::npos) << from;
+      device.replace(at, from.size(), to);
+    };
+    replace("\nurdf: ", "\nurdf: " + (arms / name).string() + "/");
+    replace("\ntool: ../", "\ntool: " + arms.string() + "/");
+    replace("\nsimulation: ", "\nsimulation: " + (arms / name).string() + "/");
+    replace("wrist_2_joint: {q_min_rad: 0.3", "wrist_2_joint: {q_min_rad: -1");
+    replace("wrist_2_joint: 1.571", "wrist_2_joint: 0");
+    folder.write("device.yaml", device);
+    folder.write(
+        "twin.yaml",
+        std::string("name: tool\nfree_body: {mass_kg: 3, inertia_kg_m2: [0.03, 0.03, 0.03]}\n"
+                    "end_effector: handle\njoints:\n  root:\n    damping_Ns_per_m: 3\n"
+                    "    angular_damping_Nms_per_rad: 0.03\n    start: ") +
+            start + "\n");
+    folder.write(
+        "let_go.yaml",
+        "frame: base\nsegments: [{start_s: 0.1, duration_s: 0.3, grip: 0}]\nduration_s: 4\n");
+    return config::load_scenario(
+        folder.write("start.yaml",
+                     "title: Start\ndescription: In a singular posture.\ndevice: device.yaml\n"
+                     "twin: twin.yaml\nperson: let_go.yaml\nduration_s: 4\n"));
+  }
+};
+
+TEST_P(SingularStart, NoiseMovesNoJointFar) {
+  ScenarioRun run(singular());
+  VectorM least, most;
+  run.play([&](const Sample& sample) {
+    const VectorM& q = sample.truth.q_m;
+    if (least.size() == 0) least = most = q;
+    least = least.cwiseMin(q);
+    most = most.cwiseMax(q);
+  });
+  EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
+  EXPECT_LT((most - least).maxCoeff(), 0.15);
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, SingularStart,
+                         testing::Values(std::pair("ur5e",
+                                                   "{x_m: 0.550381, y_m: -0.182919, z_m: 0.489966, "
+                                                   "azimuth_rad: -1.301204, pitch_rad: 1.570796, "
+                                                   "roll_rad: -1.300611}"),
+                                         std::pair("ur10e",
+                                                   "{x_m: 0.705429, y_m: -0.198742, z_m: 0.556893, "
+                                                   "azimuth_rad: -1.299204, pitch_rad: 1.570796, "
+                                                   "roll_rad: -1.298611}")),
+                         [](const auto& arm) { return std::string(arm.param.first); });
 INSTANTIATE_TEST_SUITE_P(Arms, ArmWithGaps,
                          testing::Values("fr3", "iiwa14", "ur5e", "ur10e", "xarm7", "gen3"),
                          [](const auto& arm) { return std::string(arm.param); });

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hg/controller/rendering/integration.h"
+#include "hg/controller/rendering/lost_directions.h"
 #include "hg/controller/rendering/shortest_velocity.h"
 #include "hg/core/error.h"
 #include "hg/core/rotation.h"
@@ -221,6 +222,13 @@ SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
   const bool is_released = input.braking_rate > 0.0 && input.force_share == 0.0;
   add_torques(input, is_released, state, result);
   feel_surfaces(input, state, result);
+  if (!is_released && options_.law != Law::kPaper) {
+    Budget& budget = result.budget;
+    const VectorA tau = result.tau_a - budget.damping - budget.friction - budget.spring -
+                        budget.surface - twin_now_.c();
+    budget.damping +=
+        lost_directions_torque(J_H_, device_.n_m, J_a_, L_, state.twin.dq_a, tau, dt_);
+  }
 
   RowStates previous;
   copy(state.active_set.state, tasks_.problem().rows(), previous);
