@@ -166,7 +166,8 @@ Start numeric_start(const config::DeviceConfig& config, const config::Twin& twin
   const model::InverseResult found = model::inverse_kinematics(device.chain, problem);
   // what rounded numbers place at a singular posture is beyond it by a hair
   constexpr double kHair = 1e-5;  // m and rad
-  if (!found.is_solved && !(std::max(found.position_error, found.angle_error) < kHair)) {
+  const bool is_near = std::max(found.position_error, found.angle_error) < kHair;
+  if (!found.is_solved && !(is_near && problem.permits(found.q))) {
     const Eigen::Vector3d& p = start.T_B_H.p;
     throw SetupError(fmt::format(
         "twin {}: the device cannot hold its handle at ({:.2f}, {:.2f}, {:.2f}) m: the nearest "

@@ -14,7 +14,8 @@ constexpr double kLength = 0.3;    // m, at which a rotation counts
 constexpr double kFrom = 0.05;     // singular value from which on a direction is as it is, m
 constexpr double kFriction = 0.1;  // of a joint, Nms/rad
 constexpr double kSlow = 0.1;      // rad/s, of a joint, up to which its friction is viscous
-constexpr double kLeast = 1e-12;   // m^2, of a squared singular value: none is divided by zero
+constexpr double kMost = 1e3;      // times the mass in that direction: beyond, nothing moves anyway
+constexpr double kLeast = 1e-9;    // m, as small as a singular value may count
 
 // Whether all squared singular values are larger than `least`: their inverses add up to the trace
 // of the inverse.
@@ -27,29 +28,50 @@ bool are_larger(const Matrix6& A, double least) noexcept {
 
 }  // namespace
 
-VectorA lost_directions_torque(const model::Jacobian& J_H, int n_m, const model::Jacobian& J_a,
-                               const MatrixA& L, const VectorA& dq_a, const VectorA& tau,
-                               double dt) noexcept {
-  VectorA damping = VectorA::Zero(dq_a.size());
+void LostDirections::find(const model::Jacobian& J, const model::Jacobian& J_a, const MatrixA& L,
+                          const VectorA& dq_a, double dt) noexcept {
+  count_ = 0;
+  dt_ = dt;
   Vector6 scale;
   scale << 1.0, 1.0, 1.0, kLength, kLength, kLength;
-  const model::Jacobian J = scale.asDiagonal() * J_H.rightCols(n_m);
-  const Matrix6 A = J * J.transpose();
-  if (are_larger(A, kFrom * kFrom)) return damping;
+  const model::Jacobian scaled = scale.asDiagonal() * J;
+  const Matrix6 A = scaled * scaled.transpose();
+  if (are_larger(A, kFrom * kFrom)) return;
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(A);
-  const auto factor = L.triangularView<Eigen::Lower>();
+  roots_.resize(dq_a.size(), 6);
   for (int i = 0; i < 6; ++i) {
-    const double squared = std::max(eigen.eigenvalues()[i], kLeast);
-    if (squared >= kFrom * kFrom) break;  // the smallest come first
+    const double s = std::sqrt(std::max(eigen.eigenvalues()[i], kLeast * kLeast));
+    if (!(s < kFrom)) break;  // the smallest come first
     const VectorA along = J_a.transpose() * scale.cwiseProduct(eigen.eigenvectors().col(i));
-    const double speed = std::abs(along.dot(dq_a)) / std::sqrt(squared);  // of a joint
-    const double b = kFriction / (1.0 + speed / kSlow) * (1.0 / squared - 1.0 / (kFrom * kFrom));
-    const VectorA root = factor.solve(along);
-    const VectorA rest = factor.solve(tau - damping);
-    const double v = along.dot(dq_a) + dt * root.dot(rest);
-    damping += b * v / (1.0 + dt * b * root.squaredNorm()) * along;
+    const double mobility = L.triangularView<Eigen::Lower>().solve(along).squaredNorm();
+    if (!(mobility > 0.0)) continue;                     // the twin does not move there
+    const double speed = std::abs(along.dot(dq_a)) / s;  // of a joint
+    const double friction = kFriction / (1.0 + speed / kSlow);
+    const double b = friction * (1.0 / (s * s) - 1.0 / (kFrom * kFrom));
+    roots_.col(count_++) = std::sqrt(std::min(b, kMost / (dt * mobility))) * along;
   }
-  return damping;
+}
+
+VectorA LostDirections::torque(const VectorA& dq_a) const noexcept {
+  VectorA torque = VectorA::Zero(dq_a.size());
+  for (int i = 0; i < count_; ++i) torque += roots_.col(i).dot(dq_a) * roots_.col(i);
+  return torque;
+}
+
+// Rank-one updates of the factor.
+void LostDirections::add_to(MatrixA& L) const noexcept {
+  for (int d = 0; d < count_; ++d) {
+    VectorA x = std::sqrt(dt_) * roots_.col(d);
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      const double diagonal = std::hypot(L(k, k), x[k]);
+      const double c = diagonal / L(k, k), s = x[k] / L(k, k);
+      L(k, k) = diagonal;
+      for (Eigen::Index i = k + 1; i < x.size(); ++i) {
+        L(i, k) = (L(i, k) + s * x[i]) / c;
+        x[i] = c * x[i] - s * L(i, k);
+      }
+    }
+  }
 }
 
 }  // namespace hg::rendering

@@ -222,13 +222,7 @@ SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
   const bool is_released = input.braking_rate > 0.0 && input.force_share == 0.0;
   add_torques(input, is_released, state, result);
   feel_surfaces(input, state, result);
-  if (!is_released && options_.law != Law::kPaper) {
-    Budget& budget = result.budget;
-    const VectorA tau = result.tau_a - budget.damping - budget.friction - budget.spring -
-                        budget.surface - twin_now_.c();
-    budget.damping +=
-        lost_directions_torque(J_H_, device_.n_m, J_a_, L_, state.twin.dq_a, tau, dt_);
-  }
+  slow_lost_directions(is_released, state, result);
 
   RowStates previous;
   copy(state.active_set.state, tasks_.problem().rows(), previous);
@@ -387,6 +381,18 @@ bool Rendering::clamp_reference(const RobotState& robot, double largest,
   return true;
 }
 
+// The paper's law has no such damping.
+void Rendering::slow_lost_directions(bool is_released, const RenderingState& state,
+                                     LawResult& result) noexcept {
+  lost_.clear();
+  if (is_released || options_.law == Law::kPaper) return;
+  const int count = device_.n_m + (leads_gantry() ? device_.n_p : 0);
+  lost_.find(J_H_.rightCols(count), J_a_, L_, state.twin.dq_a, dt_);
+  if (lost_.empty()) return;
+  result.budget.damping += lost_.torque(state.twin.dq_a);
+  lost_.add_to(L_);
+}
+
 // Solves, and lets those joints slip whose friction cannot hold them: at most n_a solves more.
 void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& result) noexcept {
   const int n_m = device_.n_m, n_a = twin_.chain.nv();
@@ -409,11 +415,13 @@ void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& r
     state.twin.ddq_a = x.tail(n_a);
     budget.inertia = twin_now_.c();
     budget.inertia += twin_now_.M().lazyProduct(state.twin.ddq_a);
-    const VectorA tau_constraint = budget.inertia - tau;
+    VectorA tau_constraint = budget.inertia - tau;
+    if (!lost_.empty()) tau_constraint += lost_.torque(dt_ * state.twin.ddq_a);
     reactions_.split(tasks_, solution_, tau_constraint);
     ended_(Stage::kReactions);
     if (!release(state, budget)) break;
   }
+  if (!lost_.empty()) result.budget.damping += lost_.torque(dt_ * state.twin.ddq_a);
   if (was_spent && result.solver_status == SolverStatus::kSolved) {
     result.solver_status = SolverStatus::kBudgetSpent;
   }

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "hg/controller/rendering/law_result.h"
+#include "hg/controller/rendering/lost_directions.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/reactions.h"
 #include "hg/controller/rendering/rendering_state.h"
@@ -109,6 +110,8 @@ class Rendering {
   void add_torques(const LawInput& input, bool is_released, RenderingState& state,
                    LawResult& result) const noexcept;
   void feel_surfaces(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
+  void slow_lost_directions(bool is_released, const RenderingState& state,
+                            LawResult& result) noexcept;
   void give_way(const ContactReport& contact, RenderingState& state) const noexcept;
   void solve(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
   void fill_tasks(const LawInput& input, const VectorA& tau, const RenderingState& state) noexcept;
@@ -127,8 +130,10 @@ class Rendering {
   Tasks tasks_;
   Stops stops_;  ///< Stops in this cycle
   Reactions reactions_;
-  // of this cycle: M_a = L L^T, the Jacobians of handle (gantry first) and end effector
+  // of this cycle: M_a = L L^T, damping of lost directions included, the Jacobians of handle
+  // (gantry first) and end effector
   MatrixA L_;
+  LostDirections lost_;
   model::Jacobian J_H_, J_a_;
   hqp::SolverOptions solver_options_;
   hqp::Solver solver_;

@@ -177,10 +177,8 @@ void advance_parameters(const TwinModel& twin, const TwinState& state, double dt
         limits::advanced(parameters.moving[i], target_range(twin, dof, parameters),
                          position_of(twin, dof, state.q_a), v_rec, dt);
   }
-  const double end_share = -std::expm1(-dt / kEnd);
-  for (int i = 0; i < 6; ++i) {
-    approach(now.w_ref[i], target.w_ref[i], target.w_ref[i] == 0.0 ? end_share : share);
-  }
+  const double wrench_share = target.w_ref.isZero(0.0) ? -std::expm1(-dt / kEnd) : share;
+  for (int i = 0; i < 6; ++i) approach(now.w_ref[i], target.w_ref[i], wrench_share);
   approach(now.loads.mass, target.loads.mass, share);
   approach(now.loads.gravity, target.loads.gravity, share);
 }

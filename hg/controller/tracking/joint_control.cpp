@@ -17,6 +17,7 @@ constexpr double kLatencyMemory = 0.05;    // share of the newest sample in the 
 constexpr double kLatencyMargin = 0.5;     // periods; with gains for one period two are unstable
 constexpr double kLateFor = 0.05;          // s; time-out of a device without commands, too
 constexpr double kCutFor = 0.01;           // s; longer than drives should continue by themselves
+constexpr double kCutPeriods = 2.5;        // at least: one command may be lost at any rate
 constexpr double kDisturbedFor = 0.005;    // s; three frames that were filled in are less
 constexpr double kFeedforwardShare = 0.7;  // of the peak torque, the rest is for feedback
 constexpr double kUnexplained_s = 0.1;     // averaging time of unexplained torques
@@ -129,8 +130,10 @@ Fault JointControl::check_latency(const SensorFrame& sensors,
                                   const ControlState& state) const noexcept {
   const bool is_known = state.answers >= kAnswersNeeded;
   const double age = age_of(sensors);
-  const bool is_cut = is_known && (age - state.latency) * dt_ > kCutFor && age >= state.late;
-  if (is_cut) return link_fault(sensors, state);
+  const double most = state.latency * dt_ + std::max(kCutFor, kCutPeriods * dt_);
+  if (is_known && age * dt_ > most && age >= state.late) {
+    return {FaultCode::kCommandsLost, -1, age * dt_, most};
+  }
   if (config_.method == Method::kDrives) return {};
   return state.late * dt_ < kLateFor ? Fault{} : link_fault(sensors, state);
 }

@@ -45,10 +45,10 @@ class JointControl {
   bool is_stable(const ControlState& state) const noexcept {
     return config_.method == Method::kDrives || state.latency * dt_ <= config_.latency_max;
   }
-  /// kCommandsLost once none has arrived for 10 ms, from any device that answers. With a torque
-  /// loop also kCommandsLost or kLatencyGrew once the samples with a command more than half a
-  /// period older than the latency assumed by the gains outnumber the others by 50 ms. kNone
-  /// otherwise.
+  /// kCommandsLost once none has arrived for 10 ms (2.5 periods), from any device that answers.
+  /// With a torque loop also kCommandsLost or kLatencyGrew once the samples with a command more
+  /// than half a period older than the latency assumed by the gains outnumber the others by 50 ms.
+  /// kNone otherwise.
   Fault check_latency(const SensorFrame& sensors, const ControlState& state) const noexcept;
   /// Like check_latency(), but from 5 ms on and for any device that answers: enough to explain why
   /// the device does not move as commanded.

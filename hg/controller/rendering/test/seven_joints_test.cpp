@@ -58,7 +58,7 @@ TwinModel door() {
       "handle");
 }
 
-const VectorM kPosture = posture({0.2, 0.5, -0.3, 1.9, 0.4, 2.2, 0.6});
+const VectorM kSevenJointPosture = posture({0.2, 0.5, -0.3, 1.9, 0.4, 2.2, 0.6});
 
 RobotState robot_at(const VectorM& q_m, const Vector6& w) {
   RobotState robot;
@@ -130,7 +130,7 @@ TEST(SevenJoints, ReactionsPushInwardsAddUpAndLeaveIdleMotionAlone) {
   for (int trial = 0; trial < 300; ++trial) {
     SCOPED_TRACE("trial " + std::to_string(trial));
     DeviceModel device = seven_joint_device();
-    VectorM q = kPosture;
+    VectorM q = kSevenJointPosture;
     for (double& value : q) value += 0.3 * uniform(random);
     for (int i = 0; i < 7; ++i) {
       const double where = uniform(random);
@@ -185,9 +185,9 @@ void play_at_rest(Rendering& rendering, RenderingState& state, double seconds,
   EXPECT_LT((pose_of(rendering.device(), state.reference.q_m).p - start.p).norm(), 1e-6);
 }
 
-// A posture that idle motion reaches from kPosture.
+// A posture that idle motion reaches from kSevenJointPosture.
 VectorM reachable_goal(const DeviceModel& device) {
-  VectorM goal = kPosture;
+  VectorM goal = kSevenJointPosture;
   for (int k = 0; k < 400; ++k) goal += 1e-3 * idle_motion(device, goal);
   return goal;
 }
@@ -196,8 +196,8 @@ TEST(SevenJoints, TheOneToSpareGoesToItsGoalAndTheHandStays) {
   DeviceModel device = seven_joint_device();
   const VectorM goal = device.posture = reachable_goal(device);
   Rendering rendering(device, free_body(), {});
-  RenderingState state = rendering.start(kPosture);
-  const double before = (goal - kPosture).norm();
+  RenderingState state = rendering.start(kSevenJointPosture);
+  const double before = (goal - kSevenJointPosture).norm();
   play_at_rest(rendering, state, 3.0);
   EXPECT_GT(before, 0.1);
   EXPECT_LT((goal - state.reference.q_m).norm(), 0.1 * before);
@@ -208,17 +208,17 @@ TEST(SevenJoints, TheOneToSpareKeepsAJointFromItsEndWhateverItsGoals) {
   DeviceModel device = seven_joint_device();
   VectorM goal = reachable_goal(device);
   Eigen::Index joint = 0;
-  (goal - kPosture).cwiseAbs().maxCoeff(&joint);
-  const double side = goal[joint] > kPosture[joint] ? 1.0 : -1.0;
+  (goal - kSevenJointPosture).cwiseAbs().maxCoeff(&joint);
+  const double side = goal[joint] > kSevenJointPosture[joint] ? 1.0 : -1.0;
   const double end = goal[joint] + 0.05 * side;  // 0.2 rad before it is short of the goal
-  ASSERT_GT(std::abs(end - kPosture[joint]), 0.2);
+  ASSERT_GT(std::abs(end - kSevenJointPosture[joint]), 0.2);
   limits::JointLimits& limits = device.joint_limits[joint];
   limits = {.q_min = end, .q_max = end, .dq_max = 2.0, .ddq_max = 10.0};
   (side > 0.0 ? limits.q_min : limits.q_max) -= 4.0 * side;
   goal[joint] = std::numeric_limits<double>::quiet_NaN();
   device.posture = goal;
   Rendering rendering(device, free_body(), {});
-  RenderingState state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kSevenJointPosture);
   play_at_rest(rendering, state, 3.0);
   EXPECT_NEAR(std::abs(end - state.reference.q_m[joint]), 0.2, 2e-3);
   EXPECT_LT(state.reference.dq_m.norm(), 1e-3);
@@ -228,7 +228,7 @@ TEST(SevenJoints, InAStopIdleMotionComesToRestShortOfItsGoal) {
   DeviceModel device = seven_joint_device();
   const VectorM goal = device.posture = reachable_goal(device);
   Rendering rendering(device, free_body(), {});
-  RenderingState state = rendering.start(kPosture);
+  RenderingState state = rendering.start(kSevenJointPosture);
   play_at_rest(rendering, state, 0.2);
   EXPECT_GT(state.reference.dq_m.norm(), 0.1);
   play_at_rest(rendering, state, 0.8, 10.0);
@@ -243,11 +243,11 @@ TEST(SevenJoints, WithoutAGoalIdleMotionComesToRest) {
       device.posture = VectorM::Constant(7, std::numeric_limits<double>::quiet_NaN());
     }
     Rendering rendering(device, free_body(), {});
-    RenderingState state = rendering.start(kPosture);
-    state.reference.dq_m = 0.3 * idle_motion(device, kPosture);
+    RenderingState state = rendering.start(kSevenJointPosture);
+    state.reference.dq_m = 0.3 * idle_motion(device, kSevenJointPosture);
     play_at_rest(rendering, state, 2.0);
     EXPECT_LT(state.reference.dq_m.norm(), 1e-5);
-    EXPECT_GT((state.reference.q_m - kPosture).norm(), 0.01);
+    EXPECT_GT((state.reference.q_m - kSevenJointPosture).norm(), 0.01);
   }
 }
 
