@@ -243,7 +243,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Searches for a device that serves a person's arm (docs/start/design.md).");
   app.add_option("problem", arguments.problem, "design problem, a YAML file")->required();
-  app.add_option("--out", arguments.out, "folder of the design")->required();
+  app.add_option("-o,--out", arguments.out, "folder of the design")->required();
   app.add_option("--seed", arguments.seed, "in place of the file's")
       ->check(CLI::Range(0, 1000000000));
   app.add_option("--workers", arguments.workers, "threads; the result does not depend on them")

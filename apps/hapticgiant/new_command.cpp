@@ -232,7 +232,7 @@ void add_new(Command app, int& exit_code) {
     what.add_option("--root-link", arguments->part.root_link,
                     "first link of the part that is taken");
     what.add_option("--tip-link", arguments->part.tip_link, "last link of the part that is taken");
-    what.add_option("-o,--output", arguments->output,
+    what.add_option("-o,--out,--output", arguments->output,
                     "file to write; default: URDF name + _device.yaml or _twin.yaml");
     what.add_flag("--force", arguments->may_overwrite, "overwrite the file");
     what.callback([arguments, &exit_code, run] { exit_code = run(*arguments); });

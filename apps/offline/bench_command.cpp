@@ -196,7 +196,7 @@ void add_bench(Command app, int& exit_code) {
       .capture_default_str();
   command.add_flag("--quick", arguments->is_quick, "fewer problems and passes");
   command.add_option("--json", arguments->json, "write all tables as JSON to this file");
-  command.add_option("--out", arguments->out,
+  command.add_option("-o,--out", arguments->out,
                      "write tables (CSV) and figures (SVG) to this folder");
   command.callback([arguments, &exit_code] { exit_code = bench(*arguments); });
 }

@@ -356,7 +356,7 @@ void add_export(Command app, int& exit_code) {
   command.add_option("--format", arguments->format, "csv, parquet, hdf5 or rosbag2")
       .one_of({"csv", "parquet", "hdf5", "rosbag2"})
       .capture_default_str();
-  command.add_option("--out", arguments->out,
+  command.add_option("-o,--out", arguments->out,
                      "name of the files, or of the folder; default: that of the recording, here");
   command.add_option("--columns", arguments->columns,
                      "names of columns, with * and ?; default: all. The time is always there");

@@ -131,7 +131,7 @@ void add_haptify(Command app, int& exit_code) {
       "  hapticgiant haptify --quick --simulation as_published\n"
       "  hapticgiant haptify --quick --device arm.yaml\n"
       "  hapticgiant haptify --goals --repetitions 16   the worst of seeds, heights and hands");
-  command.add_option("--out", arguments->out, "folder of the report").capture_default_str();
+  command.add_option("-o,--out", arguments->out, "folder of the report").capture_default_str();
   command.add_option("--seed", arguments->options.seed, "of the first repetition")
       .check(whole_number(0.0))
       .capture_default_str();

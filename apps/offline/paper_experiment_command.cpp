@@ -90,7 +90,7 @@ void add_options(Command command, PaperExperimentArguments& arguments) {
   add_law_option(command, arguments.law, {"both"});
   command.add_option("--seed", arguments.seed, "of noise and tremor: the same seed, the same files")
       .check(whole_number(0.0));
-  command.add_option("--out", arguments.out, "folder; one per experiment is made in it")
+  command.add_option("-o,--out", arguments.out, "folder; one per experiment is made in it")
       .capture_default_str();
   command
       .add_option("--duration", arguments.duration_s,

@@ -168,7 +168,7 @@ void add_plot_and_compare(Command app, int& exit_code) {
       .required()
       .expected(1, 4)
       .existing_file();
-  plot.add_option("--out", plotted->out, "folder for figure.svg, figure.png and signals")
+  plot.add_option("-o,--out", plotted->out, "folder for figure.svg, figure.png and signals")
       .capture_default_str();
   plot.callback([plotted, &exit_code] { exit_code = apps::plot(*plotted); });
 

@@ -96,7 +96,7 @@ void add_tune(Command app, int& exit_code) {
       "  hapticgiant tune device.yaml --vibration 0.03 --front    less vibration, and the trade\n"
       "  hapticgiant tune device.yaml --check                     the proof of what is there");
   command.add_option("device", arguments->device, "device.yaml").capture_default_str();
-  command.add_option("--out", arguments->out, "folder of the report").capture_default_str();
+  command.add_option("-o,--out", arguments->out, "folder of the report").capture_default_str();
   command
       .add_option("--vibration", arguments->vibration,
                   "largest above 20 Hz, m/s^2; without: what the device has now")

@@ -40,6 +40,12 @@ class Offline(unittest.TestCase):
         _, err = run(PROGRAM, "hqp", "solv", code=2)
         self.assertIn("did you mean 'solve'?", err)
 
+    def test_where_results_go_is_one_option_everywhere(self):
+        for words in (["haptify"], ["export"], ["plot"], ["tune"], ["bench"], ["design"], ["sweep", "run"], ["study", "run"],
+                      ["experiment", "all"], ["experiment", "hands"], ["new", "device"], ["new", "twin"]):
+            out, _ = run(PROGRAM, *words, "--help")
+            self.assertRegex(out, r"-o[ ,][^\n]*--out\b", words)
+
     def test_a_program_that_is_not_built_is_named_in_one_line(self):
         with tempfile.TemporaryDirectory() as folder:
             alone = install_program(pathlib.Path(folder))

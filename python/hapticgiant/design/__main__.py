@@ -23,7 +23,7 @@ def parser():
         description="Searches for a device that serves a person's arm: from requirements to a device "
                     "that runs (docs/start/design.md).")
     main.add_argument("problem", help="design problem, as models/design/haptic_giant.yaml")
-    main.add_argument("--out", help="folder of the design; default: NAME.design beside the file")
+    main.add_argument("-o", "--out", help="folder of the design; default: NAME.design beside the file")
     main.add_argument("--seed", type=int, help="in place of the file's; the same seed gives the same design")
     main.add_argument("--workers", type=int, default=2, help="threads; the result does not depend on them")
     main.add_argument("--quick", action="store_true", help="small populations and few poses: a look")

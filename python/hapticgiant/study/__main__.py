@@ -53,13 +53,13 @@ def parser():
     forget.add_argument("code", metavar="CODE")
     forget.add_argument("study", help="study.yaml")
     for each in (simulate, report, forget):
-        each.add_argument("--out", help="folder of the study; default: NAME.study beside study.yaml")
+        each.add_argument("-o", "--out", help="folder of the study; default: NAME.study beside study.yaml")
     return main
 
 
 def add_run(add):
     command = add("run", "The pages of operator and participant: plays the study with people; again it continues.")
-    command.add_argument("--out", help="folder of the study; default: NAME.study beside study.yaml")
+    command.add_argument("-o", "--out", help="folder of the study; default: NAME.study beside study.yaml")
     command.add_argument("--rehearse", action="store_true",
                          help="the scripted hand plays the trials, and the folder (NAME.rehearsal) says so")
     command.add_argument("--bind", type=address, default="127.0.0.1", metavar="ADDRESS",

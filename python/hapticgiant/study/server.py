@@ -104,11 +104,13 @@ class Server:
                 connected, _ = await loop.sock_accept(listening)
                 connection, _ = await loop.connect_accepted_socket(self._runner.server, connected)
                 self._strangers.admit(connection)
-            except OSError:  # it has gone, or this program has too many open files
-                await asyncio.sleep(ACCEPT_PAUSE_S)
             except asyncio.CancelledError:
                 listening.close()
                 raise
+            except Exception as error:  # it has gone, or this program has too many open files
+                if not isinstance(error, OSError):
+                    traceback.print_exc()
+                await asyncio.sleep(ACCEPT_PAUSE_S)
 
     async def close(self) -> None:
         """Ends all connections."""

@@ -84,7 +84,7 @@ def parsers():
     for other in (submit, merge, check, show):
         other.add_argument("sweep", help="sweep.yaml")
     for each in (main, submit, merge, check):
-        each.add_argument("--out", help="folder of the sweep; default: NAME.sweep beside NAME.yaml")
+        each.add_argument("-o", "--out", help="folder of the sweep; default: NAME.sweep beside NAME.yaml")
     for each in (main, check):
         each.add_argument("--jobs", type=positive,
                           help="processes at a time; default: one per processor")
