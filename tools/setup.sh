@@ -37,10 +37,11 @@ need() {  # need PACKAGE [TOOL]
 need cmake cmake
 need ninja-build ninja
 need g++ g++
-find_python() {  # prints the first python3 that can make a .venv
+find_python() {  # prints the first python3 that can make a .venv and has the wheels of our lists
   local candidate
   for candidate in python3 /usr/bin/python3; do
-    if "$candidate" -c 'import venv, ensurepip' >/dev/null 2>&1; then
+    if "$candidate" -c 'import venv, ensurepip, sys
+assert (3, 11) <= sys.version_info < (3, 14)' >/dev/null 2>&1; then
       echo "$candidate"
       return
     fi
@@ -132,7 +133,13 @@ install_wheels() {
 install_list() {  # install_list LIST STAMP WHAT
   if cmp -s "$1" "$2"; then return; fi
   say "installing wheels into .venv ($3)"
-  [ -d .venv ] || "$(find_python)" -m venv .venv
+  if ! [ -d .venv ]; then
+    if [ -z "$(find_python)" ]; then
+      echo "setup: expected Python 3.11 to 3.13, got $(python3 --version)" >&2
+      exit 2
+    fi
+    "$(find_python)" -m venv .venv
+  fi
   install_wheels "$1"
   cp "$1" "$2"
 }
