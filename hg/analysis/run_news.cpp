@@ -21,11 +21,11 @@ std::vector<News> outside_of_limits(const CycleRecord& record, const LimitCatalo
     if (!is_place || !(record.limits[i].excess > kWorthALine)) continue;
     news.push_back(
         {"outside",
-         fmt::format("{} stands {:.0f} {} outside of its range of {:g} to {:g}: once the "
+         fmt::format("{} stands {:.0f} {} outside of its range of {:g} to {:g} {}: once the "
                      "drives are on, it moves back slowly without a hand; keep clear, or "
                      "move it back by the arm's own controls, or widen the range",
                      limit.name, 1e3 * record.limits[i].excess, limit.is_angle ? "mrad" : "mm",
-                     limit.range.lb, limit.range.ub)});
+                     limit.range.lb, limit.range.ub, limit.is_angle ? "rad" : "m")});
   }
   return news;
 }

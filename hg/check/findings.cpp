@@ -74,7 +74,8 @@ void Collector::add_at_urdf(Severity severity, std::string_view kind, const std:
                      std::string(kind) + " " + name,
                      std::move(what),
                      std::move(fix)};
-  for (const model::Urdf& urdf : urdfs_among(sources_)) {
+  if (!urdfs_) urdfs_ = urdfs_among(sources_);
+  for (const model::Urdf& urdf : *urdfs_) {
     const auto look = [&](const auto& parts) {
       for (const auto& part : parts) {
         if (part.name != name) continue;
@@ -87,11 +88,18 @@ void Collector::add_at_urdf(Severity severity, std::string_view kind, const std:
   findings.push_back(std::move(finding));
 }
 
+bool is_urdf(const config::SourceText& source) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of the byte order
+  std::string_view text = source.content;
+  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return source.name.ends_with(".urdf") || (first != std::string_view::npos && text[first] == '<');
+}
+
 std::vector<model::Urdf> urdfs_among(const std::vector<config::SourceText>& sources) {
   std::vector<model::Urdf> urdfs;
   for (const config::SourceText& source : sources) {
-    if (source.content.find("<robot") == std::string::npos) continue;
-    urdfs.push_back(model::read_urdf_text(source.content, source.name));
+    if (is_urdf(source)) urdfs.push_back(model::read_urdf_text(source.content, source.name));
   }
   return urdfs;
 }

@@ -1,6 +1,7 @@
 /// Findings of `check`: plain data, printed by the program.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,7 +49,11 @@ class Collector {
  private:
   const std::vector<config::SourceText>& sources_;
   const config::Places& places_;
+  std::optional<std::vector<model::Urdf>> urdfs_;  // among the sources, once one is needed
 };
+
+/// By its name or its first character: other files may speak of <robot>, too.
+bool is_urdf(const config::SourceText& source);
 
 /// The URDFs among these texts.
 std::vector<model::Urdf> urdfs_among(const std::vector<config::SourceText>& sources);

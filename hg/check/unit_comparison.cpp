@@ -153,7 +153,8 @@ void compare_units(const config::DeviceConfig& device, const workspace::Survey& 
 
 void compare_units(const config::Twin& twin, double mass, Collector& out) {
   const std::string grams = suspected_unit(mass, {0.0, kMostFelt}, kOtherMasses, "kg");
-  if (!grams.empty()) {
+  const bool is_doubted = std::ranges::count(out.findings, "free_body.mass_kg", &Finding::item) > 0;
+  if (!grams.empty() && !is_doubted) {
     out.add(
         Severity::kWarning, "end_effector",
         fmt::format("the hand moves {:.4g} kg at least, more than a person can; {}", mass, grams),

@@ -11,7 +11,8 @@ namespace hg::check {
 
 void compare_units(const config::DeviceConfig& device, const workspace::Survey& survey,
                    Collector& out);
-/// `mass` is the smallest that a hand moves in any direction, kg; infinite: none.
+/// `mass` is the smallest that a hand moves in any direction, kg; infinite: none. It is not doubted
+/// once more where `out` has a doubt of the mass of a free body.
 void compare_units(const config::Twin& twin, double mass, Collector& out);
 
 /// "; suspected masses in grams" or the unit of the rating, where a joint needs `need` Nm to hold

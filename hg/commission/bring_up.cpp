@@ -421,7 +421,10 @@ class Steps {
       return "without commands it fell silent itself, and may have its drives on; its "
              "driver must say goodbye";
     }
-    found_ = fmt::format("it ended the session: {}", to_string(fault));
+    // a watchdog has switched the drives off, whether or not the session ended with them
+    const bool is_off = fault == FaultCode::kCommandsLost;
+    found_ = fmt::format("it {}: {}", is_off ? "switched the drives off" : "ended the session",
+                         to_string(fault));
     return "";
   }
 

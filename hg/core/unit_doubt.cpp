@@ -8,10 +8,11 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kMostAngle = 4.0 * kTurn;  // arms wind up by two turns at most, wrists by four
-constexpr double kMostLength = 30.0;        // m, of a hall with its gantry
+constexpr double kMostLength = 60.0;        // m, of a hall with its crane
 constexpr double kLeastRound = 15.0;        // +-10 rad stand for "no limit" in some files
 constexpr double kMostSpeed = 60.0;         // rad/s; the fastest wrists and legs reach 52
 constexpr double kLeastRoundSpeed = 30.0;   // rad/s; the fastest arms reach 26
+constexpr double kRounding = 0.05;  // rad, of whole half turns with one digit after the point
 
 bool is_multiple(double value, double of) noexcept {
   return std::abs(value / of - std::round(value / of)) < 1e-9;
@@ -45,15 +46,16 @@ std::string suspected_unit(double value, const Interval& plausible,
 bool is_odd_angle(double angle) noexcept {
   const double size = std::abs(angle);
   if (!std::isfinite(size)) return false;
-  const double half_turns = size / std::numbers::pi;
-  if (std::abs(half_turns - std::round(half_turns)) < 1e-3) return false;
+  const double off = std::abs(std::remainder(size, std::numbers::pi));
+  if (off <= kRounding && !is_multiple(size, 1.0)) return false;
   return size > kMostAngle || (size >= kLeastRound && is_multiple(size, 5.0));
 }
 
 bool is_power_of_ten(double value) noexcept { return is_multiple(std::log10(value), 1.0); }
 
 bool is_odd_speed(double speed) noexcept {
-  if (!std::isfinite(speed) || speed < kLeastRoundSpeed || is_power_of_ten(speed)) return false;
+  if (!std::isfinite(speed) || speed < kLeastRoundSpeed) return false;
+  if (is_power_of_ten(speed) || is_power_of_ten(2.0 * speed)) return false;
   return speed >= kMostSpeed || is_multiple(speed, 5.0);
 }
 

@@ -45,11 +45,12 @@ std::string suspected_unit(double value, const Interval& plausible,
                            std::span<const OtherUnit> others, const char* unit);
 
 /// Whether an angle is too large for a joint: more than four turns, or a multiple of 5 from 15 on.
-/// Whole half turns are those of a screw or wheel. rad.
+/// Whole half turns, also rounded to a digit after the point, are those of a screw or wheel. rad.
 bool is_odd_angle(double angle) noexcept;
 /// Whether a number is 10, 100, ...: files have such for "no limit".
 bool is_power_of_ten(double value) noexcept;
-/// Whether a speed is too large for a joint of any arm, rad/s. Powers of ten stand for no limit.
+/// Whether a speed is too large for a joint of any arm, rad/s. Powers of ten and their halves stand
+/// for no limit.
 bool is_odd_speed(double speed) noexcept;
 
 /// "90 rad are 14.3 turns; suspected degrees: 1.571 rad", of the angle of a joint.
@@ -58,7 +59,7 @@ std::string doubt_of_angle(double angle);
 std::string doubt_of_orientation(double angle);
 /// Of the largest speed of a joint, rad/s.
 std::string doubt_of_speed(double speed);
-/// Of a length or the travel of a machine that a person holds, m: beyond 30 m.
+/// Of a length or the travel of a machine that a person holds, m: beyond 60 m.
 std::string doubt_of_length(double length);
 
 }  // namespace hg

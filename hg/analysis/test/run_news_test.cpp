@@ -39,10 +39,17 @@ TEST(RunNews, ADeviceThatWaitsOutsideOfALimitIsReportedOnce) {
   record.mode = Mode::kReady;
   EXPECT_EQ(
       one(news, sample),
-      "outside: hand x stands 100 mm outside of its range of -0.5 to 0.5: once the drives are "
+      "outside: hand x stands 100 mm outside of its range of -0.5 to 0.5 m: once the drives are "
       "on, it moves back slowly without a hand; keep clear, or move it back by the arm's own "
       "controls, or widen the range");
   EXPECT_EQ(one(news, sample), "nothing");
+  record.limits[0].excess = 0.03;
+  record.mode = Mode::kRunning;
+  EXPECT_EQ(one(news, sample), "nothing");
+  record.mode = Mode::kReady;
+  EXPECT_TRUE(
+      one(news, sample)
+          .starts_with("outside: m1 stands 30 mrad outside of its range of -1 to 2 rad: once"));
 }
 
 TEST(RunNews, AContactBeginsOnceAndNamesItsJoint) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <regex>
+#include <sstream>
 #include <string>
 
 #include "hg/check/device_inspection.h"
@@ -48,17 +49,32 @@ std::string revolute(const std::string& limit) {
 TEST(Units, RangesOfAUrdfInDegrees) {
   EXPECT_EQ(doubts_of("r.urdf", revolute("lower=\"-2.9\" upper=\"6.28\" velocity=\"3\"")), "");
   EXPECT_EQ(doubts_of("r.urdf", revolute("lower=\"-1000\" upper=\"1000\"")), "") << "no stops";
-  EXPECT_EQ(doubts_of("r.urdf", revolute("lower=\"-170\" upper=\"120\" velocity=\"3\"")),
-            "2: joint j: <limit> -170 .. 120: -170 rad are 27.06 turns; suspected degrees: -2.967 "
-            "rad -> give lower=\"-2.967\" upper=\"2.094\"; a joint without stops has the type "
-            "continuous\n");
+  EXPECT_EQ(
+      doubts_of("r.urdf", revolute("lower=\"-170\" upper=\"120\" velocity=\"3\"")),
+      "2: joint j: <limit> -170 .. 120: -170 rad are 27.06 turns; suspected degrees: -2.967 "
+      "rad -> if so, give lower=\"-2.967\" upper=\"2.094\"; a joint without stops has the type "
+      "continuous\n");
 }
 
 TEST(Units, SpeedsOfAUrdfInDegrees) {
   EXPECT_EQ(doubts_of("r.urdf", revolute("upper=\"3\" velocity=\"180\"")),
             "2: joint j: <limit> velocity: 180 rad/s are 28.65 turns per second; suspected degrees "
-            "per second: 3.142 rad/s, or revolutions per minute: 18.85 rad/s -> give velocity in "
-            "rad/s\n");
+            "per second: 3.142 rad/s, or revolutions per minute: 18.85 rad/s -> if so, give "
+            "velocity in rad/s\n");
+}
+
+// Wheels and propellers are faster than arms.
+TEST(Units, SpeedsOfWhatTurnsWithoutEnd) {
+  const auto with = [](const std::string& limit) {
+    return doubts_of("r.urdf", urdf("<joint name=\"j\" type=\"continuous\"><parent "
+                                    "link=\"a\"/><child link=\"b\"/><limit " +
+                                    limit + "/></joint>"));
+  };
+  EXPECT_EQ(with("effort=\"2000\" velocity=\"838\""), "");
+  EXPECT_EQ(with("velocity=\"180\""), "");
+  EXPECT_EQ(doubts_of("r.urdf", revolute("lower=\"-1e16\" upper=\"1e16\" velocity=\"838\"")), "");
+  EXPECT_NE(with("effort=\"40\" velocity=\"180\"").find("suspected degrees per second"),
+            std::string::npos);
 }
 
 TEST(Units, SlidesInMillimetres) {
@@ -67,7 +83,35 @@ TEST(Units, SlidesInMillimetres) {
       "upper=\"800\"/></joint>";
   EXPECT_EQ(doubts_of("r.urdf", urdf(slide)),
             "2: joint j: <limit> 0 .. 800: 800 m are more than a hall is long; suspected "
-            "millimetres: 0.8 m -> give lower=\"0\" upper=\"0.8\"\n");
+            "millimetres: 0.8 m -> if so, give lower=\"0\" upper=\"0.8\"\n");
+  EXPECT_EQ(doubts_of("r.urdf", urdf(std::regex_replace(slide, std::regex("800"), "40"))), "")
+      << "the rail of a crane";
+}
+
+// YAML files may speak of <robot>; a URDF may have any name.
+TEST(Units, AUrdfIsWhatBeginsAsXml) {
+  EXPECT_EQ(doubts_of("tool.yaml", "mass_kg: 1  # held by the <robot> of the URDF\n"), "");
+  EXPECT_NE(doubts_of("tool.yaml", "mass_kg: 1200  # <robot\n").find("suspected grams"),
+            std::string::npos);
+  const std::string wrong = revolute("upper=\"170\"");
+  for (const std::string before : {"", " \r\n", "\xEF\xBB\xBF", "<?xml version=\"1.0\"?>\n"}) {
+    EXPECT_NE(doubts_of("robot", before + wrong).find("suspected degrees"), std::string::npos)
+        << before;
+  }
+  EXPECT_TRUE(is_urdf({"r.urdf", ""}));
+  EXPECT_FALSE(is_urdf({"r.yaml", ""}));
+  EXPECT_EQ(urdfs_among({{"f.yaml", "# <robot>\n"}, {"robot", wrong}}).size(), 1u);
+}
+
+TEST(Units, AUrdfIsParsedOnceForAllFindings) {
+  std::vector<config::SourceText> sources = {{"r.urdf", revolute("upper=\"170\"")}};
+  const config::Places places;
+  Collector out(sources, places);
+  for (int i = 0; i < 2; ++i) {
+    out.add_at_urdf(Severity::kWarning, "joint", "j", "odd", "");
+    EXPECT_EQ(out.findings.back().place.line, 2);
+    sources.front().content = "<robot name=\"r\"/>";
+  }
 }
 
 TEST(Units, OnlyJointsOfTheChainCount) {
@@ -85,7 +129,7 @@ TEST(Units, OrientationsOfAUrdfInDegrees) {
   EXPECT_EQ(with("1.57 -3.14159 4.712"), "");
   EXPECT_EQ(with("0 90 -180"),
             "3: joint j: <origin> rpy \"0 90 -180\": -180 rad are more than a turn; suspected "
-            "degrees: -3.142 rad -> give rpy=\"0 1.571 -3.142\"\n");
+            "degrees: -3.142 rad -> if so, give rpy=\"0 1.571 -3.142\"\n");
 }
 
 TEST(Units, ScalesThatAreNotThreeNumbers) {
@@ -123,7 +167,17 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         YamlCase{"joints: {m1: {q_max_rad: 90}}",
                  "1: joints.m1.q_max_rad: 90 rad are 14.32 turns; suspected degrees: 1.571 rad -> "
-                 "give q_max_rad in rad"},
+                 "if so, give q_max_rad in rad"},
+        YamlCase{"joints: {m1: {q_min_rad: -1000, q_max_rad: 1000}}", ""},
+        YamlCase{"joints: {m1: {q_min_rad: -360, q_max_rad: 360}}", "q_min_rad: -360 rad"},
+        YamlCase{"joints: {rail: {q_min_m: -1000, q_max_m: 1000}}", ""},
+        YamlCase{"joints: {rail: {q_min_m: 0, q_max_m: 1000}}", "suspected millimetres: 1 m"},
+        YamlCase{"joints: {hinge: {dq_max_rad_per_s: 50}}", ""},
+        YamlCase{"control: {rotor_pole_rad_per_s: 175, link_pole_rad_per_s: 57, "
+                 "motor_pole_rad_per_s: 90}",
+                 ""},
+        YamlCase{"joints: {m1: {closer: {speed_rad_per_s: 90}}}", "suspected degrees per second"},
+        YamlCase{"actuators: {m1: {full_torque_to_rad_per_s: 180}}", "180 rad/s are"},
         YamlCase{"joints: {m1: {q_max_rad: 2.9, dq_max_rad_per_s: 3}}", ""},
         YamlCase{"joints: {m1: {dq_max_rad_per_s: 120}}", "suspected degrees per second: 2.094"},
         YamlCase{"posture:\n  elbow: -45", "2: posture.elbow: -45 rad are 7.162 turns"},
@@ -133,6 +187,9 @@ INSTANTIATE_TEST_SUITE_P(
         YamlCase{"placement: {x_m: 450}", "suspected millimetres: 0.45 m"},
         YamlCase{"mass_kg: 1200", "1200 kg are more than a person moves; suspected grams: 1.2 kg"},
         YamlCase{"free_body: {mass_kg: 200}", ""},
+        YamlCase{"free_body: {mass_kg: 800, inertia_kg_m2: [150, 900, 1000]}",
+                 "1: free_body.mass_kg: 800 kg are more than a person moves; suspected grams: 0.8 "
+                 "kg -> if so, give mass_kg in kg\n"},
         YamlCase{"free_body: {mass_kg: 6000}", "suspected grams: 6 kg"},
         YamlCase{"payload: {mass_kg: 1.2, centre_of_mass_m: [0, 0, -3]}",
                  "payload.centre_of_mass_m[2]: -3 m are farther than the end of what is held; "
@@ -153,6 +210,56 @@ INSTANTIATE_TEST_SUITE_P(
         YamlCase{"sensors: {wrench_sensor: {force_N: [500, 5, 5], torque_Nm: [15000, 1, 1]}}",
                  "sensors.wrench_sensor.torque_Nm[0]: 1.5e+04 Nm beside 500 N"},
         YamlCase{"push: {force_N: 1, torque_Nm: 5}", ""}));
+
+TEST(Units, SlidesOfAPostureAreLengths) {
+  const std::string robot = urdf(
+      "<joint name=\"rail\" type=\"prismatic\"><parent link=\"a\"/><child link=\"b\"/><limit "
+      "upper=\"50\"/></joint>");
+  const auto with = [&](const std::string& at) {
+    const std::vector<config::SourceText> sources = {{"f.yaml", "posture: {rail: " + at + "}"},
+                                                     {"r.urdf", robot}};
+    const config::Places places;
+    Collector out(sources, places);
+    inspect_units(sources, {}, out);
+    return text_of(out.findings);
+  };
+  EXPECT_EQ(with("45"), "");
+  EXPECT_EQ(with("650"),
+            "1: posture.rail: 650 m are more than a hall is long; suspected millimetres: 0.65 m -> "
+            "if so, give rail in m\n");
+}
+
+// "a.list[].NAME.key" with its value, as YAML.
+std::string nested(const std::string& path, const std::string& value) {
+  const std::size_t dot = path.find('.');
+  std::string name = path.substr(0, dot);
+  const bool is_list = name.ends_with("[]");
+  if (is_list) name.resize(name.size() - 2);
+  if (dot == std::string::npos) return "{" + name + ": " + value + "}";
+  const std::string inner = nested(path.substr(dot + 1), value);
+  return "{" + name + ": " + (is_list ? "[" + inner + "]" : inner) + "}";
+}
+
+TEST(Units, DefaultsAreNotDoubted) {
+  int count = 0;
+  const std::regex row("`([^`]+)`(?: or `([^`]+)`)?,\"?(\\[[^\\]]+\\]|-?[0-9][0-9.e+-]*)\"?,.*");
+  for (const char* kind : {"device", "scenario", "script", "simulation", "tool", "twin"}) {
+    std::istringstream table(
+        read_file(std::string("docs/reference/configuration_") + kind + ".csv"));
+    std::smatch cells;
+    for (std::string line; std::getline(table, line);) {
+      if (!std::regex_match(line, cells, row)) continue;
+      const std::string path = cells.str(1);
+      const std::string parent = path.substr(0, path.rfind('.') + 1);
+      for (const std::string& key : {path, parent + cells.str(2)}) {
+        if (key == parent) continue;
+        EXPECT_EQ(doubts_of("f.yaml", nested(key, cells.str(3))), "") << key;
+        ++count;
+      }
+    }
+  }
+  EXPECT_GT(count, 200);
+}
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
@@ -279,6 +386,18 @@ TEST(Units, ATwinTooHeavyForAHand) {
                 .find("end_effector: the hand moves 8000 kg at least, more than a person can; "
                       "suspected grams: 8 kg"),
             std::string::npos);
+}
+
+TEST(Units, AHeavyBodyIsDoubtedOnce) {
+  for (const char* inertia : {"[0.08, 0.08, 0.08]", "[150, 900, 1000]"}) {
+    config::SourceReader reader(
+        {{"f.yaml",
+          std::string(
+              "name: car\nend_effector: handle\nfree_body: {mass_kg: 800, inertia_kg_m2: ") +
+              inertia + "}\nplacement: {x_m: 0}\n"}});
+    const Findings found = inspect(config::load_twin("f.yaml", reader), 1e-3);
+    EXPECT_EQ(std::ranges::count(found, Severity::kWarning, &Finding::severity), 1);
+  }
 }
 
 std::string doubts_of_link(const std::string& mass, const std::string& moment) {

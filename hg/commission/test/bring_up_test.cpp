@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hg/commission/simulated_crew.h"
 #include "hg/commission/test/miswired_device.h"
@@ -12,6 +13,28 @@
 namespace hg::commission {
 namespace {
 
+// A simulated machine whose time passes also while it gets no command.
+class Unwaiting final : public device::Device {
+ public:
+  explicit Unwaiting(device::Device& machine) : machine_(machine) {}
+
+  void read(SensorFrame& sensors) noexcept override {
+    if (!std::exchange(is_answered_, false) && last_.enable) machine_.write(last_);
+    machine_.read(sensors);
+  }
+  void write(const CommandFrame& command) noexcept override {
+    last_ = command;
+    is_answered_ = true;
+    machine_.write(command);
+  }
+  const Truth* truth() const noexcept override { return machine_.truth(); }
+
+ private:
+  device::Device& machine_;
+  CommandFrame last_;
+  bool is_answered_ = true;
+};
+
 // A first session with a machine that is connected so.
 struct Session {
   std::vector<Item> items;
@@ -19,7 +42,8 @@ struct Session {
 
   Session(const config::Scenario& scenario, const Miswiring& mistake, const Options& options = {}) {
     const auto machine = scenario::make_simulated_device(scenario);
-    MiswiredDevice device(*machine, mistake);
+    Unwaiting unwaiting(*machine);
+    MiswiredDevice device(unwaiting, mistake);
     struct Watching final : SimulatedCrew {
       const device::Device& machine;
       VectorM start;
@@ -59,6 +83,15 @@ TEST(BringUp, AMachineThatIsConnectedRightlyPasses) {
     EXPECT_EQ(std::ranges::count(session.items, Outcome::kUntested, &Item::outcome), 0);
     EXPECT_LT(session.astray, 0.1);
   }
+}
+
+TEST(BringUp, AWatchdogThatSwitchesTheDrivesOffIsNoEndOfTheSession) {
+  const Session session(giant(), {}, {.falls_silent = true});
+  EXPECT_TRUE(session.has_passed()) << session.failure();
+  const auto silence = std::ranges::find(session.items, "silence", &Item::name);
+  ASSERT_NE(silence, session.items.end());
+  EXPECT_EQ(silence->found,
+            "it switched the drives off: no new commands reached the device: lost or held up");
 }
 
 // What is wrong is found, with one of these names, and before that nothing moves by more than a

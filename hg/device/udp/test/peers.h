@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hg/core/error.h"
+#include "hg/device/udp/agreement.h"
 #include "hg/device/udp/device_server.h"
 #include "hg/device/udp/remote_device.h"
 #include "hg/device/udp/udp_socket.h"
