@@ -364,7 +364,7 @@ void add_design(Command app, int& exit_code) {
   command.footer(
       "`hapticgiant design FILE` searches for a device, from requirements to one that runs:\n"
       "  hapticgiant design models/design/haptic_giant.yaml --quick --out my_giant\n"
-      "Its options: --out FOLDER, --seed N, --workers N, --quick, --no-feel.");
+      "Its options: -o, --out FOLDER, --seed N, --workers N, --quick, --no-feel.");
   command.require_subcommand(0, 1);
   command.allow_extras();  // of the search, which is Python's
   command.callback([command] {
