@@ -80,7 +80,8 @@ void add_hands(Command experiment, int& exit_code) {
   command.add_option("--show", arguments->shown, "worst hands that are kept and shown")
       .check(whole_number(1.0, 1e5))
       .capture_default_str();
-  command.add_option("-o,--out", arguments->folder, "folder of their scenarios").capture_default_str();
+  command.add_option("-o,--out", arguments->folder, "folder of their scenarios")
+      .capture_default_str();
   add_law_option(command, search.world.law);
   command.callback([arguments, &exit_code] { exit_code = experiment_hands(*arguments); });
 }
