@@ -129,8 +129,7 @@ inline constexpr Rule kRules[] = {
      .reaction = Stop::kSto,
      .release = "samples are complete again; a driver is at fault"},
     {.code = FaultCode::kCommandsLost,
-     .threshold =
-         "10 ms; 5 ms once the device does not move as commanded; of a torque loop 50 ms in sum",
+     .threshold = "10 ms, 5 ms where the device deviates from commands; torque loop 50 ms in sum",
      .reaction = Stop::kSto,
      .release = "at once, or with the run where the device has ended it; look at the connection, "
                 "and at what else this computer does"},

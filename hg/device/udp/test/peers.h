@@ -77,10 +77,9 @@ class Serving {
         thread_([this, first_sequence] {
           while (server_.wait_for_client(stop_)) {
             TestDevice device(first_sequence);
-            const SessionReport report = server_.serve(device, stop_);
+            reports.push_back(server_.serve(device, stop_));
             was_enabled = device.was_enabled;
             ends_off = !device.last.enable;
-            reports.push_back(report);
             sessions.fetch_add(1);
           }
         }) {}
