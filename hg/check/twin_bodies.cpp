@@ -78,10 +78,6 @@ void inspect_alike(const model::Urdf& urdf, const std::vector<std::string>& join
   }
 }
 
-std::string after_semicolon(const std::string& suspected) {
-  return suspected.empty() ? "" : "; " + suspected;
-}
-
 // Least mean distance of the mass from its centre, m: that of a ball of tungsten.
 double densest(double mass) {
   constexpr double kDensity = 2e4;  // kg/m^3

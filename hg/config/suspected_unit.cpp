@@ -5,14 +5,6 @@
 #include "hg/core/unit_doubt.h"
 
 namespace hg::config {
-namespace {
-
-std::string after_semicolon(const std::string& suspected) {
-  return suspected.empty() ? "" : "; " + suspected;
-}
-
-}  // namespace
-
 std::string suspected_of(double value, std::string_view unit) {
   constexpr Interval kUsual = {-30.0, 30.0};  // m, rad or rad/s
   std::span<const OtherUnit> others;

@@ -1,11 +1,13 @@
 #include "hg/core/unit_doubt.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "hg/core/text.h"
 
 namespace hg {
 namespace {
 
+constexpr int kDigits = 4;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kMostAngle = 4.0 * kTurn;  // arms wind up by two turns at most, wrists by four
 constexpr double kMostLength = 60.0;        // m, of a hall with its crane
@@ -18,14 +20,8 @@ bool is_multiple(double value, double of) noexcept {
   return std::abs(value / of - std::round(value / of)) < 1e-9;
 }
 
-std::string text_of(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
-
 std::string sentence(double value, const char* is, const std::string& suspected) {
-  return text_of(value) + is + "; " + suspected;
+  return to_text(value, kDigits) + is + "; " + suspected;
 }
 
 }  // namespace
@@ -38,9 +34,13 @@ std::string suspected_unit(double value, const Interval& plausible,
     const double mended = value * other.size;
     if (!plausible.contains(mended)) continue;
     text += (text.empty() ? "suspected " : ", or ") + std::string(other.name) + ": " +
-            text_of(mended) + " " + unit;
+            to_text(mended, kDigits) + " " + unit;
   }
   return text;
+}
+
+std::string after_semicolon(const std::string& suspected) {
+  return suspected.empty() ? "" : "; " + suspected;
 }
 
 bool is_odd_angle(double angle) noexcept {
@@ -61,8 +61,9 @@ bool is_odd_speed(double speed) noexcept {
 
 std::string doubt_of_angle(double angle) {
   if (!is_odd_angle(angle)) return "";
-  return sentence(angle, (" rad are " + text_of(std::abs(angle) / kTurn) + " turns").c_str(),
-                  "suspected degrees: " + text_of(angle * kDegree) + " rad");
+  return sentence(angle,
+                  (" rad are " + to_text(std::abs(angle) / kTurn, kDigits) + " turns").c_str(),
+                  "suspected degrees: " + to_text(angle * kDegree, kDigits) + " rad");
 }
 
 std::string doubt_of_orientation(double angle) {
@@ -74,7 +75,8 @@ std::string doubt_of_orientation(double angle) {
 
 std::string doubt_of_speed(double speed) {
   if (!is_odd_speed(speed)) return "";
-  return sentence(speed, (" rad/s are " + text_of(speed / kTurn) + " turns per second").c_str(),
+  return sentence(speed,
+                  (" rad/s are " + to_text(speed / kTurn, kDigits) + " turns per second").c_str(),
                   suspected_unit(speed, {0.0, kLeastRoundSpeed}, kOtherSpeeds, "rad/s"));
 }
 

@@ -44,6 +44,9 @@ inline constexpr std::array kOtherStiffnesses = {OtherUnit{"Nm/deg", 1.0 / kDegr
 std::string suspected_unit(double value, const Interval& plausible,
                            std::span<const OtherUnit> others, const char* unit);
 
+/// "; suspected ..." to end a sentence with; empty without a suspicion.
+std::string after_semicolon(const std::string& suspected);
+
 /// Whether an angle is too large for a joint: more than four turns, or a multiple of 5 from 15 on.
 /// Whole half turns, also rounded to a digit after the point, are those of a screw or wheel. rad.
 bool is_odd_angle(double angle) noexcept;

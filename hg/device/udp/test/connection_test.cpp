@@ -248,6 +248,16 @@ TEST(Connection, AServerThatWelcomesAllIsCheckedAllTheSame) {
       << message;
 }
 
+// The welcome that a server sends next.
+Welcome next_welcome(UdpSocket& from_server) {
+  Datagram datagram;
+  Peer from;
+  while (!from_server.receive(datagram, from)) from_server.wait(now_ns() + 1'000'000'000);
+  Welcome welcome;
+  EXPECT_TRUE(decode(datagram.view(), welcome));
+  return welcome;
+}
+
 TEST(Connection, AnotherVersionIsNamedOnBothSides) {
   Script server;
   std::thread thread([&] {
@@ -264,10 +274,7 @@ TEST(Connection, AnotherVersionIsNamedOnBothSides) {
   Datagram datagram;
   encode({.version = 9}, Hello{}, datagram);
   old.send(datagram.view());
-  Peer from;
-  while (!old.receive(datagram, from)) old.wait(now_ns() + 1'000'000'000);
-  Welcome welcome;
-  ASSERT_TRUE(decode(datagram.view(), welcome));
+  const Welcome welcome = next_welcome(old);
   EXPECT_EQ(welcome.refusal, ConnectionRefusal::kProtocol);
   EXPECT_EQ(welcome.reason.view(), "protocol: version 2, expected 9");
 }
@@ -288,11 +295,8 @@ TEST(Connection, AnswersHaveAtMostTwiceTheBytesOfTheQuestion) {
   other.send(datagram.view());
   encode({.version = 8}, Hello{}, datagram);
   other.send(datagram.view());
-  Peer from;
-  while (!other.receive(datagram, from)) other.wait(now_ns() + 1'000'000'000);
-  Welcome welcome;
-  ASSERT_TRUE(decode(datagram.view(), welcome));
-  EXPECT_EQ(welcome.reason.view(), "protocol: version 2, expected 8") << "none to the first";
+  EXPECT_EQ(next_welcome(other).reason.view(), "protocol: version 2, expected 8")
+      << "none to the first";
 }
 
 TEST(Connection, AMissingDeviceIsOneClearSentence) {
