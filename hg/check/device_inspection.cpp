@@ -15,6 +15,7 @@
 #include "hg/check/twin_bodies.h"
 #include "hg/check/unit_comparison.h"
 #include "hg/check/unit_inspection.h"
+#include "hg/check/wall_force.h"
 #include "hg/model/chain_data.h"
 #include "hg/workspace/workspace.h"
 
@@ -255,6 +256,7 @@ Findings inspect(const config::DeviceConfig& device, const workspace::Survey& su
   inspect_joints(device, survey, out);
   inspect_room(device, survey, out);
   inspect_cartesian_rule(device, survey, out);
+  inspect_wall_forces(device, out);
   inspect_stopping(device, out);
   inspect_singularities(device, survey, out);
   inspect_collisions(device, out);

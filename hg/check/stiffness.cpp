@@ -6,15 +6,18 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "hg/check/drive_loop.h"
 #include "hg/controller/rendering/braking.h"
 #include "hg/controller/rendering/twin_elements.h"
 #include "hg/controller/safety/collision/guard.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
+#include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/start_posture.h"
 
@@ -25,8 +28,13 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kPhase_deg = 16.5;  // see frequency_Hz()
 constexpr double kLeastWay = 0.01;   // m at the handle, over which a spring should be followed
 
+bool has_position_drives(const config::SimulatedDeviceConfig& device) {
+  return plant_of(device) == config::PlantKind::kPositionDrives;
+}
+
 // Mean delay between a wrench and the reaction of the motors.
 double delay_of(const config::SimulatedDeviceConfig& device) {
+  if (has_position_drives(device)) return drive_delay(device);
   double delay = device.control.loop.latency;
   if (device.estimation.wrench.low_pass_Hz > 0.0) {
     delay += 1.0 / (kTurn * device.estimation.wrench.low_pass_Hz);
@@ -37,29 +45,74 @@ double delay_of(const config::SimulatedDeviceConfig& device) {
   return delay;
 }
 
-// The least along the axes of B, at the start; where the device does not get there it is stated
-// itself.
-double braking_of(const config::DeviceConfig& device, const config::Twin& twin) {
-  rendering::DeviceMotion motion = {.dq_p = VectorP::Zero(device.model.n_p),
-                                    .dq_m = VectorM::Zero(device.model.n_m)};
+std::optional<scenario::Start> start_of(const config::DeviceConfig& device,
+                                        const config::Twin& twin) {
   try {
-    const scenario::Start start = scenario::find_start(device, twin);
-    motion.q_p = start.q_p;
-    motion.q_m = start.q_m;
-  } catch (const SetupError&) {
-    return kInfinity;
+    return scenario::find_start(device, twin);
+  } catch (const SetupError&) {  // where the device does not get there it is stated itself
+    return {};
   }
+}
+
+// The least along the axes of B.
+double braking_of(const DeviceModel& device, const scenario::Start& start) {
+  const rendering::DeviceMotion motion = {.q_p = start.q_p,
+                                          .dq_p = VectorP::Zero(device.n_p),
+                                          .q_m = start.q_m,
+                                          .dq_m = VectorM::Zero(device.n_m)};
   double least = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
-      least = std::min(least, rendering::largest_acceleration(device.model, motion,
+      least = std::min(least, rendering::largest_acceleration(device, motion,
                                                               side * Eigen::Vector3d::Unit(axis)));
     }
   }
   return least;
 }
 
+// What the twin can be in the loop of hand and drives, along the axes of B.
+void close_loop(const config::SimulatedDeviceConfig& device, const scenario::Start& start,
+                StiffnessLimits& limits) {
+  const DriveLoop loop(device, stacked(start.q_p, start.q_m));
+  limits.calm.emplace();
+  for (int axis = 0; axis < 3; ++axis) {
+    limits.calm->stiffness[axis] = loop.stiffest_wall(axis, limits.mass, limits.damping);
+    limits.calm->mass[axis] = loop.lightest_mass(axis, limits.damping);
+  }
+}
+
 std::string kilo(double stiffness) { return fmt::format("{:.2g} kN/m", 1e-3 * stiffness); }
+
+std::string by_axis(const std::array<double, 3>& values, double scale) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double value = scale * values[axis];
+    text += fmt::format("{}{} ", axis > 0 ? ", " : "", "xyz"[axis]);
+    if (!std::isfinite(value)) {
+      text += "any";
+    } else {
+      text += value < 100.0 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
+    }
+  }
+  return text;
+}
+
+std::string frequency_text(const StiffnessLimits& limits) {
+  if (!limits.calm) {
+    return fmt::format("up to {:.1f} Hz, where T_d is {:g} degrees, which is {} = m (2 pi f)^2",
+                       limits.frequency_Hz(), kPhase_deg, kilo(limits.by_frequency()));
+  }
+  if (limits.by_frequency() == 0.0) {
+    return fmt::format(
+        "none along some axis, as in a hand it shakes without one below {} kg; across {} kN/m",
+        by_axis(limits.calm->mass, 1.0), by_axis(limits.calm->stiffness, 1e-3));
+  }
+  return fmt::format(
+      "up to {:.1f} Hz, where drives and elastic joints take the damping of a hand, which is {} "
+      "(across {} kN/m; without a surface it shakes below {} kg)",
+      limits.frequency_Hz(), kilo(limits.by_frequency()), by_axis(limits.calm->stiffness, 1e-3),
+      by_axis(limits.calm->mass, 1.0));
+}
 
 std::string known_of(const StiffnessLimits& limits) {
   return fmt::format(
@@ -124,9 +177,9 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
       [&](const Spring& spring) {
         return fmt::format(
             "swing with {:.1f} Hz; this device shows up to {:.1f} Hz, where the "
-            "{:.1f} ms from wrench to motion are {:g} degrees",
+            "{:.1f} ms from wrench to motion are {:.3g} degrees",
             std::sqrt(spring.stiffness.value / spring.inertia) / kTurn, fastest, 1e3 * limits.delay,
-            kPhase_deg);
+            360.0 * fastest * limits.delay);
       },
       out);
   // how far from its rest the handle may be: its lever cancels
@@ -147,9 +200,13 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
 
 }  // namespace
 
-double StiffnessLimits::frequency_Hz() const noexcept { return kPhase_deg / 360.0 / delay; }
+double StiffnessLimits::frequency_Hz() const noexcept {
+  const double by_phase = kPhase_deg / 360.0 / delay;
+  return calm ? std::min(std::sqrt(by_frequency() / mass) / kTurn, 0.25 / delay) : by_phase;
+}
 
 double StiffnessLimits::by_frequency() const noexcept {
+  if (calm) return std::ranges::min(calm->stiffness);
   return mass * std::pow(kTurn * frequency_Hz(), 2);
 }
 
@@ -176,7 +233,9 @@ StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
     const rendering::TwinDof& dof = twin.model.dofs[i];
     limits.damping += rendering::total_of(&rendering::Element::damping, dof).value * speed * speed;
   }
-  limits.acceleration = braking_of(device, twin);
+  const std::optional<scenario::Start> start = start_of(device, twin);
+  if (start) limits.acceleration = braking_of(device.model, *start);
+  if (start && has_position_drives(device)) close_loop(device, *start, limits);
   return limits;
 }
 
@@ -186,12 +245,10 @@ void inspect_stiffness(const config::SimulatedDeviceConfig& device, const config
   if (!can_be_pushed(limits.mass)) return;
   out.add(Severity::kNote, "end_effector",
           fmt::format(
-              "surfaces and springs that this device can show with this twin ({}): up to "
-              "{:.1f} Hz, where T_d is {:g} degrees, which is {} = m (2 pi f)^2; {}; passive in "
-              "any hand up to {} = b / (T / 2 + T_d), with 20 Ns/m of a surface {}",
-              known_of(limits), limits.frequency_Hz(), kPhase_deg, kilo(limits.by_frequency()),
-              acceleration_text(limits), kilo(limits.by_passivity(0.0)),
-              kilo(limits.by_passivity(20.0))),
+              "surfaces and springs that this device can show with this twin ({}): {}; {}; passive "
+              "in any hand up to {} = b / (T / 2 + T_d), with 20 Ns/m of a surface {}",
+              known_of(limits), frequency_text(limits), acceleration_text(limits),
+              kilo(limits.by_passivity(0.0)), kilo(limits.by_passivity(20.0))),
           "");
   inspect_springs(twin, limits, out);
 }

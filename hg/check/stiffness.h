@@ -4,6 +4,9 @@
 /// (measurements). SI units at the handle, at the start of the twin.
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "hg/check/findings.h"
 #include "hg/config/device.h"
 #include "hg/config/simulation/scenario.h"
@@ -15,6 +18,12 @@ namespace hg::check {
 /// along any direction the mass is infinite, or nearly.
 constexpr bool can_be_pushed(double mass) noexcept { return mass < 1e6; }
 
+/// Where hand, twin and drives that follow positions do not swing together, along x, y, z of B.
+struct CalmTwin {
+  std::array<double, 3> stiffness = {};  ///< stiffest wall, N/m
+  std::array<double, 3> mass = {};       ///< lightest twin without a wall, kg
+};
+
 /// Quantities that determine the limits. The acceleration is the deceleration of the handle
 /// available from the motors, or the rating of its Cartesian limits where the law does not model
 /// the motors; without either it is infinite.
@@ -22,14 +31,17 @@ struct StiffnessLimits {
   double mass = 0.0;     ///< mass of the twin in the direction in which it is lightest, kg
   double damping = 0.0;  ///< damping of the twin in that direction, Ns/m
   double period = 0.0;   ///< T, s
-  double delay = 0.0;    ///< delay T_d of the wrench: sensor, low-pass and torque loop, s
+  double delay = 0.0;    ///< delay T_d of the wrench: sensor, low-pass and drives, s
   double acceleration = kInfinity;  ///< a, along the worst axis of B, m/s^2
+
+  /// Of drives that follow positions, see DriveLoop; empty for others.
+  std::optional<CalmTwin> calm = {};
 
   /// Frequency up to which T_d shifts the phase of an oscillation by 16.5 degrees at most.
   /// Measured: 6 kg and 3 kg on surfaces come to rest at 8.2 Hz but not at 11.6 Hz, which with 4 ms
-  /// are 12 and 16.7 degrees.
+  /// are 12 and 16.7 degrees. With `calm` that of by_frequency(), a quarter of its turn at most.
   double frequency_Hz() const noexcept;
-  /// Stiffness limit by frequency: m (2 pi f)^2, N/m.
+  /// Stiffness limit by frequency: m (2 pi f)^2, with `calm` the least of its axes, N/m.
   double by_frequency() const noexcept;
   /// Stiffness limit by passivity: b / (T / 2 + T_d), N/m; passive in any hand, with `extra` Ns/m
   /// of a surface.
