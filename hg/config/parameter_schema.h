@@ -23,13 +23,14 @@ void describe_parameter(V& v, Parameter parameter, double& value, JointUnit unit
   v.joint_number(key_of(facts), unit, value, range_of(facts), facts.help);
 }
 
+/// A parameter with six components.
 template <class V>
-void describe_reference_wrench(V& v, Eigen::Vector3d& force, Eigen::Vector3d& torque) {
-  const ParameterFacts& facts = facts_of(Parameter::kReferenceWrench);
+void describe_wrench(V& v, Parameter parameter, Eigen::Vector3d& force, Eigen::Vector3d& torque) {
+  const ParameterFacts& facts = facts_of(parameter);
   v.group(
       facts.key,
       [&](auto& child) {
-        for (const WrenchParameter& part : kWrenchParameters) {
+        for (const WrenchParameter& part : parts_of(parameter)) {
           child.vector(part.key, part.first_component == 0 ? force : torque, range_of(facts),
                        part.help);
         }

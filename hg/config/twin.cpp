@@ -190,6 +190,8 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
 
   Vector6 w_ref;
   w_ref << draft.force_ref, draft.torque_ref;
+  Vector6 felt_scale;
+  felt_scale << draft.force_scale, draft.torque_scale;
   Twin twin = {.name = draft.name,
                .urdf = draft.urdf,
                .surroundings = draft.surroundings,
@@ -202,7 +204,8 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
                          .conditional_limits = draft.conditional_limits,
                          .spheres = draft.spheres,
                          .w_ref = w_ref,
-                         .mass_scale = draft.mass_scale},
+                         .mass_scale = draft.mass_scale,
+                         .felt_scale = felt_scale},
                .sources = reader.since(first_source),
                .places = std::move(file.places)};
   for (const TwinJoint& joint : draft.joints) add_dofs(joint, twin.model.dofs);

@@ -45,6 +45,7 @@ struct TwinDraft {
   std::vector<model::ClosedLoop> loops;
   Eigen::Vector3d force_ref = Eigen::Vector3d::Zero(), torque_ref = Eigen::Vector3d::Zero();
   double mass_scale = 1.0;
+  Eigen::Vector3d force_scale = Eigen::Vector3d::Ones(), torque_scale = force_scale;
   std::vector<std::string> joint_names, frame_names;
   std::vector<TwinJoint> joints;
   std::vector<std::string> scalar_names;  ///< names of the joints that are not floating

@@ -41,6 +41,8 @@ double value_of(const rendering::TwinModel& twin, const ParameterChange& change)
       return twin.chain.default_loads().gravity;
     case Parameter::kMassScale:
       return twin.mass_scale;
+    case Parameter::kFeltScale:
+      return twin.felt_scale[index];
     case Parameter::kNone:
       break;
   }
@@ -120,15 +122,16 @@ void add_joint(const rendering::TwinModel& twin, const model::Joint& joint,
   }
 }
 
-void add_reference_wrench(const rendering::TwinModel& twin, std::vector<FormField>& form) {
-  const std::string group(facts_of(Parameter::kReferenceWrench).key);
-  for (const WrenchParameter& part : kWrenchParameters) {
+void add_wrench(const rendering::TwinModel& twin, Parameter parameter,
+                std::vector<FormField>& form) {
+  const std::string group(facts_of(parameter).key);
+  for (const WrenchParameter& part : parts_of(parameter)) {
     for (int i = 0; i < 3; ++i) {
       const std::string axis(1, "xyz"[i]);
       form.push_back(make_field(twin,
                                 {"", group + '.' + std::string(part.key) + '.' + axis,
                                  std::string(part.label) + ' ' + axis, std::string(part.help)},
-                                Parameter::kReferenceWrench, part.first_component + i));
+                                parameter, part.first_component + i));
     }
   }
 }
@@ -138,7 +141,9 @@ void add_reference_wrench(const rendering::TwinModel& twin, std::vector<FormFiel
 std::vector<FormField> twin_form(const rendering::TwinModel& twin) {
   std::vector<FormField> form;
   for (const model::Joint& joint : twin.chain.joints()) add_joint(twin, joint, form);
-  add_reference_wrench(twin, form);
+  for (const ParameterFacts& facts : kParameters) {
+    if (facts.owner == ParameterOwner::kWrench) add_wrench(twin, facts.parameter, form);
+  }
   for (const ParameterFacts& facts : kParameters) {
     if (facts.owner != ParameterOwner::kTwin) continue;
     form.push_back(make_field(

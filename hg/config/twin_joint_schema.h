@@ -90,8 +90,9 @@ void describe_joints(V& v, TwinDraft& d) {
       "spheres on links of the twin that surfaces with 'contact: stop' keep out, as they keep the "
       "end effector out; at most 8");
   v.rule(d.spheres.size() <= rendering::kMaxSpheres, "collision_spheres", "at most 8 are possible");
-  describe_reference_wrench(v, d.force_ref, d.torque_ref);
+  describe_wrench(v, Parameter::kReferenceWrench, d.force_ref, d.torque_ref);
   describe_mass_scale(v, d.mass_scale);
+  describe_wrench(v, Parameter::kFeltScale, d.force_scale, d.torque_scale);
   if (!v.covers(!d.scalar_joints.empty())) return;
   v.list(
       "conditional_limits",

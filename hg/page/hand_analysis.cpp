@@ -48,7 +48,7 @@ viewer_server::HandBudget HandAnalysis::budget(const CycleRecord& record) {
   const LeastSquares decomposition(J_transposed);
   const auto at_hand = [&](const VectorA& tau) -> Vector6 {
     if (tau.size() != twin_.model().nv()) return Vector6::Zero();
-    const Vector6 w = decomposition.solve(tau);
+    const Vector6 w = decomposition.solve(tau).cwiseQuotient(record.felt_scale);
     budget.rest -= w;
     return w;
   };

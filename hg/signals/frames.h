@@ -150,9 +150,10 @@ enum class Parameter : std::uint8_t {
   kReferenceWrench = 10,  ///< N or Nm; index 0..5: force x y z, torque x y z
   kGravity = 11,          ///< share of the earth's gravity, 0..1
   kMassScale = 12,        ///< factor on all masses of the twin, 0.1..10
+  kFeltScale = 13,        ///< factor on the user's wrench, 0.1..10; index as of kReferenceWrench
 };
 
-/// New value of one parameter of the twin, approached smoothly within a second.
+/// New value of one parameter of the twin, approached smoothly.
 struct ParameterChange {
   Parameter parameter = Parameter::kNone;
   std::int16_t index = -1;
@@ -210,8 +211,7 @@ void fields(Archive& a, T& command) {
   a("q_m", command.q_m, "reference positions of the manipulator", unit::kJointPosition);
   a("dq_m", command.dq_m, "reference velocities of the manipulator", unit::kJointSpeed);
   a("ddq_m", command.ddq_m, "reference accelerations of the manipulator", unit::kJointAcceleration);
-  a("tau_m", command.tau_m, "motor torques; empty: the drives follow the reference",
-    unit::kJointTorque);
+  a("tau_m", command.tau_m, "motor torques; empty: drives follow positions", unit::kJointTorque);
   a("dq_p", command.dq_p, "gantry velocities", unit::kJointSpeed);
   a("hand_target", command.hand_target, "target passed through to a simulated hand");
   a("panel", command.panel, "panel passed through to a simulated safety controller");

@@ -107,8 +107,7 @@ void fields(Archive& a, T& robot) {
   a("dq_p", robot.dq_p, "gantry velocities", unit::kJointSpeed);
   a("ddq_p", robot.ddq_p, "gantry accelerations", unit::kJointAcceleration);
   a("w_h", robot.w_H,
-    "wrench of the user at the handle, in the base frame, filtered, payload compensated: force, "
-    "torque",
+    "wrench of the user at the handle, in the base frame, filtered, without the payload",
     unit::kWrench);
 }
 
@@ -163,8 +162,8 @@ void fields(Archive& a, T& twin) {
 }
 
 /// Breakdown of the user's wrench in twin joint space. The parts add up:
-/// J_a^T w = inertia + damping + friction + spring + surface + limits (+ conflict); `structure` is
-/// the part of w carried by the twin's bearings.
+/// J_a^T S w = inertia + damping + friction + spring + surface + limits (+ conflict), with the
+/// scale S of the felt wrench; `structure` is the part of w carried by the twin's bearings.
 struct Budget {
   VectorA inertia;   ///< M_a ddq_a + c_a
   VectorA damping;   ///< viscous part of tau_dis
@@ -173,7 +172,7 @@ struct Budget {
   VectorA surface;   ///< J_a^T w_ref, minus J_a^T times the wrench of a contact with the arm
   VectorA limits;    ///< negative constraint torques of all rows with a reaction
   VectorA conflict;  ///< negative contribution of rows that could not be met
-  Vector6 structure = Vector6::Zero();  ///< part of w in the null space of J_a^T
+  Vector6 structure = Vector6::Zero();  ///< part of w in the null space of J_a^T S
 };
 
 template <typename Archive, Is<Budget> T>
@@ -208,8 +207,7 @@ void fields(Archive& a, T& tracking) {
     unit::kJointTorque);
   a("latency_s", tracking.latency_s, "latency of the torque loop, as measured before it was closed",
     unit::kS);
-  a("is_clamped", tracking.is_clamped,
-    "tracking was lost: the reference was moved back to the device");
+  a("is_clamped", tracking.is_clamped, "the reference was moved back to a device that lagged");
 }
 
 /// Outcome of the solver in one cycle.
@@ -274,8 +272,9 @@ struct LawReport {
   Eigen::Vector3d p_B_elbow = Eigen::Vector3d::Zero();
   double sync_error = 0.0;  ///< In the record after the motion of this cycle
   double sync_error_angle = 0.0;
-  VectorA tau_a;  ///< J_a^T w
+  VectorA tau_a;  ///< J_a^T S w
   Budget budget;
+  Vector6 felt_scale = Vector6::Ones();  ///< Diagonal of S
   std::array<LimitReport, kMaxLimits> limits{};
   int limit_count = 0;
   int felt_limit = -1;
@@ -380,10 +379,10 @@ void fields(Archive& a, T& record) {
   a("q_p_target", record.q_p_target, "gantry target of prepositioning", unit::kJointPosition);
   a("solver_status", record.solver_status);
   a("solver_iterations", record.solver_iterations, "active sets of all solves of this cycle");
-  a("active_set_changes", record.active_set_changes,
-    "limit rows whose state differs from that in the last cycle");
+  a("active_set_changes", record.active_set_changes, "limit rows in another state than before");
   a("state_hash", record.state_hash, "hash of the state after this cycle; equal in a replay");
   a("inertial", record.inertial, "estimates from inertial units on the links");
+  a("felt_scale", record.felt_scale, "factors of the user's wrench on the twin", unit::kNone);
 }
 
 /// Complete record of one cycle.

@@ -39,7 +39,7 @@ inline constexpr double kLargestParameter = 1e9;
 inline constexpr Interval kAnyValue = {-kLargestParameter, kLargestParameter};
 inline constexpr Interval kFromZero = {0.0, kLargestParameter};
 
-inline constexpr std::array<ParameterFacts, 12> kParameters = {{
+inline constexpr std::array<ParameterFacts, 13> kParameters = {{
     {Parameter::kStiffness, ParameterOwner::kJoint, "stiffness_Nm_per_rad", "stiffness_N_per_m",
      "stiffness", "spring", kFromZero},
     {Parameter::kRest, ParameterOwner::kJoint, "rest_rad", "rest_m", "rest",
@@ -76,6 +76,13 @@ inline constexpr std::array<ParameterFacts, 12> kParameters = {{
      "",
      "mass scale",
      "all masses and inertias times this",
+     {0.1, 10.0}},
+    {Parameter::kFeltScale,
+     ParameterOwner::kWrench,
+     "felt_scale",
+     "",
+     "felt scale",
+     "factors of the user's wrench on the twin: what the twin does is felt divided by them",
      {0.1, 10.0}},
 }};
 
@@ -125,5 +132,16 @@ inline constexpr std::array<WrenchParameter, 2> kWrenchParameters = {{
     {0, "force_N", "force", "at the end effector, along x, y, z of B"},
     {3, "torque_Nm", "torque", "about x, y, z of B"},
 }};
+
+/// The same of the scale of the felt wrench.
+inline constexpr std::array<WrenchParameter, 2> kScaleParameters = {{
+    {0, "force", "felt scale, force", "of forces along x, y, z of B"},
+    {3, "torque", "felt scale, torque", "of torques about x, y, z of B"},
+}};
+
+/// Those of a parameter with six components.
+constexpr const std::array<WrenchParameter, 2>& parts_of(Parameter parameter) noexcept {
+  return parameter == Parameter::kFeltScale ? kScaleParameters : kWrenchParameters;
+}
 
 }  // namespace hg

@@ -44,7 +44,8 @@ TEST(ChangesInClosedLoop, AreNotFeltAsABump) {
                       {3.0, {Parameter::kMassScale, dof(-1), 0.5}},
                       {4.0, {Parameter::kMassScale, dof(-1), 3.0}},
                       {5.0, {Parameter::kReferenceWrench, dof(0), 0.0}},
-                      {6.0, {Parameter::kQuadraticDamping, dof(1), 500.0}}};
+                      {6.0, {Parameter::kQuadraticDamping, dof(1), 500.0}},
+                      {7.0, {Parameter::kFeltScale, dof(2), 2.0}}};
   const std::size_t changes = scenario.changes.size();
   const Trace trace(std::move(scenario));
   expect_sound(trace.run());
@@ -61,7 +62,8 @@ TEST(ChangesInClosedLoop, AreNotFeltAsABump) {
   // the hand carries the reference wrench
   EXPECT_NEAR(trace.record(4.9).robot.w_H.x(), 20.0, 0.5);
   EXPECT_NEAR(trace.record(15.9).robot.w_H.x(), 0.0, 0.5);
-  EXPECT_NEAR(trace.record(15.9).robot.w_H.z(), -20.0, 0.5);
+  EXPECT_NEAR(trace.record(6.9).robot.w_H.z(), -20.0, 0.5);
+  EXPECT_NEAR(trace.record(15.9).robot.w_H.z(), -10.0, 0.5);  // of the twin: twice as much
 }
 
 TEST(ChangesInClosedLoop, ThatMakeNoSenseAreIgnoredAndSeen) {

@@ -86,6 +86,14 @@ void describe_floating_change(V& v, ChangesDraft& d, double at_s, int dof) {
 }
 
 template <class V>
+void describe_wrench_change(V& v, ChangesDraft& d, double at_s, Parameter parameter) {
+  Eigen::Vector3d force = Eigen::Vector3d::Constant(kNoDefault), torque = force;
+  describe_wrench(v, parameter, force, torque);
+  for (int i = 0; i < 3; ++i) d.add(at_s, parameter, i, force[i]);
+  for (int i = 0; i < 3; ++i) d.add(at_s, parameter, 3 + i, torque[i]);
+}
+
+template <class V>
 void describe(V& v, ChangesDraft& d) {
   const double last_s = d.changes.empty() ? 0.0 : d.changes.back().at_s;
   const std::size_t before = d.changes.size();
@@ -100,16 +108,14 @@ void describe(V& v, ChangesDraft& d) {
   if (v.covers(has_joint && !joint.is_floating)) describe_change(v, d, at_s, joint);
   if (v.covers(has_joint && joint.is_floating)) describe_floating_change(v, d, at_s, joint.dof);
 
-  Eigen::Vector3d force = Eigen::Vector3d::Constant(kNoDefault), torque = force;
-  describe_reference_wrench(v, force, torque);
-  for (int i = 0; i < 3; ++i) d.add(at_s, Parameter::kReferenceWrench, i, force[i]);
-  for (int i = 0; i < 3; ++i) d.add(at_s, Parameter::kReferenceWrench, 3 + i, torque[i]);
+  describe_wrench_change(v, d, at_s, Parameter::kReferenceWrench);
   bool gravity = false;
   if (v.flag(facts_of(Parameter::kGravity).key, gravity, facts_of(Parameter::kGravity).help)) {
     d.add(at_s, Parameter::kGravity, -1, gravity ? 1.0 : 0.0);
   }
   describe_mass_scale(v, mass_scale);
   d.add(at_s, Parameter::kMassScale, -1, mass_scale);
+  describe_wrench_change(v, d, at_s, Parameter::kFeltScale);
   v.rule(d.changes.size() > before, "", "a change needs at least one value");
 }
 
@@ -117,7 +123,8 @@ template <class V>
 void describe_changes(V& v, ChangesDraft& d) {
   v.list(
       "changes", [&](auto& child) { describe(child, d); },
-      "values of the twin that change during the run, approached within a second");
+      "values of the twin that change during the run; changes that the hand feels are slow, up to "
+      "some seconds");
 }
 
 }  // namespace hg::config

@@ -41,6 +41,9 @@ TEST(TwinForm, HasTheValuesOfTheFileAndTheWordsOfTheReferencePage) {
   EXPECT_EQ(find(form, "hinge.q_max_rad").value, door.model.dofs[0].limits.q_max);
   EXPECT_EQ(find(form, "reference_wrench.force_N.y").label, "force y");
   EXPECT_EQ(find(form, "mass_scale").max, 10.0);
+  EXPECT_EQ(find(form, "felt_scale.torque.z").label, "felt scale, torque z");
+  EXPECT_EQ(find(form, "felt_scale.torque.z").value, 1.0);
+  EXPECT_EQ(find(form, "felt_scale.force.x").min, 0.1);
   EXPECT_EQ(find(form, "gravity").step, 1.0);
 }
 
@@ -94,6 +97,7 @@ TEST(TwinForm, RefusesWhatIsOutOfRangeNotANumberOrCrosses) {
   EXPECT_NE(refusal_of("hinge.damping_Nms_per_rad", std::nan("")), "");
   EXPECT_NE(refusal_of("hinge.damping_Nms_per_rad", 1e6), "");
   EXPECT_NE(refusal_of("mass_scale", 11.0), "");
+  EXPECT_NE(refusal_of("felt_scale.force.y", 0.05), "");
   EXPECT_NE(refusal_of("hinge.q_max_rad", -0.5).find("cross"), std::string::npos);
   EXPECT_NE(refusal_of("hinge.q_min_rad", 2.5).find("cross"), std::string::npos);
 }

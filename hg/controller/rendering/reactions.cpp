@@ -53,6 +53,7 @@ bool is_upper_side(hqp::RowState state, double reaction) noexcept {
 // a bound on the torque is approached; `row.q` is the torque
 LimitCause cause_of_motor(const LimitRow& row, bool is_upper) noexcept {
   constexpr double kNear = 0.05;  // of the whole range
+  if (row.is_slowed) return LimitCause::kVelocity;
   const double left = is_upper ? row.torque.ub - row.q : row.q - row.torque.lb;
   const bool is_at_end = left <= kNear * (row.torque.ub - row.torque.lb);
   return is_at_end ? LimitCause::kTorque : LimitCause::kTorqueRate;
@@ -253,7 +254,7 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
     report.reaction = value_[limit];
   }
   report_felt(felt.L, result);
-  result.budget.structure = bearing_wrench(felt.J_a, felt.w_H);
+  result.budget.structure = bearing_wrench(felt.J_a, felt.w);
 }
 
 // The limit felt most takes most of the acceleration, in the metric of M_a, that the user's wrench

@@ -49,7 +49,7 @@ class Reactions {
   struct Felt {
     const MatrixA& L;            ///< Cholesky factor of M_a
     const model::Jacobian& J_a;  ///< Jacobian of the twin's end effector
-    const Vector6& w_H;          ///< Wrench of the user
+    const Vector6& w;            ///< Wrench of the user on the twin
     double dt;                   ///< Period, s
   };
 

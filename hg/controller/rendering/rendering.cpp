@@ -205,14 +205,30 @@ void Rendering::update_device(const RobotState& robot, const ReferenceState& ref
   }
 }
 
+// Advances the values of the twin, and updates its chain. While they change, what the user feels of
+// that follows from the masses before.
+void Rendering::update_twin(const Vector6& w_H, RenderingState& state) noexcept {
+  TwinParameters& parameters = state.inner.parameters;
+  const TwinState& twin = state.twin;
+  const double inertia = state.added.inertia;
+  FeltBy felt;
+  if (is_changing(parameters)) {
+    twin_now_.update(twin.q_a, twin.dq_a, {parameters.now.loads.mass * inertia, 1.0 / inertia});
+    felt = {.J_a = twin_now_.jacobian(twin_.end_effector),
+            .motion = twin_now_.c() - twin_now_.gravity(),
+            .weight = twin_now_.gravity(),
+            .w_H = w_H};
+    felt.motion += twin_now_.M().lazyProduct(twin.ddq_a);
+  }
+  advance_parameters(twin_, twin, dt_, felt, parameters);
+  const model::Loads& loads = parameters.now.loads;
+  twin_now_.update(twin.q_a, twin.dq_a, {loads.mass * inertia, loads.gravity / inertia});
+}
+
 SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
                              LawResult& result) noexcept {
   update_device(input.robot, state.reference);
-  advance_parameters(twin_, state.twin, dt_, state.inner.parameters);
-  const TwinValues& values = state.inner.parameters.now;
-  const model::Loads loads = {values.loads.mass * state.added.inertia,
-                              values.loads.gravity / state.added.inertia};
-  twin_now_.update(state.twin.q_a, state.twin.dq_a, loads);
+  update_twin(input.robot.w_H, state);
   factor_mass(twin_now_.M(), L_);
   J_H_ = device_now_.jacobian(device_.handle);
   J_a_ = twin_now_.jacobian(twin_.end_effector);
@@ -232,6 +248,7 @@ SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
   if (!is_released) catch_reversals(twin_, state.twin, dt_, state.inner);
   give_way(result.contact, state);
   if (environment_.has_stops()) add_stops(result.contact);
+  to_hand(state, result);
   find_kinematics(state, result);
   ended_(Stage::kReactions);
   return result.solver_status;
@@ -253,13 +270,14 @@ void Rendering::add_torques(const LawInput& input, bool is_released, RenderingSt
     budget.friction = VectorA::Zero(n_a);
     budget.surface = VectorA::Zero(n_a);
   } else {
-    result.tau_a = J_a_.transpose() * (share * input.robot.w_H);
+    result.tau_a = J_a_.transpose() * (share * values.felt_scale.cwiseProduct(input.robot.w_H));
     budget.spring = share * spring_torque(twin_, state.twin, dt_, state.inner.parameters);
     if (share < 1.0) budget.spring -= (1.0 - share) * twin_now_.gravity();
     budget.damping = damping_torque(L_, state.twin.dq_a, dt_, values);
     if (state.added.damping > 0.0) {
       const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
-      budget.damping.noalias() += J_a_.topRows<3>().transpose() * (state.added.damping * v_E);
+      const Eigen::Vector3d force = values.felt_scale.head<3>().cwiseProduct(v_E);
+      budget.damping.noalias() += J_a_.topRows<3>().transpose() * (state.added.damping * force);
     }
     budget.friction = slip_torque(twin_, state.twin, state.inner);
     budget.surface = J_a_.transpose() * (share * values.w_ref);
@@ -268,7 +286,9 @@ void Rendering::add_torques(const LawInput& input, bool is_released, RenderingSt
     const VectorA braking = input.braking_rate * state.twin.dq_a;
     budget.damping.noalias() += twin_now_.M() * braking;
   }
-  if (!state.touch.isZero(0.0)) budget.surface.noalias() -= J_a_.transpose() * state.touch;
+  if (!state.touch.isZero(0.0)) {
+    budget.surface.noalias() -= J_a_.transpose() * values.felt_scale.cwiseProduct(state.touch);
+  }
 }
 
 // The force on the end effector that accelerates it as springs, weight and reference wrench of the
@@ -299,10 +319,10 @@ void Rendering::feel_surfaces(const LawInput& input, RenderingState& state,
     }
     stops_ = find_stops(environment_, {twin_, twin_now_, L_, dq, ddq_max}, stop_rating_);
   }
-  Eigen::Vector3d push = input.robot.w_H.head<3>();
+  const TwinValues& values = state.inner.parameters.now;
+  Eigen::Vector3d push = values.felt_scale.head<3>().cwiseProduct(input.robot.w_H.head<3>());
   if (!environment_.surfaces().empty()) push += push_of_twin(result.budget);
-  const double mass_scale =
-      state.inner.parameters.now.loads.mass * state.added.inertia / twin_.mass_scale;
+  const double mass_scale = values.loads.mass * state.added.inertia / twin_.mass_scale;
   result.contact = environment_.step(p_E, v_E, push, state.contact, mass_scale);
   if (result.contact.surface < 0) return;
   result.contact.force *= input.force_share;
@@ -432,8 +452,8 @@ void Rendering::solve(const LawInput& input, RenderingState& state, LawResult& r
   if (options_.law == Law::kPaper) state.touched = tasks_.touched_ends(solution_);
   result.ddq_m = state.reference.ddq_m;
   result.ddq_a = state.twin.ddq_a;
-  reactions_.report(tasks_, solution_, {.L = L_, .J_a = J_a_, .w_H = input.robot.w_H, .dt = dt_},
-                    result);
+  const Vector6 w = state.inner.parameters.now.felt_scale.cwiseProduct(input.robot.w_H);
+  reactions_.report(tasks_, solution_, {.L = L_, .J_a = J_a_, .w = w, .dt = dt_}, result);
 }
 
 void Rendering::fill_tasks(const LawInput& input, const VectorA& tau,
@@ -548,7 +568,17 @@ double Rendering::apparent_mass(const RenderingState& state) const noexcept {
   Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxTwin, 3> root =
       J_a_.topRows<3>().transpose();
   L_.triangularView<Eigen::Lower>().solveInPlace(root);
+  root *= state.inner.parameters.now.felt_scale.head<3>().cwiseSqrt().asDiagonal();
   return 1.0 / (state.added.inertia * root.colwise().squaredNorm().maxCoeff());
+}
+
+// What the twin does to the hand, as the hand feels it.
+void Rendering::to_hand(const RenderingState& state, LawResult& result) const noexcept {
+  const Vector6& scale = state.inner.parameters.now.felt_scale;
+  result.felt_scale = scale;
+  result.w_felt.array() /= scale.array();
+  result.budget.structure.array() /= scale.array();
+  result.contact.force.array() /= scale.head<3>().array();
 }
 
 void Rendering::find_kinematics(const RenderingState& state, LawResult& result) const noexcept {

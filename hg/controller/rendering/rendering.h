@@ -83,8 +83,8 @@ class Rendering {
   /// Twist of the end effector of the twin at the speeds of `state` in the posture of the last
   /// step(), resolved in B.
   Vector6 end_effector_twist(const RenderingState& state) const noexcept;
-  /// Mass of the twin as set up, in the posture of the last step(), at its end effector along the
-  /// axis of B where it is least, kg.
+  /// Mass of the twin as set up, in the posture of the last step(), felt at its end effector along
+  /// the axis of B where it is least, kg.
   double apparent_mass(const RenderingState& state) const noexcept;
 
   /// Installs a callback for the stages kRenderingSetUp, kSolver and kReactions.
@@ -106,6 +106,7 @@ class Rendering {
 
  private:
   void update_device(const RobotState& robot, const ReferenceState& reference) noexcept;
+  void update_twin(const Vector6& w_H, RenderingState& state) noexcept;
   Eigen::Vector3d push_of_twin(const Budget& budget) const noexcept;
   void add_torques(const LawInput& input, bool is_released, RenderingState& state,
                    LawResult& result) const noexcept;
@@ -118,6 +119,7 @@ class Rendering {
   void solve_once(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
   bool release(RenderingState& state, Budget& budget) const noexcept;
   void add_stops(ContactReport& contact) const noexcept;
+  void to_hand(const RenderingState& state, LawResult& result) const noexcept;
   void find_kinematics(const RenderingState& state, LawResult& result) const noexcept;
 
   DeviceModel device_;

@@ -82,6 +82,7 @@ inline constexpr std::array kElements = {
             .twin_members = 1,
             .leave_out = [](TwinModel& twin) { twin.w_ref.setZero(); }},
     Element{.key = "mass_scale", .twin_members = 1},
+    Element{.key = "felt_scale", .twin_members = 1},
     Element{.key = "couplings"},  // part of the chain, as are the next
     Element{.key = "loops"},
     Element{.key = "cams"},

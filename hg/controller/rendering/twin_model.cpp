@@ -36,6 +36,9 @@ void check_twin_model(const TwinModel& twin) {
             ": a collision sphere needs a frame, a finite centre and a finite radius >= 0");
   }
   require(kMassScale.contains(twin.mass_scale), ": mass_scale must be 0.1..10");
+  for (const double scale : twin.felt_scale) {
+    require(kFeltScale.contains(scale), ": felt_scale must be 0.1..10");
+  }
 }
 
 FeltMass felt_mass(const TwinModel& twin) {

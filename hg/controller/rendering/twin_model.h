@@ -52,6 +52,7 @@ inline constexpr int kMaxSpheres = 8;
 inline constexpr int kMaxLocks = 4;
 inline constexpr int kMaxConditionalLimits = 4;
 inline constexpr Interval kMassScale = {0.1, 10.0};  ///< Range of TwinModel::mass_scale
+inline constexpr Interval kFeltScale = {0.1, 10.0};  ///< Range of TwinModel::felt_scale
 
 enum class Way { kUpper, kLower };
 
@@ -98,6 +99,9 @@ struct TwinModel {
   std::vector<CollisionSphere> spheres;              ///< at most kMaxSpheres
   Vector6 w_ref = Vector6::Zero();  ///< reference wrench of [HG] (9), at E, resolved in B
   double mass_scale = 1.0;          ///< Factor of all masses, 0.1..10
+  /// Factors of the user's wrench on the twin: forces along and torques about the axes of B,
+  /// 0.1..10. What the twin does is felt divided by them.
+  Vector6 felt_scale = Vector6::Ones();
 };
 
 /// Throws SetupError naming the first inconsistency.

@@ -3,21 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hg/controller/rendering/value_steps.h"
 #include "hg/core/index.h"
 #include "hg/signals/twin_parameter.h"
 
 namespace hg::rendering {
 namespace {
 
-constexpr double kApproach = 0.1;  // s; a person feels a change, not a blow
-constexpr double kEnd = 0.02;      // s; of a reference wrench that ends: its source may be gone
-constexpr double kArrived = 1e-9;  // of the larger of 1 and the target
-
-void approach(double& now, double target, double share) noexcept {
-  if (now == target) return;
-  now += share * (target - now);
-  if (std::abs(target - now) <= kArrived * std::max(1.0, std::abs(target))) now = target;
-}
+constexpr double kEnd = 0.02;  // s; of a reference wrench that ends: its source may be gone
 
 void approach_speed_limit(double& now, double target, double speed, double share) noexcept {
   if (std::isinf(target)) now = target;
@@ -59,6 +52,8 @@ double* place_of(Parameter parameter, std::size_t index, TwinValues& values) noe
       return &values.loads.gravity;
     case Parameter::kMassScale:
       return &values.loads.mass;
+    case Parameter::kFeltScale:
+      return &values.felt_scale[std::min<std::size_t>(index, 5)];
     case Parameter::kNone:
     case Parameter::kLowerLimit:
     case Parameter::kUpperLimit:
@@ -121,6 +116,7 @@ TwinParameters initial_parameters(const TwinModel& twin) noexcept {
     parameters.may_be_overrun[limit.dof] = true;
   }
   parameters.target.w_ref = twin.w_ref;
+  parameters.target.felt_scale = twin.felt_scale;
   parameters.target.loads = {.mass = twin.mass_scale,
                              .gravity = twin.chain.default_loads().gravity};
   parameters.now = parameters.target;
@@ -149,9 +145,22 @@ ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
   return ChangeStatus::kTaken;
 }
 
+bool is_changing(const TwinParameters& parameters) noexcept {
+  const TwinValues& now = parameters.now;
+  const TwinValues& target = parameters.target;
+  const auto is_there = [](const DofValues& a, const DofValues& b) {
+    return a.stiffness == b.stiffness && a.rest == b.rest && a.preload == b.preload &&
+           a.damping == b.damping && a.quadratic_damping == b.quadratic_damping &&
+           a.friction == b.friction;
+  };
+  return now.loads.mass != target.loads.mass || now.loads.gravity != target.loads.gravity ||
+         now.felt_scale != target.felt_scale ||
+         !std::equal(now.dofs.begin(), now.dofs.end(), target.dofs.begin(), is_there);
+}
+
 void advance_parameters(const TwinModel& twin, const TwinState& state, double dt,
-                        TwinParameters& parameters) noexcept {
-  const double share = -std::expm1(-dt / kApproach);
+                        const FeltBy& felt, TwinParameters& parameters) noexcept {
+  const double share = share_of_step(dt, kApproach);
   TwinValues& now = parameters.now;
   const TwinValues& target = parameters.target;
   for (std::size_t i = 0; i < twin.conditional_limits.size(); ++i) {
@@ -159,15 +168,8 @@ void advance_parameters(const TwinModel& twin, const TwinState& state, double dt
   }
   for (std::size_t i = 0; i < twin.dofs.size(); ++i) {
     const int dof = static_cast<int>(i);
-    DofValues& values = now.dofs[i];
-    const DofValues& goal = target.dofs[i];
-    approach(values.stiffness, goal.stiffness, share);
-    approach(values.rest, goal.rest, share);
-    approach(values.preload, goal.preload, share);
-    approach(values.damping, goal.damping, share);
-    approach(values.quadratic_damping, goal.quadratic_damping, share);
-    approach(values.friction, goal.friction, share);
-    approach_speed_limit(values.dq_max, goal.dq_max, std::abs(state.dq_a[dof]), share);
+    approach_speed_limit(now.dofs[i].dq_max, target.dofs[i].dq_max, std::abs(state.dq_a[dof]),
+                         share);
 
     if (twin.dofs[i].q_index < 0) continue;
     limits::JointLimits rated = twin.dofs[i].limits;
@@ -177,10 +179,9 @@ void advance_parameters(const TwinModel& twin, const TwinState& state, double dt
         limits::advanced(parameters.moving[i], target_range(twin, dof, parameters),
                          position_of(twin, dof, state.q_a), v_rec, dt);
   }
-  const double wrench_share = target.w_ref.isZero(0.0) ? -std::expm1(-dt / kEnd) : share;
+  const double wrench_share = target.w_ref.isZero(0.0) ? share_of_step(dt, kEnd) : share;
   for (int i = 0; i < 6; ++i) approach(now.w_ref[i], target.w_ref[i], wrench_share);
-  approach(now.loads.mass, target.loads.mass, share);
-  approach(now.loads.gravity, target.loads.gravity, share);
+  if (is_changing(parameters)) approach_targets(twin, state, dt, felt, parameters);
 }
 
 }  // namespace hg::rendering

@@ -24,15 +24,18 @@ export function fill_choice(select: HTMLSelectElement, choices: Choice[], chosen
 
 const WHOLE = "Whole twin";
 const REFERENCE = "Wrench at which it rests";
+const SCALE = "How strongly the hand acts on it";
 
 function heading_of({ group, name }: Setting): string {
   if (group !== "") return group;
+  if (name.startsWith("felt_scale.")) return SCALE;
   return name.startsWith("reference_wrench.") ? REFERENCE : WHOLE;
 }
 
 // What people look for first: mass and weight, then the joints.
 export function headings(settings: Setting[]): string[] {
-  const place = (heading: string): number => Number(heading === REFERENCE) - Number(heading === WHOLE);
+  const last = [REFERENCE, SCALE];
+  const place = (heading: string): number => (heading === WHOLE ? -1 : last.indexOf(heading) + 1);
   return [...new Set(settings.map(heading_of))].sort((a, b) => place(a) - place(b));
 }
 

@@ -16,14 +16,21 @@ const setting = (group: string, name: string): Setting => ({
 });
 
 describe("headings", () => {
-  it("begin with the whole twin and end with the reference wrench", () => {
+  it("begin with the whole twin and end with reference wrench and felt scale", () => {
     const form = [
+      setting("", "felt_scale.force.x"),
       setting("", "reference_wrench.force_N.x"),
       setting("hinge", "hinge.damping"),
       setting("lever", "lever.damping"),
       setting("", "mass_scale"),
     ];
-    expect(headings(form)).toEqual(["Whole twin", "hinge", "lever", "Wrench at which it rests"]);
-    expect(headings(form.slice(1, 3))).toEqual(["hinge", "lever"]);
+    expect(headings(form)).toEqual([
+      "Whole twin",
+      "hinge",
+      "lever",
+      "Wrench at which it rests",
+      "How strongly the hand acts on it",
+    ]);
+    expect(headings(form.slice(2, 4))).toEqual(["hinge", "lever"]);
   });
 });

@@ -115,13 +115,19 @@ TEST(ConditionalLimits, AreRefusedWhenEmptyOrContradictory) {
             "with the limits of the joint");
 }
 
-TEST(ReferenceWrench, AndMassScaleAreRead) {
+TEST(ReferenceWrench, AndScalesAreRead) {
   const Twin twin =
-      load(head("reference_wrench: {force_N: [1, 2, 3], torque_Nm: [4, 5, 6]}\nmass_scale: 0.5\n"));
-  Vector6 w_ref;
+      load(head("reference_wrench: {force_N: [1, 2, 3], torque_Nm: [4, 5, 6]}\nmass_scale: 0.5\n"
+                "felt_scale: {force: [2, 1, 0.5], torque: [3, 4, 5]}\n"));
+  Vector6 w_ref, felt_scale;
   w_ref << 1, 2, 3, 4, 5, 6;
+  felt_scale << 2, 1, 0.5, 3, 4, 5;
   EXPECT_EQ(twin.model.w_ref, w_ref);
   EXPECT_EQ(twin.model.mass_scale, 0.5);
+  EXPECT_EQ(twin.model.felt_scale, felt_scale);
+  EXPECT_EQ(load(head("felt_scale: {force: [2, 1, 1]}\n")).model.felt_scale[3], 1.0);
+  EXPECT_NE(door_message("felt_scale: {force: [2, 1, 11]}\n").find("must be 0.1 .. 10"),
+            std::string::npos);
   EXPECT_EQ(door_message("mass_scale: 20\n"),
             "door.yaml:5:13: mass_scale: must be 0.1 .. 10, got 20");
 }
@@ -149,7 +155,8 @@ TEST(Changes, BecomeOneChangePerValue) {
       load_changes(
           "  - {at_s: 1, joint: bolt, stiffness_N_per_m: 40, q_max_m: 0.2, friction_N: 2}\n"
           "  - {at_s: 2, joint: hinge, q_min_rad: 2, q_max_rad: 3}\n"
-          "  - {at_s: 2.5, gravity: true, mass_scale: 2, reference_wrench: {force_N: [0, 0, 5]}}\n")
+          "  - {at_s: 2.5, gravity: true, mass_scale: 2, reference_wrench: {force_N: [0, 0, 5]}}\n"
+          "  - {at_s: 3, felt_scale: {torque: [1, 2, 3]}}\n")
           .changes;
   struct Expected {
     double at_s;
@@ -167,7 +174,10 @@ TEST(Changes, BecomeOneChangePerValue) {
                                           {2.5, Parameter::kReferenceWrench, 1, 0},
                                           {2.5, Parameter::kReferenceWrench, 2, 5},
                                           {2.5, Parameter::kGravity, -1, 1},
-                                          {2.5, Parameter::kMassScale, -1, 2}};
+                                          {2.5, Parameter::kMassScale, -1, 2},
+                                          {3, Parameter::kFeltScale, 3, 1},
+                                          {3, Parameter::kFeltScale, 4, 2},
+                                          {3, Parameter::kFeltScale, 5, 3}};
   ASSERT_EQ(changes.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     SCOPED_TRACE(i);

@@ -7,7 +7,7 @@
 namespace hg::rendering {
 namespace {
 
-constexpr double kDt = 1e-3;
+constexpr double kPeriod = 1e-3;
 constexpr double kMass = 3.0;
 
 VectorA along(int axis, double value) { return value * VectorA::Unit(6, axis); }
@@ -18,7 +18,7 @@ struct Body {
   explicit Body(double share) : J(model::Jacobian::Identity(6, 6)) { J(0, 0) = share; }
   LostDirections at(const VectorA& dq) const {
     LostDirections lost;
-    lost.find(J, J_a, L, dq, kDt);
+    lost.find(J, J_a, L, dq, kPeriod);
     return lost;
   }
   VectorA torque(const VectorA& dq) const { return at(dq).torque(dq); }
@@ -49,7 +49,7 @@ TEST(LostDirections, TheDampingGrowsFromZeroInTheLostDirectionAlone) {
   EXPECT_NEAR(body.torque(along(0, v))[0], b * v, 1e-9);
   EXPECT_NEAR(body.torque(along(1, 1.0)).norm(), 0.0, 1e-12);
   MatrixA expected = kMass * MatrixA::Identity(6, 6);
-  expected(0, 0) += kDt * b;
+  expected(0, 0) += kPeriod * b;
   EXPECT_LT((body.mass(along(0, v)) - expected).norm(), 1e-9);
 }
 
@@ -60,7 +60,7 @@ TEST(LostDirections, ASmallForceMovesNoJointFast) {
     const Body body(share);
     VectorA dq = along(0, 0.0);
     for (int k = 0; k < 3000; ++k) {
-      dq += kDt * body.acceleration(dq, along(0, 0.1));
+      dq += kPeriod * body.acceleration(dq, along(0, 0.1));
       ASSERT_GE(dq[0], 0.0);
     }
     EXPECT_LT(dq[0] / std::max(share, 1e-5), 0.1) << share;

@@ -63,6 +63,22 @@ TEST(TwinOnASurface, RestsWhereTheSurfaceCarriesTheUser) {
   EXPECT_NEAR(twin.result.budget.surface[2], -20.0, 1e-3);
 }
 
+// With a scale of 4 the surface carries four times the hand's force, and the hand feels its own.
+TEST(TwinOnASurface, IsFeltDividedByTheScale) {
+  Falling twin;
+  TwinParameters& parameters = twin.state.inner.parameters;
+  parameters.now.felt_scale[2] = parameters.target.felt_scale[2] = 4.0;
+  for (int k = 0; k < 5000; ++k) {
+    Vector6 w = Vector6::Zero();
+    w.z() = -5.0 - 10.0 * twin.state.twin.dq_a[2];
+    twin.step(w);
+    ASSERT_FALSE(HasFatalFailure());
+  }
+  EXPECT_NEAR(twin.state.twin.q_a[2], -20.0 / kStiffness, 1e-6);
+  EXPECT_NEAR(twin.result.contact.force.z(), 5.0, 1e-3);
+  EXPECT_NEAR(twin.result.budget.surface[2], -20.0, 1e-3);
+}
+
 // A surface that says no damping brakes what comes in, and carries the weight of the twin besides.
 TEST(TwinOnASurface, CarriesATwinThatHasWeight) {
   TwinModel twin =
