@@ -38,17 +38,6 @@ bool is_stopping(Motion motion) noexcept {
   return motion == Motion::kRenderStop || motion == Motion::kBrakeJoints;
 }
 
-// Deceleration of joints braked without the law.
-VectorM deceleration_of(const DeviceModel& device) {
-  constexpr double kWithoutRating = 10.0;  // rad/s^2 or m/s^2
-  VectorM ddq(device.n_m);
-  for (int i = 0; i < device.n_m; ++i) {
-    const double rating = device.joint_limits[i].ddq_max;
-    ddq[i] = std::isfinite(rating) ? rating : kWithoutRating;
-  }
-  return ddq;
-}
-
 // Properties of the other parts on which the monitor's rules depend. The paper's bounds ask for
 // more than any rating where they contradict each other, and where the law models torques they are
 // what limits accelerations.
@@ -126,14 +115,13 @@ CycleStages::CycleStages(const CycleConfig& config, const DeviceModel& device,
       control_(config.control, device),
       gantry_target_(device),
       prepositioning_(gantry_config(config, device), device),
-      guard_(config.collision, collision::braking_of(device, config.prepositioning.ddq_max),
-             device.chain),
+      braking_(collision::braking_of(device, config.prepositioning.ddq_max)),
+      guard_(config.collision, braking_, device.chain),
       monitor_(config.monitor, device, parts_of(config, device, twin)),
       sanitiser_(config.sanitiser, device, prepositioning_.dq_max()) {
   if (config.control.method != tracking::Method::kDrives) {
     torque_max_ = compliance::peak_torques(device);
   }
-  ddq_max_ = deceleration_of(device);
   state_.rendering = rendering_.start(VectorM::Zero(device.n_m));
   state_.control = control_.start();
   state_.dq_p = VectorP::Zero(device.n_p);
@@ -412,7 +400,8 @@ PassivityReport CycleStages::watch_energy(Motion motion, const RobotState& robot
       {.f = w.head<3>(),
        .power_measured = w.dot(rendering_.handle_twist(robot)),
        .power_rendered = w.dot(twist_E),
-       .dissipation = (law.budget.damping + law.budget.friction).dot(rendering.twin.dq_a),
+       .dissipation = (law.budget.damping + law.budget.friction).dot(rendering.twin.dq_a) /
+                      law.felt_scale.maxCoeff(),
        .mass = rendering_.apparent_mass(rendering),
        .speed = twist_E.head<3>().norm(),
        .is_pushed_back = is_pushed_back(law)},
@@ -445,7 +434,7 @@ CycleStages::Moved CycleStages::advance(Motion motion, const RobotState& robot,
     rendering.reference.ddq_m.setZero();
     rendering.twin.ddq_a.setZero();
   }
-  if (motion == Motion::kBrakeJoints) brake_joints();
+  if (motion == Motion::kBrakeJoints) brake_joints(robot);
   const bool is_led = gantry.task.ddq.size() > 0;
   if (motion == Motion::kRender) {
     moved.dq_p = is_led ? prepositioning_.velocity_for(rendering.ddq_p, gantry.command, robot)
@@ -458,14 +447,16 @@ CycleStages::Moved CycleStages::advance(Motion motion, const RobotState& robot,
   return moved;
 }
 
-// Joints brake with their own ratings, for which their position limits leave room; twin and gantry
-// do not follow. [HANDBOOK] 6.2 has a ramp of 50 ms, which exceeds the motor torques of a stretched
-// arm.
-void CycleStages::brake_joints() noexcept {
+// Joints brake as the prediction of collisions assumes; twin and gantry do not follow. [HANDBOOK]
+// 6.2 has a ramp of 50 ms, which exceeds the motor torques of a stretched arm.
+void CycleStages::brake_joints(const RobotState& robot) noexcept {
   rendering::RenderingState& rendering = state_.rendering;
-  const double rate = 1.0 / dt_;
-  rendering.reference.ddq_m =
-      (-rate * rendering.reference.dq_m).cwiseMin(ddq_max_).cwiseMax(-ddq_max_);
+  const VectorM& dq = rendering.reference.dq_m;
+  const VectorP still = VectorP::Zero(robot.q_p.size());
+  const VectorPM braking = collision::decelerations(
+      braking_, stacked(robot.q_p, rendering.reference.q_m), stacked(still, dq));
+  const VectorM most = braking.tail(dq.size());
+  rendering.reference.ddq_m = (-dq / dt_).cwiseMin(most).cwiseMax(-most);
   rendering.twin.dq_a.setZero();
   rendering.twin.ddq_a.setZero();
 }

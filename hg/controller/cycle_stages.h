@@ -109,18 +109,18 @@ class CycleStages {
   double speed_max() const noexcept;
   double ramp_forces(Motion motion, bool is_held) noexcept;
   Motion accept(Motion motion, const rendering::LawResult& law) noexcept;
-  void brake_joints() noexcept;
+  void brake_joints(const RobotState& robot) noexcept;
 
   CycleConfig config_;
   RequiredSensors required_;
   double dt_;           ///< Period, s
   VectorM torque_max_;  ///< Peak torque of each joint, Nm; empty without torque control
-  VectorM ddq_max_;     ///< Deceleration of joints that brake without the law, rad/s^2 or m/s^2
   estimation::Estimation estimation_;
   rendering::Rendering rendering_;
   tracking::JointControl control_;
   prepositioning::GantryTarget gantry_target_;
   prepositioning::Prepositioning prepositioning_;
+  collision::Braking braking_;  ///< Of joints that brake without the law
   collision::Guard guard_;
   safety::Monitor monitor_;
   safety::Sanitiser sanitiser_;

@@ -19,6 +19,7 @@ namespace hg::rendering {
 struct LimitRow {
   int row = -1;                ///< Row of the problem
   int holding_row = -1;        ///< Row of a motor's torque at rest; -1 = none
+  int stop_row = -1;           ///< Row of a wall for where the device comes to rest; -1 = none
   Interval range;              ///< Configured positions; of the twin as changed, this cycle
   limits::JointLimits limits;  ///< Limits as rendered: with margins, and this cycle's locks
   limits::RecoverableOptions options;
@@ -26,8 +27,9 @@ struct LimitRow {
   int rating_row = -1;  ///< Row of bounds B; -1 = none
   /// Row of a motor torque, as an acceleration of its joint; `q` is then the motor's torque.
   bool is_motor = false;
-  double inertia = 0.0;  ///< Inertia that this motor moves, kg m^2 or kg
-  Interval torque;       ///< Torques of this motor that the law has in this cycle, Nm or N
+  double inertia = 0.0;    ///< Inertia that this motor moves, kg m^2 or kg
+  bool is_slowed = false;  ///< This motor's row holds its speed, in this cycle
+  Interval torque;         ///< Torques of this motor that the law has in this cycle, Nm or N
   /// Bounds R are used in this cycle. With bounds paper only for a twin joint that may be beyond
   /// limits which were not there before: from outside, bounds A let it coast away.
   bool is_recoverable = true;

@@ -12,6 +12,7 @@ namespace {
 
 // where the law models the torques of the motors:
 constexpr double kTrackingMargin = 1e-3;     // rad or m, of a joint behind its reference
+constexpr double kDriveMargin = 3e-3;        // the same of a drive that follows positions
 constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its limits
 constexpr double kJumped = 1.5;              // times the speed of a motor without load
 constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
@@ -41,8 +42,8 @@ hqp::Capacity capacity_of(const DeviceModel& device, const TwinModel& twin,
     capacity.rows += 2 * n_m;
   }
   if (brakes_together(device, options)) {
-    capacity.levels += 1;
-    capacity.rows += n_m;
+    capacity.levels += 2;
+    capacity.rows += n_m + 3 * frames;
   }
   if (const int led = led_axes(device, options); led > 0) {
     capacity.variables += led;
@@ -97,6 +98,24 @@ Interval lasting_room(const LimitRow& row, double time) noexcept {
           std::max(share * (row.limits.q_max - drift), 0.0)};
 }
 
+// Bounds `ddq` of a motor's row, narrowed so that it can stop in time what moves with `speed`,
+// where it has the accelerations `lasting`.
+Interval stoppable(Interval ddq, const Interval& lasting, double speed) noexcept {
+  constexpr double kLongest = 0.3;  // s, of a stop
+  constexpr double kRate = 20.0;    // 1/s
+  constexpr double kFirm = 0.8;     // of what brakes
+  if (speed > 0.0) {
+    const double braking = std::max(-lasting.lb, 0.0);
+    const double ub = std::max(kRate * (kLongest * braking - speed), -kFirm * braking);
+    ddq.ub = std::max(std::min(ddq.ub, ub), ddq.lb);
+  } else if (speed < 0.0) {
+    const double braking = std::max(lasting.ub, 0.0);
+    const double lb = std::min(kRate * (-kLongest * braking - speed), kFirm * braking);
+    ddq.lb = std::min(std::max(ddq.lb, lb), ddq.ub);
+  }
+  return ddq;
+}
+
 // Largest speed of a joint at the end of a sample of a stop: it slows down, but of a stretched arm
 // the motors give no more than a part of its rating.
 double speed_in_stop(double dq, double ddq_max, double rate, double dt) noexcept {
@@ -138,7 +157,10 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOp
       problem_(capacity_of(device, twin, options, stop_count_)),
       coefficients_(problem_.capacity().variables, 0.0) {
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
-  if (brakes_together(device, options)) holding_.emplace(device);
+  if (brakes_together(device, options)) {
+    holding_.emplace(device);
+    if (device.n_p == 0) stop_path_.emplace(device);
+  }
   problem_.clear(problem_.capacity().variables);
   add_levels(device, twin);
 }
@@ -170,7 +192,8 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
 }
 
 void Tasks::add_device_limits(const DeviceModel& device) {
-  const double margin = has_torques_ ? kTrackingMargin : 0.0;
+  const double behind = device.follows_positions ? kDriveMargin : kTrackingMargin;
+  const double margin = has_torques_ ? behind : 0.0;
   problem_.add_level();
   for (int i = 0; i < n_m_; ++i) {
     add_limit(device.joint_limits[i], i, margin);
@@ -197,9 +220,13 @@ void Tasks::add_device_limits(const DeviceModel& device) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
   }
+  if (stop_path_) problem_.add_level();
+  for (std::size_t i = first_motor_ + n_m_; stop_path_ && i < limit_rows_.size(); ++i) {
+    limit_rows_[i].stop_row = problem_.add_row(coefficients_, {}, weight_of(limit_rows_[i]));
+  }
   if (device.keeps_apart) {
     constexpr double kRating = 10.0;  // m/s^2; scales the row
-    problem_.add_level();
+    if (!stop_path_) problem_.add_level();
     add_limit({.q_min = kApartMargin, .ddq_max = kRating}, -1, 0.0);
     limit_rows_.back().range = {};  // what is foreseen is not left
   }
@@ -256,7 +283,7 @@ void Tasks::add_posture(const DeviceModel& device) {
 
 int Tasks::acting_row(int limit, const hqp::Solution& solution) const noexcept {
   const LimitRow& row = limit_rows_[limit];
-  for (const int candidate : {row.row, row.rating_row, row.holding_row}) {
+  for (const int candidate : {row.row, row.rating_row, row.holding_row, row.stop_row}) {
     if (candidate >= 0 && solution.state[candidate] != hqp::RowState::kInactive) return candidate;
   }
   return row.row;
@@ -288,6 +315,7 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   if (has_torques_) fill_motors(device, input);
   if (joint_braking_) brake_together();
   if (holding_) keep_holding(device, input);
+  if (stop_path_) stop_inside(device, input);
   if (device.keeps_apart) keep_apart(device, input.collision);
   fill_twin_limits(twin, input);
   if (stop_count_ > 0) fill_stops(input);
@@ -445,6 +473,12 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     }
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
+    if (stop_path_) {
+      const double speed = row.head(n_m_).dot(input.reference.dq_m);
+      const Interval before = limit.ddq;
+      limit.ddq = stoppable(before, lasting_[i], speed);
+      limit.is_slowed = limit.ddq.lb != before.lb || limit.ddq.ub != before.ub;
+    }
     limit.inertia = inertia;
     problem_.set_bounds(limit_rows_[first_motor_ + i].row, limit.ddq);
   }
@@ -510,6 +544,35 @@ void Tasks::keep_holding(const DeviceModel& device, const TaskInput& input) noex
     const auto rate_max = [](double d) { return std::max(d, 0.0) / kHoldingTime; };
     problem_.set_bounds(holding_row, {(-rate_max(most + weight) - rate) / (kOnset * scale),
                                       (rate_max(most - weight) - rate) / (kOnset * scale)});
+  }
+}
+
+// Keeps the place where the device comes to rest within its walls.
+void Tasks::stop_inside(const DeviceModel& device, const TaskInput& input) noexcept {
+  constexpr double kAround = 0.05;  // m, beside the way: walls that are farther away do not matter
+  Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
+  row.setZero();
+  bool is_found = false;
+  if (are_torques_known_) {
+    const std::span motors = std::span(limit_rows_).subspan(first_motor_, n_m_);
+    stop_path_->update(device, input.device_chain, input.reference, motors, known_torque_);
+  }
+  int limit = first_motor_ + n_m_;
+  for (const CartesianLimit& frame : device.cartesian_limits) {
+    for (int axis = 0; axis < 3; ++axis, ++limit) {
+      const LimitRow& wall = limit_rows_[limit];
+      problem_.set_bounds(wall.stop_row, {});
+      const double way = std::abs(wall.dq) * stop_path_->reach() + kAround;
+      const bool is_far = wall.q + way < wall.limits.q_max && wall.q - way > wall.limits.q_min;
+      if (is_far || !are_torques_known_) continue;
+      if (!is_found) stop_path_->find_rest(input.reference);
+      is_found = true;
+      const Interval ddq =
+          stop_path_->bound(frame.frame, axis, {wall.limits.q_min, wall.limits.q_max},
+                            input.reference, coefficients_);
+      problem_.set_row(wall.stop_row, coefficients_);
+      problem_.set_bounds(wall.stop_row, ddq);
+    }
   }
 }
 

@@ -1,7 +1,6 @@
 /// The tasks of the rendering law as one lexicographic problem, refilled every cycle.
 ///
-/// Source: [HG] (9)-(19) and Table II, tasks 1-8; law and bounds are options, see
-/// docs/concepts/law.md.
+/// Source: [HG] (9)-(19), Table II, tasks 1-8; options: docs/concepts/law.md.
 ///
 ///   law gauss       bounds of the gantry's drives, where the law leads it
 ///   then            coupling of H and E (12), 6 equalities
@@ -16,8 +15,7 @@
 ///                   inner ranges and posture, where the manipulator has a joint to spare
 ///   law paper       dynamics, range and norm of the constraint torques; paper_law.h
 ///
-/// Rows have the weight 1 / rating in law gauss, none in law paper. No allocation after
-/// construction.
+/// Rows have the weight 1 / rating in law gauss, none in law paper. No allocation once set up.
 #pragma once
 
 #include <optional>
@@ -27,6 +25,7 @@
 #include "hg/controller/rendering/joint_braking.h"
 #include "hg/controller/rendering/options.h"
 #include "hg/controller/rendering/paper_law.h"
+#include "hg/controller/rendering/stop_path.h"
 #include "hg/controller/rendering/stops.h"
 #include "hg/controller/rendering/task_input.h"
 #include "hg/controller/rendering/twin_model.h"
@@ -104,13 +103,13 @@ class Tasks {
   void add_limit(const limits::JointLimits& limits, int variable, double margin);
   void add_rating(int limit, int variable);
   double weight_of(const LimitRow& row) const noexcept;
-
   void fill_coupling(const DeviceModel& device, const TwinModel& twin,
                      const TaskInput& input) noexcept;
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void brake_together() noexcept;
   void keep_holding(const DeviceModel& device, const TaskInput& input) noexcept;
+  void stop_inside(const DeviceModel& device, const TaskInput& input) noexcept;
   void keep_apart(const DeviceModel& device, const CollisionTask& task) noexcept;
   void fill_twin_limits(const TwinModel& twin, const TaskInput& input) noexcept;
   bool keeps(const hqp::Solution& solution, int count, double tolerance) const noexcept;
@@ -153,8 +152,9 @@ class Tasks {
   std::vector<double> known_;  ///< Accelerations of these limits without the unknowns
   std::vector<Interval> lasting_, joint_room_;  ///< Of motors once reached; of joints up to walls
   double braking_reserve_ = kMostReserve;
-  std::optional<Holding> holding_;  ///< only where limits brake together
-  std::optional<PaperLaw> paper_;   ///< law paper only
+  std::optional<Holding> holding_;     ///< only where limits brake together
+  std::optional<StopPath> stop_path_;  ///< the same, without gantry
+  std::optional<PaperLaw> paper_;      ///< law paper only
 };
 
 }  // namespace hg::rendering

@@ -6,6 +6,8 @@
 #include <random>
 #include <sstream>
 
+#include "hg/controller/rendering/rendering.h"
+#include "hg/controller/rendering/stop_path.h"
 #include "hg/controller/rendering/test/test_models.h"
 #include "hg/core/error.h"
 
@@ -261,6 +263,104 @@ TEST(SevenJoints, LawPaperRequiresSix) {
     EXPECT_STREQ(error.what(),
                  "device: law paper needs six manipulator joints, got 7; law gauss takes seven as "
                  "well");
+  }
+}
+
+// The seven joints with motors of `torque` Nm, moving at random speeds.
+struct Stopping {
+  DeviceModel device = seven_joint_device();
+  ReferenceState reference;
+  std::vector<LimitRow> motors = std::vector<LimitRow>(7);
+  VectorM known;
+  std::mt19937 random{31};
+
+  explicit Stopping(double strength) {
+    for (LimitRow& motor : motors) motor.torque = {-strength, strength};
+    device.joint_limits.assign(7, {.ddq_max = 10.0});
+    device.actuators.assign(7, {.rotor_inertia = 0.2, .torque_max = strength});
+    device.has_torque_limits = true;
+    reference.q_m = kSevenJointPosture;
+    reference.dq_m = reference.ddq_m = known = VectorM::Zero(7);
+    for (int i = 0; i < 7; ++i) {
+      reference.dq_m[i] = uniform(1.0);
+      known[i] = uniform(0.5 * strength);
+    }
+  }
+
+  double uniform(double most) {
+    return std::uniform_real_distribution<double>(-most, most)(random);
+  }
+
+  StopPath path() const {
+    StopPath path(device);
+    model::ChainData now(device.chain);
+    now.update(kSevenJointPosture, reference.dq_m);
+    path.update(device, now, reference, motors, known);
+    path.find_rest(reference);
+    return path;
+  }
+};
+
+TEST(StopPath, TakesAsLongAsTheSlowestJointOrMotor) {
+  Stopping strong(1000.0);
+  strong.reference.dq_m *= 0.1;
+  strong.reference.dq_m[4] = 2.0;
+  EXPECT_NEAR(strong.path().time(), 2.0 / 6.0, 0.005);
+  Stopping weak(20.0);
+  weak.reference.dq_m *= 0.1;
+  weak.reference.dq_m[4] = 2.0;
+  weak.known.setZero();
+  weak.known[4] = -15.0;  // of -20: 5 Nm are left to brake with
+  EXPECT_GT(weak.path().time(), 2.0 * 0.2 / 5.0);
+  weak.reference.dq_m = -weak.reference.dq_m;  // gravity brakes it
+  EXPECT_NEAR(weak.path().time(), 2.0 / 6.0, 0.05);
+}
+
+TEST(StopPath, RowIsTheChangeOfThePlaceAtRest) {
+  constexpr double kStep = 1e-6;  // s
+  for (const double strength : {1000.0, 12.0}) {
+    Stopping stopping(strength);
+    const int handle = stopping.device.handle;
+    const StopPath path = stopping.path();
+    VectorM ddq(7);
+    for (double& value : ddq) value = stopping.uniform(10.0);
+    Stopping later = stopping;
+    later.reference.q_m += kStep * stopping.reference.dq_m;
+    later.reference.dq_m += kStep * ddq;
+    const Eigen::Vector3d change = (later.path().place(handle) - path.place(handle)) / kStep;
+    for (int axis = 0; axis < 3; ++axis) {
+      VectorM row(7);
+      const double x = path.place(handle)[axis];
+      const Interval bound = path.bound(handle, axis, {x, x}, stopping.reference,
+                                        {row.data(), static_cast<std::size_t>(row.size())});
+      // at the end itself nothing is left: what changes the place by nothing is the bound
+      EXPECT_NEAR(bound.lb, bound.ub, 1e-9);
+      EXPECT_NEAR(change[axis], path.reach() * (row.dot(ddq) - bound.ub), 1e-4) << strength;
+    }
+  }
+}
+
+// Braking in one proportion leaves the place at rest where it is, up to the reaction time in which
+// it is not yet possible: all rows can be met at once.
+TEST(StopPath, BrakingInOneProportionMeetsAllBounds) {
+  for (const double strength : {1000.0, 12.0}) {
+    Stopping stopping(strength);
+    const StopPath path = stopping.path();
+    const VectorM braking = -stopping.reference.dq_m / path.time();
+    for (int axis = 0; axis < 3; ++axis) {
+      VectorM row(7);
+      const double x = path.place(stopping.device.handle)[axis];
+      for (const Interval& range : {Interval{.lb = x}, Interval{.ub = x}}) {
+        const double outward = std::isfinite(range.ub) ? 1.0 : -1.0;
+        const Interval bound = path.bound(stopping.device.handle, axis, range, stopping.reference,
+                                          {row.data(), static_cast<std::size_t>(row.size())});
+        const double moving = outward * (row.dot(braking) - (outward > 0.0 ? bound.ub : bound.lb));
+        const double speed = outward * (row.dot(stopping.reference.dq_m));
+        if (speed > 0.0) {
+          EXPECT_LT(moving, 1e-9) << strength << " axis " << axis;
+        }
+      }
+    }
   }
 }
 

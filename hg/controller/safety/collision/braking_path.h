@@ -1,4 +1,4 @@
-/// The way on which all joints of a device brake at once, each alone; [HANDBOOK] 6.4.
+/// The way on which all joints of a device brake at once.
 #pragma once
 
 #include <algorithm>
@@ -8,23 +8,51 @@
 
 namespace hg::collision {
 
+/// Time in which joints come to rest that slow down in one proportion, decelerations().
+struct Proportion {
+  const Braking& braking;
+  const VectorPM& dq;
+  double duration = 0.0;  ///< s; 0 where none moves
+
+  Proportion(const Braking& b, const VectorPM& speed) noexcept : braking(b), dq(speed) {
+    double sum = 0.0;
+    for (Eigen::Index i = b.separate; i < dq.size(); ++i) {
+      const double fourth = std::pow(std::abs(dq[i]) / b.deceleration[i], 4);
+      sum += fourth * fourth;
+    }
+    duration = std::sqrt(std::sqrt(std::sqrt(sum)));
+  }
+
+  /// Change of the duration with the speed of joint i.
+  double per_speed(Eigen::Index i) const noexcept {
+    const double share = std::abs(dq[i]) / braking.deceleration[i] / duration;
+    const double cube = share * share * share;
+    return std::copysign(cube * cube * share / braking.deceleration[i], dq[i]);
+  }
+};
+
 /// Braking with all joints at once from the state at time 0.
 struct BrakingPath {
-  const Braking& braking;
+  const VectorPM& reaction;
   const VectorPM& q;
   const VectorPM& dq;
+  VectorPM deceleration;
   VectorPM stop;
 
-  BrakingPath(const Braking& b, const VectorPM& from, const VectorPM& speed) noexcept
-      : braking(b), q(from), dq(speed), stop(from) {
+  BrakingPath(const Braking& braking, const VectorPM& from, const VectorPM& speed) noexcept
+      : BrakingPath(braking, from, speed, decelerations(braking, from, speed)) {}
+
+  BrakingPath(const Braking& braking, const VectorPM& from, const VectorPM& speed,
+              const VectorPM& by) noexcept
+      : reaction(braking.reaction), q(from), dq(speed), deceleration(by), stop(from) {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      stop[i] += dq[i] * (b.reaction[i] + 0.5 * std::abs(dq[i]) / b.deceleration[i]);
+      stop[i] += dq[i] * (reaction[i] + 0.5 * std::abs(dq[i]) / deceleration[i]);
     }
   }
 
   /// Time until joint i is at rest; 0 for one that is.
   double time_to_rest(Eigen::Index i) const noexcept {
-    return dq[i] == 0.0 ? 0.0 : braking.reaction[i] + std::abs(dq[i]) / braking.deceleration[i];
+    return dq[i] == 0.0 ? 0.0 : reaction[i] + std::abs(dq[i]) / deceleration[i];
   }
 
   /// Time until the joints that move this pair are at rest.
@@ -37,12 +65,11 @@ struct BrakingPath {
   }
 
   double position(Eigen::Index i, double time) const noexcept {
-    const double reaction = braking.reaction[i], deceleration = braking.deceleration[i];
-    const double since = std::max(0.0, time - reaction);
-    if (since * deceleration >= std::abs(dq[i])) {
-      return time >= reaction ? stop[i] : q[i] + dq[i] * time;
+    const double since = std::max(0.0, time - reaction[i]);
+    if (since * deceleration[i] >= std::abs(dq[i])) {
+      return time >= reaction[i] ? stop[i] : q[i] + dq[i] * time;
     }
-    return q[i] + dq[i] * time - std::copysign(0.5 * deceleration * since * since, dq[i]);
+    return q[i] + dq[i] * time - std::copysign(0.5 * deceleration[i] * since * since, dq[i]);
   }
 
   VectorPM positions(double time) const noexcept {
@@ -53,8 +80,8 @@ struct BrakingPath {
 
   /// Speed of joint i at `time` >= 0, without its sign.
   double speed(Eigen::Index i, double time) const noexcept {
-    const double since = std::max(0.0, time - braking.reaction[i]);
-    return std::max(0.0, std::abs(dq[i]) - braking.deceleration[i] * since);
+    const double since = std::max(0.0, time - reaction[i]);
+    return std::max(0.0, std::abs(dq[i]) - deceleration[i] * since);
   }
 
   /// Bound on how far points of `b` of this pair, in the frame of `a`, are from the straight line
@@ -65,11 +92,26 @@ struct BrakingPath {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const double fastest = speed(i, begin);
       if (pair.lever[i] == 0.0 || fastest == 0.0) continue;
-      acceleration +=
-          pair.lever[i] * (braking.deceleration[i] + fastest * (fastest + 2.0 * inner_speed));
+      acceleration += pair.lever[i] * (deceleration[i] + fastest * (fastest + 2.0 * inner_speed));
       inner_speed += fastest;
     }
     return 0.125 * (end - begin) * (end - begin) * acceleration;
+  }
+
+  /// Largest distance of joint i from where it is at the same time on `other`, which has the same
+  /// reaction time: at the begin, where braking begins, where either is at rest, or where both are
+  /// equally fast.
+  double most_apart(const BrakingPath& other, Eigen::Index i) const noexcept {
+    const double begin = reaction[i];
+    const double faster = dq[i] - other.dq[i];
+    const double harder =
+        std::copysign(deceleration[i], dq[i]) - std::copysign(other.deceleration[i], other.dq[i]);
+    const double alike = harder != 0.0 ? begin + std::max(0.0, faster / harder) : begin;
+    double most = std::abs(q[i] - other.q[i]);
+    for (const double time : {begin, alike, time_to_rest(i), other.time_to_rest(i)}) {
+      most = std::max(most, std::abs(position(i, time) - other.position(i, time)));
+    }
+    return most;
   }
 
   /// Bound on what the joints between `begin` and `end` may take from the distance

@@ -27,24 +27,58 @@ void check_collision(const CollisionConfig& config, const Braking& braking,
           "reaction must be finite and not negative");
   require(braking.deceleration.allFinite() && braking.deceleration.minCoeff() > 0.0,
           "deceleration must be finite and positive");
+  require(braking.lowest.size() == braking.highest.size() &&
+              (braking.lowest.size() == 0 || braking.lowest.size() == chain.nv()),
+          "ends need one value per joint, or none");
   require(config.safe_distance > 0.0, "safe_distance must be positive");
 }
 
 }  // namespace
 
 Braking braking_of(const DeviceModel& device, double gantry) {
-  constexpr double kDrive = 0.010;  // s, [HANDBOOK] 6.4
+  constexpr double kDrive = 0.010;         // s, [HANDBOOK] 6.4
+  constexpr double kWithoutRating = 10.0;  // rad/s^2 or m/s^2
   const int n = device.n_p + device.n_m;
   Braking braking = {.reaction = VectorPM::Constant(n, 2.0 * device.dt() + kDrive),
                      .deceleration = VectorPM::Constant(n, gantry),
-                     .period = device.dt()};
+                     .period = device.dt(),
+                     .separate = device.n_p,
+                     .lowest = VectorPM::Constant(n, -kInfinity),
+                     .highest = VectorPM::Constant(n, kInfinity)};
   for (int i = 0; i < device.n_p; ++i) {
     braking.reaction[i] = 2.0 * device.dt() + device.drive.dead_time + device.drive.lag;
   }
   for (int i = 0; i < device.n_m; ++i) {
-    braking.deceleration[device.n_p + i] = device.joint_limits[i].ddq_max;
+    const limits::JointLimits& limits = device.joint_limits[i];
+    if (std::isfinite(limits.ddq_max)) {
+      braking.deceleration[device.n_p + i] = limits.ddq_max;
+    } else {
+      braking.deceleration[device.n_p + i] = kWithoutRating;
+    }
+    braking.lowest[device.n_p + i] = limits.q_min;
+    braking.highest[device.n_p + i] = limits.q_max;
   }
   return braking;
+}
+
+VectorPM decelerations(const Braking& braking, const VectorPM& q, const VectorPM& dq) noexcept {
+  constexpr double kHardest = 1.5;    // times A_i, in front of an end
+  constexpr double kShortest = 0.01;  // s of remaining way; nearer ends count as this far
+  VectorPM result = braking.deceleration;
+  const double time = Proportion(braking, dq).duration;
+  if (!(time > 0.0)) return result;
+  for (Eigen::Index i = braking.separate; i < q.size(); ++i) {
+    const double speed = std::abs(dq[i]);
+    if (speed == 0.0) continue;
+    double needed = 0.0;
+    if (braking.lowest.size() > 0) {
+      const double distance = dq[i] > 0.0 ? braking.highest[i] - q[i] : q[i] - braking.lowest[i];
+      const double left = distance - braking.reaction[i] * speed;
+      needed = 0.5 * speed * speed / std::max(left, kShortest * speed);
+    }
+    result[i] = std::min(std::max(speed / time, needed), kHardest * braking.deceleration[i]);
+  }
+  return result;
 }
 
 int most_distances(double period) noexcept { return std::max(24, static_cast<int>(60e3 * period)); }
@@ -161,8 +195,10 @@ void Guard::evaluate(int index, const BrakingPath& path, bool is_powered, int& b
 }
 
 // Reduces each bound by the change of the path since the last cycle.
-void Guard::fade(const VectorPM& q, const VectorPM& stop, CollisionState& state) noexcept {
-  const VectorPM change = (q - state.q).cwiseAbs().cwiseMax((stop - state.stop).cwiseAbs());
+void Guard::fade(const BrakingPath& path, CollisionState& state) noexcept {
+  const BrakingPath before(braking_, state.q, state.dq, state.deceleration);
+  VectorPM change(path.q.size());
+  for (Eigen::Index i = 0; i < change.size(); ++i) change[i] = path.most_apart(before, i);
   for (std::size_t i = 0; i < config_.pairs.watched.size(); ++i) {
     fading_[i] = config_.pairs.watched[i].lever.dot(change);
     state.left[i] -= fading_[i];
@@ -179,7 +215,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_powered,
   const int had_budget = state.count == count ? most_distances_ : 0;
   int budget = had_budget;
   if (state.count == count) {
-    fade(q, path.stop, state);
+    fade(path, state);
   } else {
     fading_ = {};
     for (int i = 0; i < count; ++i) {
@@ -191,7 +227,8 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_powered,
   }
   state.count = count;
   state.q = q;
-  state.stop = path.stop;
+  state.dq = dq;
+  state.deceleration = path.deceleration;
 
   std::array<bool, kMaxPairs> is_done{};
   while (budget > 1) {

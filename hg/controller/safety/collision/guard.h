@@ -1,17 +1,18 @@
 /// Predicts when a device must brake so as not to hit itself, its gantry, its frame or the floor.
 ///
 /// Source: [HANDBOOK] 6.4. Braking from the state (q, dq) moves each joint along
-///   q_i(t) = q_i + dq_i t while t < r_i, then with the deceleration A_i to its stop
-///   s_i = q_i + dq_i r_i + dq_i |dq_i| / (2 A_i).
+///   q_i(t) = q_i + dq_i t while t < r_i, then with the deceleration a_i to its stop
+///   s_i = q_i + dq_i r_i + dq_i |dq_i| / (2 a_i),
+/// with a_i of decelerations().
 /// For each pair of shapes the smallest distance on that path is bounded from below. Between two
 /// points of the path with distances D1 and D2 the bound is
 /// (D1 + D2 - sum_i L_i |q_i(t2) - q_i(t1)|) / 2, with the levers L_i of Pair; and planes between
 /// the shapes at t1 or t2 hold them apart but for the bend of the path, which shrinks with the
 /// square of t2 - t1. Intervals for which the larger bound is too small are halved.
 ///
-/// Bounds are reused in later cycles. Braking paths from two states differ in joint i by at most
-/// e_i = max(|q_i - q'_i|, |s_i - s'_i|), so a bound shrinks by at most sum_i L_i e_i per cycle. It
-/// is recomputed only when little of it is left.
+/// Bounds are reused in later cycles. Where the braking paths from two states differ in joint i by
+/// at most e_i, a bound shrinks by at most sum_i L_i e_i per cycle. It is recomputed only when
+/// little of it is left.
 ///
 /// A cycle computes at most most_distances() distances, for the pairs with the smallest bounds
 /// first. The first cycle, with the drives off, may compute that many for each pair. A pair that
@@ -47,10 +48,20 @@ std::vector<std::string> pair_names(const CollisionConfig& config);
 
 /// How the joints brake, gantry first.
 struct Braking {
-  VectorPM reaction;      ///< Reaction time of each joint until it brakes, s
-  VectorPM deceleration;  ///< Deceleration of each joint, rad/s^2 or m/s^2, > 0
-  double period = 1e-3;   ///< Time between two predictions, s
+  VectorPM reaction;         ///< Reaction time of each joint until it brakes, s
+  VectorPM deceleration;     ///< Largest deceleration of each joint, rad/s^2 or m/s^2, > 0
+  double period = 1e-3;      ///< Time between two predictions, s
+  int separate = 0;          ///< Number of joints, the first ones, that brake each for itself
+  VectorPM lowest, highest;  ///< Ends of each joint, rad or m; empty: none has ends
 };
+
+/// Decelerations in a stop from `q` with speeds `dq`, rad/s^2 or m/s^2. The joints slow down in one
+/// proportion, so that the device stays on the line on which it moves, and the slowest of them
+/// brakes with at most its own deceleration: with the times u_i = |dq_i| / A_i,
+///   a_i = |dq_i| / (sum_j u_j^8)^(1/8),
+/// a maximum without corners. A joint in front of an end brakes as hard as it needs there, at most
+/// with 1.5 A_i.
+VectorPM decelerations(const Braking& braking, const VectorPM& q, const VectorPM& dq) noexcept;
 
 /// Largest number of distances computed in a cycle: 60 per millisecond of its `period` (s), at
 /// least
@@ -58,20 +69,21 @@ struct Braking {
 int most_distances(double period) noexcept;
 
 /// Braking of the device's joints: two periods and the dead time of the drives, then the rated
-/// decelerations, of a gantry axis `gantry` (m/s^2 or rad/s^2).
+/// decelerations, 10 rad/s^2 or m/s^2 without a rating, of a gantry axis `gantry` (m/s^2 or
+/// rad/s^2), which brakes for itself.
 Braking braking_of(const DeviceModel& device, double gantry);
 
 struct CollisionState {
   int count = 0;                            ///< Number of watched pairs; 0 = not started
-  VectorPM q, stop;                         ///< Joint and stopping positions of the last cycle
+  VectorPM q, dq, deceleration;             ///< Braking path of the last cycle
   std::array<double, kMaxPairs> left{};     ///< Lower bound on the distance minus `allowed`, m
   std::array<double, kMaxPairs> allowed{};  ///< Safe distance, less for pairs that began nearer, m
 };
 
 /// Words of the state hash, in its order.
 void hashed(auto& hash, const CollisionState& state) {
-  const auto& [count, q, stop, left, allowed] = state;
-  hash.mix(count, q, stop);
+  const auto& [count, q, dq, deceleration, left, allowed] = state;
+  hash.mix(count, q, dq, deceleration);
   for (int i = 0; i < count; ++i) hash.mix(left[i], allowed[i]);
 }
 
@@ -115,15 +127,15 @@ class Guard {
   void foresee(std::span<Foreseen> near, const BrakingPath& path,
                const CollisionState& state) noexcept;
   void refine(Foreseen& best, const BrakingPath& path, double allowed) noexcept;
-  void add_change(const Foreseen& nearest, const BrakingPath& path, double share,
-                  CollisionTask& task) noexcept;
+  void add_change(const Foreseen& nearest, const BrakingPath& path, const Braking& gentle,
+                  double share, CollisionTask& task) noexcept;
   /// Poses of the frames that the shapes of a pair are fixed to, in B.
   std::array<Pose, 2> poses(int pair, const model::ChainData& chain) const noexcept;
   double distance(int pair, const model::ChainData& chain) noexcept;
   double distance(int pair, const BrakingPath& path, double time) noexcept;
   void evaluate(int pair, const BrakingPath& path, bool is_powered, int& budget,
                 CollisionState& state) noexcept;
-  void fade(const VectorPM& q, const VectorPM& stop, CollisionState& state) noexcept;
+  void fade(const BrakingPath& path, CollisionState& state) noexcept;
 
   CollisionConfig config_;
   Braking braking_;

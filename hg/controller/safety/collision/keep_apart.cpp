@@ -15,6 +15,7 @@ constexpr int kSteps = 4;        // of the search between them
 constexpr double kAlike = 0.05;  // m: pairs that are so much farther away are not searched
 constexpr double kRound = 3e-3;  // m: pairs whose distances differ by less share the change
 constexpr double kGentle = 0.6;  // share of the ratings with which the law is to brake
+constexpr double kOnset = 0.04;  // s: motors build up their torques meanwhile
 constexpr double kLeastShare = 1e-3;
 
 }  // namespace
@@ -60,8 +61,8 @@ void Guard::refine(Foreseen& best, const BrakingPath& path, double allowed) noex
 
 // Adds `share` of the change of the distance at the nearest place: at an end of the path, or where
 // it is smallest along it, it does not change with the time of the place.
-void Guard::add_change(const Foreseen& nearest, const BrakingPath& path, double share,
-                       CollisionTask& task) noexcept {
+void Guard::add_change(const Foreseen& nearest, const BrakingPath& path, const Braking& gentle,
+                       double share, CollisionTask& task) noexcept {
   const Pair& pair = config_.pairs.watched[nearest.pair];
   const std::array<int, 2> frames = {config_.shapes[pair.a].frame, config_.shapes[pair.b].frame};
   later_->update_kinematics(path.positions(nearest.time), path.dq);
@@ -82,10 +83,26 @@ void Guard::add_change(const Foreseen& nearest, const BrakingPath& path, double 
     per_position.noalias() += sign * J.bottomRows<3>().transpose() * turn;
   }
   task.rate += per_position.dot(path.dq);
-  for (Eigen::Index i = 0; i < path.q.size(); ++i) {
-    const double rest =
-        path.braking.reaction[i] + std::abs(path.dq[i]) / path.braking.deceleration[i];
+  const int separate = gentle.separate;
+  for (Eigen::Index i = 0; i < separate; ++i) {
+    const double rest = path.reaction[i] + std::abs(path.dq[i]) / path.deceleration[i];
     task.per_acceleration[i] += per_position[i] * std::min(nearest.time, rest);
+  }
+  // x_i = q_i + dq_i (t - s^2 / (2 T)) with s = t - r_i, at most T, and T that grows with all
+  // speeds
+  const Proportion together(gentle, path.dq);
+  if (!(together.duration > 0.0)) return;
+  double per_duration = 0.0;
+  for (Eigen::Index i = separate; i < path.q.size(); ++i) {
+    const double since = std::clamp(nearest.time - path.reaction[i], 0.0, together.duration);
+    const double share_of_time = since / together.duration;
+    const double way =
+        std::min(nearest.time, path.reaction[i]) + since - 0.5 * share_of_time * since;
+    task.per_acceleration[i] += per_position[i] * way;
+    per_duration += per_position[i] * path.dq[i] * 0.5 * share_of_time * share_of_time;
+  }
+  for (Eigen::Index i = separate; i < path.q.size(); ++i) {
+    task.per_acceleration[i] += per_duration * together.per_speed(i);
   }
 }
 
@@ -101,6 +118,9 @@ CollisionTask Guard::keep_apart(const VectorPM& q, const VectorPM& dq,
   const std::span near = std::span(all).first(count);
   Braking gentle = braking_;
   gentle.deceleration *= kGentle;
+  gentle.reaction.array() += kOnset;
+  gentle.lowest.resize(0);
+  gentle.highest.resize(0);
   const BrakingPath path(gentle, q, dq);
   foresee(near, path, state);
   const auto least_left = [&] { return std::ranges::min(near, {}, &Foreseen::left).left; };
@@ -116,7 +136,7 @@ CollisionTask Guard::keep_apart(const VectorPM& q, const VectorPM& dq,
   task.per_acceleration = VectorPM::Zero(q.size());
   for (const Foreseen& place : near) {
     const double share = std::exp((least - place.left) / kRound) / sum;
-    if (share > kLeastShare) add_change(place, path, share, task);
+    if (share > kLeastShare) add_change(place, path, gentle, share, task);
   }
   return task;
 }

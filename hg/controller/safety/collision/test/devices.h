@@ -54,6 +54,7 @@ inline TestDevice device_of(const std::string& urdf_text) {
   device.braking.reaction << 0.046, 0.046, 0.013, 0.013, 0.013, 0.013, 0.013, 0.013;
   device.braking.deceleration.resize(8);
   device.braking.deceleration << 2.0, 2.0, 6.5, 7.5, 15.0, 8.0, 40.0, 40.0;
+  device.braking.separate = 2;
   device.config.pairs = choose_pairs(device.config.shapes, device.chain, device.range,
                                      device.config.safe_distance + kFarEnough);
   return device;
