@@ -43,7 +43,7 @@ void StopPath::update(const DeviceModel& device, const model::ChainData& now,
   const VectorM& dq = reference.dq_m;
   MatrixUpTo<kMaxManipulator, kMaxManipulator> inertia = now.M().bottomRightCorner(n, n);
   for (int i = 0; i < n; ++i) inertia(i, i) += device.motors()[i].rotor_inertia;
-  const VectorM momentum = inertia * dq;
+  const VectorM momentum = inertia.lazyProduct(dq);
   VectorM of_joint(n), of_motor(n), available(n);
   double sum = 0.0;
   for (int i = 0; i < n; ++i) {
@@ -68,7 +68,8 @@ void StopPath::update(const DeviceModel& device, const model::ChainData& now,
 void StopPath::find_rest(const ReferenceState& reference) noexcept {
   VectorM q = reference.q_m + reach() * reference.dq_m;
   for (int i = 0; i < q.size(); ++i) q[i] = std::clamp(q[i], ends_[i].lb, ends_[i].ub);
-  rest_.update_kinematics(q, VectorPM::Zero(q.size()));
+  const VectorM still = VectorM::Zero(q.size());
+  rest_.update_kinematics(q, still);
 }
 
 Interval StopPath::bound(int frame, int axis, const Interval& range,

@@ -9,6 +9,7 @@
 #include "hg/controller/rendering/rendering.h"
 #include "hg/controller/rendering/stop_path.h"
 #include "hg/controller/rendering/test/test_models.h"
+#include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
 
 namespace hg::rendering {
@@ -338,6 +339,20 @@ TEST(StopPath, RowIsTheChangeOfThePlaceAtRest) {
       EXPECT_NEAR(change[axis], path.reach() * (row.dot(ddq) - bound.ub), 1e-4) << strength;
     }
   }
+}
+
+TEST(StopPath, AllocatesNothing) {
+  const Stopping stopping(12.0);
+  StopPath path = stopping.path();
+  model::ChainData now(stopping.device.chain);
+  now.update(kSevenJointPosture, stopping.reference.dq_m);
+  VectorM row(7);
+  const AllocationCounter allocations;
+  path.update(stopping.device, now, stopping.reference, stopping.motors, stopping.known);
+  path.find_rest(stopping.reference);
+  path.bound(stopping.device.handle, 0, {-1.0, 1.0}, stopping.reference,
+             {row.data(), static_cast<std::size_t>(row.size())});
+  EXPECT_EQ(allocations.count(), 0U);
 }
 
 // Braking in one proportion leaves the place at rest where it is, up to the reaction time in which
