@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "apps/command_line/command.h"
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/run_setup.h"
+#include "hg/analysis/latency.h"
 #include "hg/analysis/run_story.h"
 #include "hg/core/error.h"
 #include "hg/recording/recording_reader.h"
@@ -29,12 +31,14 @@ class Reader final : public recording::RecordingListener {
   void sample(const Sample& sample) override {
     if (!story_) story_ = std::make_unique<analysis::RunStory>(names());
     story_->add(sample);
+    if (latency_) latency_->add(sample);
     ++samples_;
   }
 
   const std::string& title() const { return title_; }
   std::uint64_t samples() const { return samples_; }
   double first_s() const { return story_->first_s(); }
+  std::string latency() const { return latency_ ? to_text(latency_->latency()) : ""; }
   double last_s() const { return story_->last_s(); }
   std::vector<analysis::Entry> entries() {
     for (const recording::Event& event : events_) {
@@ -67,6 +71,8 @@ class Reader final : public recording::RecordingListener {
       const config::Scenario scenario = recorded_scenario(configuration_);
       title_ = scenario.title;
       faults_ = scenario.faults;
+      latency_.emplace(scenario.device.model.rate_Hz,
+                       scenario.device.control.method == tracking::Method::kDrives);
       return scenario::part_names(scenario);
     } catch (const SetupError& error) {
       const std::string why = error.what();
@@ -80,6 +86,7 @@ class Reader final : public recording::RecordingListener {
   std::vector<recording::Event> events_;
   std::vector<faults::Injection> faults_;
   std::unique_ptr<analysis::RunStory> story_;
+  std::optional<analysis::LatencyWatch> latency_;
   std::string title_;
   std::uint64_t samples_ = 0;
 };
@@ -109,6 +116,8 @@ int explain_recording(const std::string& file) {
   const bool has_fault = std::ranges::any_of(
       entries, [](const analysis::Entry& entry) { return entry.kind == "FAULT"; });
   if (!has_fault) print_out("\nno fault\n");
+  const std::string latency = reader.latency();
+  if (!latency.empty()) print_out(fmt::format("latency: {}\n", latency));
   return 0;
 }
 

@@ -170,6 +170,7 @@ nlohmann::ordered_json Summary::to_json(const RunFacts& facts,
   json["allocations_in_loop"] = facts.allocations_in_loop;
   json["stop_timed_out"] = facts.stop_timed_out;
   if (facts.link.sent > 0) json["link"] = link_json(facts.link);
+  json["latency"] = analysis::to_json(facts.latency);
   json["recording"] = facts.recording;
   json["recording_error"] = facts.recording_error;
   json["fault"] = {{"code", static_cast<int>(fault_.code)},
@@ -377,6 +378,8 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   text += line("priority", priority_text(facts.timing));
   text += line("allocations", fmt::format("{} in the loop", facts.allocations_in_loop));
   if (facts.link.sent > 0) text += line("link", link_text(facts.link));
+  const std::string latency = analysis::to_text(facts.latency);
+  if (!latency.empty()) text += line("latency", latency);
   text += line("state", fmt::format("{:016x} (hash of the last cycle: the same run has the same)",
                                     last_hash_));
   text += losses_text(facts);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hg/analysis/events.h"
+#include "hg/analysis/latency.h"
 #include "hg/analysis/timing.h"
 #include "hg/analysis/truth_summary.h"
 #include "hg/signals/link_counts.h"
@@ -36,6 +37,7 @@ struct RunFacts {
   std::string fault_figures;    ///< part, value and limit of the fault; empty = none
   bool stop_timed_out = false;  ///< drives were disabled while the device was moving
   LinkCounts link;  ///< counters of the link to a remote device; nothing sent = no remote device
+  Latency latency;  ///< delays of link, drives, sensor and page, as far as known
   std::string recording;  ///< recording file; empty = off
   /// Reason why the recording ended before the run; empty = it did not
   std::string recording_error;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "hg/device/device.h"
@@ -21,6 +22,9 @@ class ConnectedDevice : public Device {
   /// because it had arrived or its period was due, to its return. A sample that comes late from the
   /// device adds nothing.
   virtual std::int64_t late_ns() const noexcept = 0;
+  /// Time from a sample to the arrival of its command at the device, as the device measures it, s;
+  /// NaN: it has not said so. From any thread.
+  virtual double round_trip_s() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
 }  // namespace hg::device

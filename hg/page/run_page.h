@@ -50,8 +50,10 @@ class RunPage {
   RunPage(const viewer_server::ServerOptions& options, const ShownRun& first, Prepare prepare);
 
   std::string url() const { return server_.url(); }
-  /// Number of pages connected.
-  std::uint64_t clients() const { return server_.counters().clients; }
+  /// Pages connected, and how far they are away.
+  viewer_server::Counters counters() const { return server_.counters(); }
+  /// Sets the delays of the run, in words.
+  void set_latency(std::string text) { view_.latency = std::move(text); }
 
   /// Operator's desk, from which the control loop reads the actions of pages.
   OperatorDesk& desk() { return *desk_; }
@@ -150,13 +152,11 @@ class RunPage {
   bool has_news_ = false;  ///< there is news not yet shown on any page
   bool stop_was_asked_ = false;
   bool has_next_ = false;
-  std::pair<std::string, std::string>
-      done_;  ///< name and text of the last report of a command that the desk has executed
+  std::pair<std::string, std::string> done_;  ///< last report of the desk: name and text
   std::chrono::steady_clock::time_point done_at_;
-  std::deque<Asked> asked_;        ///< requested modes, in order
-  viewer_server::Command chosen_;  ///< command from which `prepared_` results
-  std::future<std::string>
-      prepared_;  ///< reason why the chosen run cannot be prepared; empty = it is
+  std::deque<Asked> asked_;            ///< requested modes, in order
+  viewer_server::Command chosen_;      ///< command from which `prepared_` results
+  std::future<std::string> prepared_;  ///< why the chosen run cannot be prepared; empty = it is
 };
 
 }  // namespace hg::page

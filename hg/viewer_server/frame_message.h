@@ -83,6 +83,7 @@ void fields(Archive& a, T& frame) {
   a("sync_error_deg", record.sync_error_angle * 180.0 / M_PI);
   a("cycle_time_us", view.cycle_time_us);
   a("cycle_time_max_us", view.cycle_time_max_us, "maximum since the last frame");
+  a("latency", view.latency, "delays of link, drives, sensor and page in words; empty = unknown");
   a("hand", hand_message(view.hand));
   a("run_state", view.run_state);
   a("safety", SafetyMessage{view});

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -45,12 +46,17 @@ using Request = http::request<http::empty_body>;
 
 constexpr auto kRequestTimeout = std::chrono::seconds(15);
 constexpr auto kStrangerTimeout = std::chrono::seconds(5);  // time limit for a complete request
-constexpr std::size_t kMostStrangers = 32;  // connections that have not shown the token
-constexpr long kMostKnown = 64;             // connections that have shown the token
-constexpr long kMostLive = 16;              // clients of the live interface
-constexpr std::size_t kMaxEvents = 200;     // kept for pages that connect later, and per page
-constexpr std::size_t kMaxCommands = 64;    // waiting for the program
-constexpr std::size_t kMaxDone = 256;       // including those for information only
+constexpr std::size_t kMostStrangers = 32;     // connections that have not shown the token
+constexpr long kMostKnown = 64;                // connections that have shown the token
+constexpr long kMostLive = 16;                 // clients of the live interface
+constexpr std::size_t kMaxEvents = 200;        // kept for pages that connect later, and per page
+constexpr std::size_t kMaxCommands = 64;       // waiting for the program
+constexpr std::size_t kMaxDone = 256;          // including those for information only
+constexpr std::size_t kLargestMessage = 4096;  // bytes; a hand target has about 80
+constexpr double kMessageRate_Hz = 200.0;      // a page sends 60 hand targets per second
+constexpr double kCommandRate_Hz = 30.0;       // rate of a dragged slider
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 inline std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -78,6 +84,8 @@ struct Hub {
   std::shared_ptr<int> make_known(const Visitor* visitor);
   void join(const std::shared_ptr<Page>& page);
   void leave(const std::shared_ptr<Page>& page);
+  /// Finds the slowest page.
+  void note_round_trip();
   void join(const std::shared_ptr<LiveClient>& client);
   void leave(const std::shared_ptr<LiveClient>& client);
   /// Ends what the page or client of this number holds.
@@ -128,6 +136,7 @@ struct Hub {
   std::atomic<std::uint64_t> sent{0};
   std::atomic<std::uint64_t> dropped{0};
   std::atomic<std::uint64_t> refused{0};
+  std::atomic<double> round_trip_s{kUnknown};
   std::mutex input_mutex;
   HandTargetBox hand;
   ReferenceWrenchBox wrench;

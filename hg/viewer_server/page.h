@@ -10,12 +10,9 @@
 #include "hg/viewer_server/hub.h"
 #include "hg/viewer_server/message_rate.h"
 #include "hg/viewer_server/messages.h"
+#include "hg/viewer_server/pings.h"
 
 namespace hg::viewer_server {
-
-constexpr std::size_t kLargestMessage = 4096;  // bytes; a hand target has about 80
-constexpr double kMessageRate_Hz = 200.0;      // a page sends 60 hand targets per second
-constexpr double kCommandRate_Hz = 30.0;       // rate of a dragged slider
 
 /// Connection of one page; destroyed when it closes.
 class Page : public std::enable_shared_from_this<Page> {
@@ -31,6 +28,7 @@ class Page : public std::enable_shared_from_this<Page> {
     socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
       response.set(http::field::sec_websocket_protocol, kProtocol);
     }));
+    pings.listen(socket_, hub_);
     socket_.async_accept(request, [self = shared_from_this()](error_code error) {
       if (error) return;
       self->hub_.join(self);
@@ -43,6 +41,7 @@ class Page : public std::enable_shared_from_this<Page> {
     if (frame_) ++hub_.dropped;
     frame_ = std::move(frame);
     write();
+    pings.send(socket_, shared_from_this());
   }
 
   void notify(Text event) { queue(std::move(event), events_); }
@@ -53,9 +52,9 @@ class Page : public std::enable_shared_from_this<Page> {
   }
 
   std::uint64_t number = 0;
+  Pings pings;
 
  private:
-  // The oldest are dropped when they are too many.
   void queue(Text text, std::deque<Text>& waiting) {
     if (waiting.size() == kMaxEvents) {
       waiting.pop_front();
@@ -101,8 +100,7 @@ class Page : public std::enable_shared_from_this<Page> {
     command.page = number;
     const auto refusal = hub_.take(command, command_rate_);
     if (!refusal) return;
-    if (!refusal->empty()) return refuse(command.id, *refusal);
-    answer(command.id, {});
+    refusal->empty() ? answer(command.id, {}) : refuse(command.id, *refusal);
   }
 
   void hold(double sequence) {

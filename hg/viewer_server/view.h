@@ -89,6 +89,7 @@ struct View {
   /// Cycle time, and its maximum since the last view
   double cycle_time_us = 0.0, cycle_time_max_us = 0.0;
   std::string status_text;  ///< one line of status text
+  std::string latency;      ///< delays of the run in words; empty = not known
   HandBudget budget;
   std::optional<Singularity> singularity;
   RunState run_state;

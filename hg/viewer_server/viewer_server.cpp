@@ -79,8 +79,15 @@ void Hub::join(const std::shared_ptr<Page>& page) {
   if (newest_frame) page->show(newest_frame);
 }
 
+void Hub::note_round_trip() {
+  double slowest = -1.0;
+  for (const auto& page : pages) slowest = std::max(slowest, page->pings.round_trip_s());
+  round_trip_s = slowest >= 0.0 ? slowest : kUnknown;
+}
+
 void Hub::leave(const std::shared_ptr<Page>& page) {
   pages.erase(page);
+  note_round_trip();
   clients = pages.size();
   let_go(page->number);
 }
@@ -526,7 +533,7 @@ void ViewerServer::answer(const Command& command, std::string_view refusal) {
 
 Counters ViewerServer::counters() const {
   const Hub& hub = impl_->hub;
-  return {hub.clients, hub.live_count, hub.sent, hub.dropped, hub.refused};
+  return {hub.clients, hub.live_count, hub.sent, hub.dropped, hub.refused, hub.round_trip_s};
 }
 
 }  // namespace hg::viewer_server

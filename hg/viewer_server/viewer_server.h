@@ -47,6 +47,7 @@ struct Counters {
   std::uint64_t sent = 0;     ///< frames handed to the network
   std::uint64_t dropped = 0;  ///< frames and events not sent to a slow client
   std::uint64_t refused = 0;  ///< requests and messages that were refused
+  double round_trip_s = 0.0;  ///< to the slowest page and back; NaN = not known
 };
 
 class ViewerServer {

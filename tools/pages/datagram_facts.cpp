@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "hg/device/udp/codec.h"
+#include "hg/device/udp/round_trip.h"
 
 namespace hg::pages {
 namespace {
@@ -81,7 +82,8 @@ Json datagram_facts() {
           message<Ready>("Ready"),
           message<SensorFrame>("Sensors"),
           message<CommandFrame>("Command"),
-          message<Goodbye>("Goodbye")};
+          message<Goodbye>("Goodbye"),
+          message<RoundTrip>("Round trip")};
 }
 
 }  // namespace hg::pages

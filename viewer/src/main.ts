@@ -225,7 +225,8 @@ class Page {
     this.plots.show();
     write(element("sync"), `hand and twin ${(frame.sync_error_mm ?? 0).toFixed(1)} mm apart`);
     const cycle = `cycle ${(frame.cycle_time_us ?? 0).toFixed(0)} \u00b5s`;
-    write(element("rates"), `${cycle}, ${this.store.frames_per_second()} frames/s`);
+    const delays = frame.latency && `; ${frame.latency}`;
+    write(element("rates"), `${cycle}, ${this.store.frames_per_second()} frames/s${delays}`);
   }
 
   state(): PageState {

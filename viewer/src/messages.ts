@@ -178,6 +178,7 @@ export interface Frame {
   sync_error_deg: number;
   cycle_time_us: number;
   cycle_time_max_us: number; // maximum since the last frame
+  latency: string; // delays of link, drives, sensor and page in words; empty = unknown
   hand: Hand;
   run_state: RunState;
   safety: Safety;

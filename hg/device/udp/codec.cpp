@@ -2,6 +2,8 @@
 
 #include <zlib.h>
 
+#include "hg/device/udp/round_trip.h"
+
 namespace hg::udp {
 namespace {
 
@@ -24,6 +26,8 @@ std::size_t length_of(std::uint16_t type) noexcept {
       return with(size_of<CommandFrame>());
     case MessageType::kGoodbye:
       return with(size_of<Goodbye>());
+    case MessageType::kRoundTrip:
+      return with(size_of<RoundTrip>());
   }
   return 0;
 }

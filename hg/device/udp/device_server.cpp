@@ -16,6 +16,7 @@
 #include "hg/device/udp/capture.h"
 #include "hg/device/udp/inbox.h"
 #include "hg/device/udp/outbox.h"
+#include "hg/device/udp/round_trip.h"
 #include "hg/device/udp/udp_socket.h"
 
 namespace hg::udp {
@@ -26,6 +27,9 @@ constexpr int kGoodbyes = 3;                 // not acknowledged: one may be los
 constexpr std::size_t kMostCandidates = 16;  // remembered candidates
 constexpr std::size_t kMostAnswer = 2;  // times the bytes of a hello, whose sender may be forged
 constexpr std::size_t kNetwork = 28;    // bytes of the headers of IPv4 and UDP
+constexpr std::int64_t kFirstPatience = 1'000'000'000;  // ns, with the drives off
+constexpr std::int64_t kReportPeriod = 100'000'000;     // ns, of round trips
+constexpr std::size_t kRemembered = 2048;               // frames whose answers are timed
 
 std::int64_t ns(double seconds) noexcept { return std::llround(1e9 * seconds); }
 
@@ -69,6 +73,7 @@ class Server {
   void close_session(bool is_stopped);
   bool answered(const std::atomic<bool>& stop);
   void measure_answer();
+  void report_round_trip();
   template <typename Message>
   void send(const Message& message) {
     send(message, outbox_, client_);
@@ -95,7 +100,10 @@ class Server {
   bool has_command_ = false;        ///< a command has arrived in this session
   bool has_left_ = false;           ///< the client has sent a goodbye
   std::int64_t frame_ns_ = 0, heard_ns_ = 0;
+  std::array<std::int64_t, kRemembered> sent_ns_{};  ///< of the newest frames, by their sequence
   std::int64_t answers_ = 0, answers_ns_ = 0, longest_answer_ns_ = 0;
+  std::int64_t reported_ = 0, reported_ns_ = 0,
+               due_report_ns_ = 0;  ///< answers that the client knows, and when more are due
   std::uint64_t refused_ = 0, late_ = 0, malformed_ = 0, foreign_ = 0, from_others_ = 0;
   Peer first_other_;
   SessionReport report_;
@@ -248,6 +256,7 @@ Server::Event Server::take(const Header& header) {
     case MessageType::kHello:
     case MessageType::kWelcome:
     case MessageType::kSensors:
+    case MessageType::kRoundTrip:
       break;
   }
   ++foreign_;
@@ -326,8 +335,9 @@ bool Server::wait_for_client(const std::atomic<bool>& stop) {
 SessionReport Server::serve(device::Device& device, const std::atomic<bool>& stop) {
   report_ = {};
   report_.client = fmt::format("{} at {}", hello_.client.printable(), to_string(client_));
-  answers_ = answers_ns_ = longest_answer_ns_ = 0;
+  answers_ = answers_ns_ = longest_answer_ns_ = reported_ = reported_ns_ = due_report_ns_ = 0;
   refused_ = late_ = malformed_ = foreign_ = from_others_ = 0;
+  sent_ns_.fill(0);
   command_ = off_command(config_.actual);
   has_command_ = false;
   heard_ns_ = now_ns();
@@ -372,11 +382,23 @@ void Server::close_session(bool is_stopped) {
   has_client_ = false;
 }
 
+// of the command that has arrived, whether or not it comes too late to be followed
 void Server::measure_answer() {
-  const std::int64_t time = now_ns() - frame_ns_;
+  const std::int64_t sent_ns = sent_ns_[arrived_.sequence % kRemembered];
+  if (sent_ns == 0 || arrived_.sequence + kRemembered <= frame_.sequence) return;
+  const std::int64_t time = now_ns() - sent_ns;
   ++answers_;
   answers_ns_ += time;
   longest_answer_ns_ = std::max(longest_answer_ns_, time);
+}
+
+void Server::report_round_trip() {
+  if (answers_ == reported_ || now_ns() < due_report_ns_) return;
+  send(RoundTrip{1e-9 * static_cast<double>(answers_ns_ - reported_ns_) /
+                 static_cast<double>(answers_ - reported_)});
+  reported_ = answers_;
+  reported_ns_ = answers_ns_;
+  due_report_ns_ = now_ns() + kReportPeriod;
 }
 
 void Server::live_in_real_time(device::Device& device, const std::atomic<bool>& stop) {
@@ -385,16 +407,19 @@ void Server::live_in_real_time(device::Device& device, const std::atomic<bool>& 
   // age of the frame that a command answers: a client that falls behind must not be followed
   const auto most_periods =
       static_cast<std::uint64_t>(config_.command_timeout_s * config_.actual.rate_Hz);
-  while (!stop.load() && now_ns() - heard_ns_ <= timeout) {
+  const auto patience = [&] { return has_command_ ? timeout : std::max(timeout, kFirstPatience); };
+  while (!stop.load() && now_ns() - heard_ns_ <= patience()) {
     device.read(frame_);
-    frame_ns_ = now_ns();
+    frame_ns_ = sent_ns_[frame_.sequence % kRemembered] = now_ns();
     send(frame_);
+    report_round_trip();
     report_.overruns += schedule.advance(frame_ns_);
     bool is_new = false;
     do {
       for (Event event = receive(); event != Event::kNone; event = receive()) {
         if (event == Event::kGoodbye) return;
         if (event != Event::kCommand) continue;
+        measure_answer();
         if (inbox_.was_overtaken() || arrived_.sequence + most_periods < frame_.sequence) {
           ++late_;
           continue;
@@ -402,7 +427,6 @@ void Server::live_in_real_time(device::Device& device, const std::atomic<bool>& 
         command_ = arrived_;
         heard_ns_ = now_ns();
         is_new = has_command_ = true;
-        if (command_.sequence == frame_.sequence) measure_answer();
       }
       socket_.wait(schedule.due_ns());
     } while (now_ns() < schedule.due_ns());
@@ -415,7 +439,7 @@ void Server::live_in_real_time(device::Device& device, const std::atomic<bool>& 
 void Server::live_in_lock_step(device::Device& device, const std::atomic<bool>& stop) {
   while (true) {
     device.read(frame_);
-    frame_ns_ = now_ns();
+    frame_ns_ = sent_ns_[frame_.sequence % kRemembered] = now_ns();
     send(frame_);
     if (!answered(stop)) return;
     device.write(arrived_);

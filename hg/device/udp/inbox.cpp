@@ -7,15 +7,16 @@ namespace hg::udp {
 NumberWindow::Place NumberWindow::accept(std::uint64_t number) noexcept {
   if (count_ == 0 || number > newest_) {
     const std::uint64_t step = count_ == 0 ? kSize : number - newest_;
-    seen_ = (step < kSize ? seen_ << step : 0) | 1U;
+    seen_ <<= step;
+    seen_.set(0);
     if (count_ == 0) first_ = number;
     newest_ = number;
     ++count_;
     return Place::kNewest;
   }
   const std::uint64_t age = newest_ - number;
-  if (age >= kSize || (seen_ >> age & 1U) != 0) return Place::kSeen;
-  seen_ |= std::uint64_t{1} << age;
+  if (age >= kSize || seen_[age]) return Place::kSeen;
+  seen_.set(age);
   first_ = std::min(first_, number);
   ++count_;
   return Place::kOvertaken;

@@ -3,6 +3,7 @@
 /// Pure: no socket, no clock. No allocation, noexcept.
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 
 #include "hg/device/udp/codec.h"
@@ -13,7 +14,8 @@ namespace hg::udp {
 /// Window of seen numbers, like the replay window of IPsec (RFC 4303, 3.4.3).
 class NumberWindow {
  public:
-  static constexpr std::uint64_t kSize = 64;  ///< window size: a number may be overtaken by so many
+  static constexpr std::uint64_t kSize =
+      512;  ///< window size: a number may be overtaken by so many
   enum class Place { kNewest, kOvertaken, kSeen };
 
   /// Classifies a number; one older than the window counts as seen.
@@ -23,7 +25,7 @@ class NumberWindow {
 
  private:
   std::uint64_t first_ = 0, newest_ = 0, count_ = 0;
-  std::uint64_t seen_ = 0;  ///< bit i set: newest_ - i was seen
+  std::bitset<kSize> seen_;  ///< bit i set: newest_ - i was seen
 };
 
 class Inbox {

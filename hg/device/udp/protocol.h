@@ -24,16 +24,16 @@ inline constexpr std::uint16_t kVersion = 2;
 inline constexpr std::size_t kLargestDatagram = 1400;
 
 enum class MessageType : std::uint16_t {
-  kHello = 1,    ///< client: its identity and expectations
-  kWelcome = 2,  ///< device: its identity, or a refusal
-  kReady = 3,    ///< client: start with the first frame
-  kSensors = 4,  ///< device: sensor frame
-  kCommand = 5,  ///< client: command frame
-  kGoodbye = 6,  ///< either side: the session is over
+  kHello = 1,      ///< client: its identity and expectations
+  kWelcome = 2,    ///< device: its identity, or a refusal
+  kReady = 3,      ///< client: start with the first frame
+  kSensors = 4,    ///< device: sensor frame
+  kCommand = 5,    ///< client: command frame
+  kGoodbye = 6,    ///< either side: the session is over
+  kRoundTrip = 7,  ///< device in real time: how late its commands come; may be ignored
 };
 
-/// Foreign text made safe for a terminal, in one line: a '?' for each byte that is not shown
-/// (hg/core/visible.h).
+/// Foreign text made safe for a terminal, in one line, by hg/core/visible.h.
 std::string printable(std::string_view text);
 
 /// Text of fixed capacity; longer text is cut.

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <random>
+#include <utility>
 
 #include "hg/core/error.h"
 #include "hg/device/udp/agreement.h"
@@ -12,6 +15,7 @@
 #include "hg/device/udp/frame_queue.h"
 #include "hg/device/udp/inbox.h"
 #include "hg/device/udp/outbox.h"
+#include "hg/device/udp/round_trip.h"
 #include "hg/device/udp/udp_socket.h"
 
 namespace hg::udp {
@@ -52,6 +56,7 @@ class Client {
   std::string farewell() const { return goodbye_.reason.printable(); }
   LinkCounts counts() const noexcept;
   std::int64_t late_ns() const noexcept { return late_ns_; }
+  double round_trip_s() const noexcept { return round_trip_s_.load(std::memory_order_relaxed); }
 
  private:
   void connect(const std::string& at);
@@ -78,6 +83,7 @@ class Client {
   std::uint64_t newest_ = 0;  ///< number of the newest frame received
   Datagram datagram_;
   bool is_started_ = false;  ///< the first frame has arrived
+  std::int64_t started_ns_ = 0;
   bool has_command_ = false;
   bool has_left_ = false;  ///< the server has left
   bool is_closed_ = false;
@@ -85,6 +91,7 @@ class Client {
   LinkCounts own_;               ///< counts beyond those of inbox and queue
   std::int64_t arrived_ns_ = 0;  ///< of the first frame that this read() has received; 0: none
   std::int64_t late_ns_ = 0;     ///< of this computer in this read()
+  std::atomic<double> round_trip_s_{std::numeric_limits<double>::quiet_NaN()};
 };
 
 Client::Client(const Address& address, const ClientConfig& config)
@@ -157,12 +164,16 @@ void Client::read(SensorFrame& sensors) noexcept {
                            : is_lock_step ? config_.lock_step_timeout_s
                                           : config_.frame_timeout_s;
   const std::int64_t begin = now_ns();
-  const std::int64_t deadline = begin + ns(timeout_s);
+  std::int64_t deadline = begin + ns(timeout_s);
+  // a long way is no silence, and may be waited for while nothing can move
+  if (is_started_ && !last_command_.enable && !is_lock_step) {
+    deadline = std::max(deadline, started_ns_ + ns(config_.first_timeout_s));
+  }
   std::int64_t again = is_started_ ? begin + kRepeatPeriod : begin;
   while (true) {
     take_in();
     if (queue_.pop(sensors)) {
-      is_started_ = true;
+      if (!std::exchange(is_started_, true)) started_ns_ = now_ns();
       newest_ = sensors.sequence;
       late_ns_ = now_ns() - std::max(begin, arrived_ns_);
       return;
@@ -206,6 +217,16 @@ void Client::take(const Header& header) noexcept {
       if (!decode(datagram_.view(), goodbye_)) ++own_.malformed;
       has_left_ = true;
       return;
+    case MessageType::kRoundTrip: {
+      RoundTrip trip;
+      const bool is_good = decode(datagram_.view(), trip) && trip.mean_s >= 0.0;
+      if (is_good && std::isfinite(trip.mean_s)) {
+        round_trip_s_.store(trip.mean_s, std::memory_order_relaxed);
+      } else {
+        ++own_.malformed;
+      }
+      return;
+    }
     case MessageType::kWelcome:  // answer to a hello that was sent twice
       return;
     case MessageType::kHello:
@@ -278,5 +299,6 @@ const Welcome& RemoteDevice::welcome() const noexcept { return client_->welcome(
 std::string RemoteDevice::farewell() const { return client_->farewell(); }
 LinkCounts RemoteDevice::counts() const noexcept { return client_->counts(); }
 std::int64_t RemoteDevice::late_ns() const noexcept { return client_->late_ns(); }
+double RemoteDevice::round_trip_s() const noexcept { return client_->round_trip_s(); }
 
 }  // namespace hg::udp

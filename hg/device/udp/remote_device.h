@@ -50,6 +50,7 @@ class RemoteDevice final : public device::ConnectedDevice {
   std::string farewell() const override;
   LinkCounts counts() const noexcept override;
   std::int64_t late_ns() const noexcept override;
+  double round_trip_s() const noexcept override;
 
  private:
   std::unique_ptr<Client> client_;

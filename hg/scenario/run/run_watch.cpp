@@ -1,5 +1,6 @@
 #include "hg/scenario/run/run_watch.h"
 
+#include <cmath>
 #include <thread>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kIdle(2);
 constexpr std::chrono::milliseconds kStatusPeriod(100);
+constexpr std::chrono::milliseconds kLatencyPeriod(250);
 
 }  // namespace
 
@@ -20,7 +22,9 @@ RunWatch::RunWatch(WatchParts parts)
       names_(part_names(parts_.scenario)),
       detector_(parts_.scenario.events, parts_.scenario.limits),
       summary_(make_summary(parts_.scenario)),
-      news_(names_) {}
+      news_(names_),
+      latency_(parts_.scenario.device.model.rate_Hz,
+               parts_.scenario.device.control.method == tracking::Method::kDrives) {}
 
 void RunWatch::notify(double time_s, std::string_view name, std::string_view what) {
   parts_.observer.event(time_s, name, what);
@@ -38,15 +42,39 @@ page::RunPage::Note RunWatch::note_at(const Sample& sample) {
 
 void RunWatch::observe_fault(const Sample& sample) {
   const FaultCode before = summary_.fault().code;
+  const bool has_shaken = summary_.has_shaken();
   summary_.add(sample);
+  if (!has_shaken && summary_.has_shaken()) report_latency(sample.record.time_s);
   const Fault& fault = summary_.fault();
   if (fault.code == before || !safety::is_fault(fault.code)) return;
   fault_figures_ = analysis::figures_of(fault, names_, sample.sensors);
   parts_.observer.fault({sample.record.time_s, fault, fault_figures_});
+  report_latency(sample.record.time_s);
+}
+
+// Link and page measure without samples.
+void RunWatch::look_at_latency() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_latency_ < kLatencyPeriod) return;
+  last_latency_ = now;
+  if (parts_.remote != nullptr) latency_.add_link(parts_.remote->round_trip_s());
+  if (parts_.page == nullptr) return;
+  latency_.add_page(parts_.page->counters().round_trip_s);
+  parts_.page->set_latency(to_text(latency_.latency()));
+}
+
+// Why a run shook or ended may be that something is slow.
+void RunWatch::report_latency(double time_s) {
+  last_latency_ = {};
+  look_at_latency();
+  const analysis::Latency latency = latency_.latency();
+  const bool is_measured_here = std::isfinite(latency.link) || std::isfinite(latency.page);
+  if (is_measured_here) notify(time_s, "latency", to_text(latency));
 }
 
 void RunWatch::observe(const Sample& sample) {
   const double time_s = sample.record.time_s;
+  latency_.add(sample);
   if (parts_.script_end_s > 0.0 && time_s > parts_.script_end_s) {
     parts_.script_end_s = 0.0;
     parts_.observer.note("", "the script has played; drag the handle in the page");
@@ -76,6 +104,7 @@ void RunWatch::show(const Sample& sample) {
 }
 
 void RunWatch::check_parts(const runtime::Runtime& runtime, double time_s) {
+  look_at_latency();
   const std::string problems = parts_.dumps.look_at(runtime.kept_problems());
   if (!problems.empty()) parts_.observer.note("", problems);
   const std::string why = parts_.recording.news();

@@ -11,8 +11,10 @@
 
 #include "hg/analysis/events.h"
 #include "hg/analysis/fault_figures.h"
+#include "hg/analysis/latency.h"
 #include "hg/analysis/run_news.h"
 #include "hg/analysis/summary.h"
+#include "hg/device/connected_device.h"
 #include "hg/lab_streaming/lab_streams.h"
 #include "hg/page/run_page.h"
 #include "hg/recording/problem_dumps.h"
@@ -26,7 +28,8 @@ namespace hg::scenario {
 struct WatchParts {
   RunObserver& observer;  ///< must outlive the watch, as `scenario` and `page`
   const config::Scenario& scenario;
-  page::RunPage* page = nullptr;  ///< nullptr = none
+  page::RunPage* page = nullptr;                    ///< nullptr = none
+  const device::ConnectedDevice* remote = nullptr;  ///< nullptr = simulated here
   RunRecording recording;
   recording::ProblemDumps dumps;
   std::unique_ptr<lab_streaming::LabStreams> streams;  ///< nullptr = none
@@ -48,6 +51,7 @@ class RunWatch {
   const analysis::Summary& summary() const { return summary_; }
   /// Figures of the summary's fault; empty = none.
   const std::string& fault_figures() const { return fault_figures_; }
+  analysis::Latency latency() const { return latency_.latency(); }
   std::vector<std::string> missing() const { return detector_.missing(); }
   RunRecording& recording() { return parts_.recording; }
   const recording::ProblemDumps& dumps() const { return parts_.dumps; }
@@ -58,6 +62,8 @@ class RunWatch {
   void observe(const Sample& sample);
   void observe_fault(const Sample& sample);
   void show(const Sample& sample);
+  void look_at_latency();
+  void report_latency(double time_s);
   void check_parts(const runtime::Runtime& runtime, double time_s);
   page::RunPage::Note note_at(const Sample& sample);
 
@@ -66,8 +72,9 @@ class RunWatch {
   analysis::EventDetector detector_;
   analysis::Summary summary_;
   analysis::RunNews news_;
+  analysis::LatencyWatch latency_;
   std::optional<Mode> mode_;
-  std::chrono::steady_clock::time_point last_status_ = {};
+  std::chrono::steady_clock::time_point last_status_ = {}, last_latency_ = {};
   std::string fault_figures_;
 };
 

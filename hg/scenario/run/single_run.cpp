@@ -192,7 +192,8 @@ void wait_for_next(RunWatch& watch, const RunSetting& setting) {
   const bool is_endless = continues(setting);
   if (!page->stop_was_asked() && !page->is_preparing() && !(is_endless && has_fault)) return;
   setting.observer.note("", "the run is over; start it again in the page, or end with Ctrl-C");
-  while (!setting.stop.load() && !page->has_next() && (is_endless || page->clients() > 0)) {
+  while (!setting.stop.load() && !page->has_next() &&
+         (is_endless || page->counters().clients > 0)) {
     watch.follow_page();
     std::this_thread::sleep_for(kIdle);
   }
@@ -233,6 +234,7 @@ Begun begin(PreparedRun& run, const RunSetting& setting) {
       .observer = setting.observer,
       .scenario = run.scenario,
       .page = page,
+      .remote = run.remote(),
       .recording = std::move(recording),
       .dumps = problem_dumps(run.scenario, records, plan.info, stem, setting.host.program),
       .streams = std::move(streams),
@@ -259,6 +261,8 @@ RunOutcome play_single(PreparedRun& run, const RunSetting& setting) {
   const auto streamed = watch->close_streams();
   analysis::RunFacts facts = facts_of(run, options, report, recorded.recording);
   facts.fault_figures = watch->fault_figures();
+  facts.latency = watch->latency();
+  facts.latency.sensor += 1e-6 * report.wake_up_us.distribution().median;
   facts.wall_time_s = std::chrono::duration<double>(Clock::now() - started).count();
   const std::vector<std::string> missing = watch->missing();
   nlohmann::ordered_json json = watch->summary().to_json(facts, missing);

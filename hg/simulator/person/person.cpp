@@ -33,6 +33,8 @@ bool Person::is_pulling(const HandTarget& target) const noexcept {
 
 void Person::grasp(double t, const HandleMotion& handle) noexcept {
   arm_.grasp(handle);
+  position_.start();
+  orientation_.start();
   time_s_ = t;
   if (has_grasped_) return;
   has_grasped_ = true;
@@ -92,6 +94,21 @@ Goal Person::script_goal(double t, double dt, const Pose& T_B_H) noexcept {
   return goal;
 }
 
+// the goal as the person follows it, with its twist
+void Person::approach(double dt, Goal& goal) noexcept {
+  const Pose target = goal.pose;
+  if (dt > 0.0) {
+    goal.twist << position_.step(target.p - target_.p, dt),
+        orientation_.step(rotation_between(target_.R, target.R), dt);
+    goal.pose.p += position_.rest();
+    const double angle = orientation_.rest().norm();
+    if (angle > 0.0) {
+      goal.pose.R = Eigen::AngleAxisd(angle, orientation_.rest() / angle) * target.R;
+    }
+  }
+  target_ = target;
+}
+
 Vector6 Person::wrench(double t, const HandleMotion& handle, const HandTarget& target) noexcept {
   if (!is_holding(t) || !is_pulling(target)) {
     follows_target_ = false;
@@ -108,18 +125,22 @@ Vector6 Person::wrench(double t, const HandleMotion& handle, const HandTarget& t
   Vector6 push_in_H = Vector6::Zero();
   if (target.active) {
     goal.pose.p = target.p_B;
-    goal.pose.R = target.R_B;
+    goal.pose.R = target.turns ? target.R_B : handle.T_B_H.R;
     goal.has_orientation = target.turns;
     goal.height_share = 1.0 - target.press;  // a hand that presses holds no height
   } else {
     goal = script_goal(t, dt, handle.T_B_H);
     grip = channels_[kGripChannel];
     push_in_H = Eigen::Map<const Vector6>(channels_.data() + kWrenchChannel);
-    if (!is_new && dt > 0.0) {
-      goal.twist << (goal.pose.p - goal_.p) / dt, rotation_between(goal_.R, goal.pose.R) / dt;
-    }
-    goal_ = goal.pose;
   }
+  const bool begins = is_new && dt == 0.0;
+  if (begins) target_ = target.active ? handle.T_B_H : goal.pose;
+  if (!target.active && config_.script.walk.kind != WalkKind::kNone) {
+    position_.start();  // walks have no jumps
+    orientation_.start();
+  }
+  if (!begins) approach(dt, goal);
+  if (target.active && !target.turns) goal.twist.tail<3>().setZero();
   if (dt > 0.0) arm_.step(dt, handle, goal, tremor_.force(t));
 
   // a weaker grip scales everything: mass, grip and arm

@@ -12,6 +12,7 @@
 #include "hg/model/chain_data.h"
 #include "hg/signals/frames.h"
 #include "hg/simulator/person/hand.h"
+#include "hg/simulator/person/intention.h"
 #include "hg/simulator/person/script.h"
 #include "hg/simulator/person/tremor.h"
 #include "hg/simulator/person/walker.h"
@@ -38,7 +39,8 @@ class Person {
          const Pose& T_B_twin);
 
   /// Wrench on the handle at time `t`, in s since the start of the run; the arm advances from call
-  /// to call. An active hand target overrides the script. Zero before Script::grasp_s.
+  /// to call. An active hand target overrides the script. A goal that jumps is approached as
+  /// intention.h says. Zero before Script::grasp_s.
   Vector6 wrench(double t, const HandleMotion& handle, const HandTarget& target) noexcept;
 
   /// Whether the hand closes the dead-man switch at time `t`: permanently from the grasp on.
@@ -58,6 +60,7 @@ class Person {
   bool is_pulling(const HandTarget& target) const noexcept;
   Goal script_goal(double t, double dt, const Pose& T_B_H) noexcept;
   Pose channel_pose() noexcept;
+  void approach(double dt, Goal& goal) noexcept;
   void keep_score(double dt, const HandleMotion& handle) noexcept;
 
   PersonConfig config_;
@@ -71,7 +74,8 @@ class Person {
   bool has_grasped_ = false;
   bool follows_target_ = false;  ///< whether an active hand target overrides the script
   double time_s_ = 0.0;          ///< time of the last call
-  Pose goal_;                    ///< goal of the last call
+  Pose target_;                  ///< goal of the last call, as it was given
+  Approach position_{{}}, orientation_{{.jump = 1000.0, .speed = 3.0, .acceleration = 15.0}};
   std::array<double, kChannels> channels_{};  ///< present values of the script's channels
 
   Score score_;

@@ -100,16 +100,18 @@ class RawClient {
     std::string text;
   };
 
-  /// With all its parts; a control frame between them is not expected.
-  Message read_message() {
-    Message message;
-    for (bool is_last = false; !is_last;) {
-      Message part = read_frame(is_last);
-      if (part.opcode < 0) return {};
-      if (part.opcode != 0) message.opcode = part.opcode;
-      message.text += part.text;
+  /// With all its parts; a control frame between them is not expected. Pings are skipped.
+  Message read_message(bool takes_pings = false) {
+    while (true) {
+      Message message;
+      for (bool is_last = false; !is_last;) {
+        Message part = read_frame(is_last);
+        if (part.opcode < 0) return {};
+        if (part.opcode != 0) message.opcode = part.opcode;
+        message.text += part.text;
+      }
+      if (message.opcode != 9 || takes_pings) return message;
     }
-    return message;
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -531,6 +532,23 @@ TEST_F(ViewerServerTest, MalformedMessagesAreCountedAndTheConnectionLives) {
   HandTarget target;
   EXPECT_TRUE(eventually([&] { return server_.take_hand_target(target); }));
   EXPECT_EQ(server_.counters().refused, 6u);
+}
+
+TEST_F(ViewerServerTest, MeasuresTheWayToTheSlowestPageAndBack) {
+  EXPECT_TRUE(std::isnan(server_.counters().round_trip_s));
+  const auto page = open_page();
+  const auto silent = open_page();
+  publish(1.5);
+  RawClient::Message ping;
+  while (ping.opcode != 9) ping = page->read_message(true);
+  page->send_message("", 10);  // an answer to nothing
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  page->send_message(ping.text, 10);
+  EXPECT_TRUE(eventually([&] { return !std::isnan(server_.counters().round_trip_s); }));
+  EXPECT_GE(server_.counters().round_trip_s, 0.1);
+  EXPECT_LT(server_.counters().round_trip_s, 10.0);
+  page->close();
+  EXPECT_TRUE(eventually([&] { return std::isnan(server_.counters().round_trip_s); }));
 }
 
 TEST_F(ViewerServerTest, AnOversizedMessageClosesThatConnectionOnly) {

@@ -52,6 +52,7 @@ const FRAME: Record<keyof Omit<Frame, "type">, Test> = {
   sync_error_deg: or_null(is_number),
   cycle_time_us: or_null(is_number),
   cycle_time_max_us: or_null(is_number),
+  latency: is_text,
   hand: is_object,
   run_state: is_object,
   safety: is_object,

@@ -130,6 +130,7 @@ export const frame: Frame = {
   sync_error_deg: 0,
   cycle_time_us: 20,
   cycle_time_max_us: 30,
+  latency: "",
   hand: { type: "hand", active: false, p_B_m: [0, 0, 0], quaternion_B_H: null, press: 0 },
   run_state: { is_paused: false, speed: 1, is_over: false, position_s: 1.5, recording: "" },
   safety: {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <memory>
 #include <random>
@@ -87,6 +88,25 @@ TEST(Connection, ASilentClientSwitchesTheDrivesOffAndIsInformed) {
   EXPECT_EQ(there.farewell(), "no command came in time: drives off, brakes closed");
 }
 
+TEST(Connection, ADeviceReportsHowLateCommandsComeEvenIfTooLateToBeFollowed) {
+  Serving serving(false, 0.02);
+  RemoteDevice there(serving.address(), client(false));
+  SensorFrame sensors;
+  there.read(sensors);
+  EXPECT_TRUE(std::isnan(there.round_trip_s()));
+  const CommandFrame command = answer(sensors);
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  there.write(command);
+  while (sensors.driver_fault == FaultCode::kNone && std::isnan(there.round_trip_s())) {
+    there.read(sensors);
+  }
+  EXPECT_GE(there.round_trip_s(), 0.06);
+  EXPECT_LT(there.round_trip_s(), 0.5);
+  serving.await_sessions(1);
+  EXPECT_EQ(serving.reports[0].end, SessionEnd::kClientSilent);
+  EXPECT_FALSE(serving.was_enabled);
+}
+
 TEST(Connection, ASilentClientEndsALockStepSessionToo) {
   Serving serving(true, 0.05);
   RemoteDevice there(serving.address(), client(true));
@@ -143,6 +163,7 @@ TEST(Connection, ASilentDeviceIsAFaultAndNothingIsReadFromItAnyMore) {
   thread.join();
   EXPECT_EQ(sensors.driver_fault, FaultCode::kNone);
   const VectorM q_m = sensors.q_m;
+  there.write(answer(sensors));  // enabled: nothing excuses a gap
   there.read(sensors);
   EXPECT_EQ(sensors.driver_fault, FaultCode::kDeviceSilent);
   EXPECT_EQ(sensors.sequence, 6U);

@@ -8,6 +8,7 @@
 
 #include "hg/core/test/unit_words.h"
 #include "hg/device/udp/codec.h"
+#include "hg/device/udp/round_trip.h"
 
 namespace hg::udp {
 namespace {
@@ -60,6 +61,7 @@ TEST(Layout, EveryFieldIsAligned) {
   expect_aligned(SensorFrame{});
   expect_aligned(CommandFrame{});
   expect_aligned(Goodbye{});
+  expect_aligned(RoundTrip{});
 }
 
 TEST(Layout, EveryMessageFitsIntoADatagramThatNoNetworkDivides) {

@@ -82,6 +82,25 @@ TEST(Person, PlaysTheScriptFromTheGraspOn) {
   EXPECT_NEAR(person.wrench(3.5, handle, {}).norm(), 8.0, 1e-9);
 }
 
+TEST(Person, AJumpOfAClientsTargetIsTakenUpAtABoundedSpeed) {
+  PersonConfig config = scripted();
+  config.kind = PersonKind::kMouse;
+  Person person = make(config);
+  const HandleMotion handle{start_pose()};
+  HandTarget target;
+  target.active = target.turns = true;
+  target.R_B = handle.T_B_H.R;
+  EXPECT_LT(hold(person, handle, 0.0, 2.0, target).norm(), 1e-9);
+  target.p_B.x() = 0.2;
+  target.R_B = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()) * handle.T_B_H.R;
+  const Vector6 soon = hold(person, handle, 2.0, 2.05, target);
+  EXPECT_LT(soon.head<3>().norm(), 13.0);
+  EXPECT_LT(soon.tail<3>().norm(), 0.2);
+  const Vector6 late = hold(person, handle, 2.05, 8.0, target);
+  EXPECT_NEAR(late[0], 0.2 * in_series(250, 1000), 1e-6);
+  EXPECT_GT(late.tail<3>().norm(), 1.5);
+}
+
 TEST(Person, PullsTheHandleToItsGoalThroughArmAndGrip) {
   Person person = make(scripted());
   HandleMotion handle{start_pose()};
