@@ -26,9 +26,14 @@ class RunNews {
   std::vector<News> observe(const Sample& sample);
 
  private:
+  std::string drift(const CycleRecord& record);
+
   Names names_;
   TareStatus tare_ = TareStatus::kNone;  ///< last result, the same after retries
   FaultCode fault_ = FaultCode::kNone;
+  // drift of the force sensor: taken off, that of the last sample, and what is left
+  Vector6 reported_zero_ = Vector6::Zero(), zero_ = Vector6::Zero(), left_ = Vector6::Zero();
+  bool is_left_reported_ = false;
   bool is_touched_ = false;
   bool has_waited_ = false;  ///< the device was ready in the last sample
 };

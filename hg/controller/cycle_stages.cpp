@@ -99,6 +99,34 @@ bool is_pushed_back(const rendering::LawResult& law) noexcept {
   return law.contact.force.norm() > kPush;
 }
 
+// Whether torques of the twin are beyond those of a light touch.
+bool is_load(const rendering::Rendering& rendering, const VectorA& torque) noexcept {
+  Vector6 touch;
+  touch << 0.3, 0.3, 0.3, 0.015, 0.015, 0.015;  // N, Nm
+  const model::Jacobian& J_a = rendering.twin_chain().jacobian(rendering.twin().end_effector);
+  const VectorA most = J_a.cwiseAbs().transpose().lazyProduct(touch);
+  return !((torque.cwiseAbs() - most).maxCoeff() <= 0.0);
+}
+
+// Whether neither springs nor weight nor surfaces act on the twin.
+bool is_free(const rendering::Rendering& rendering, const Budget& budget) noexcept {
+  const VectorA torque = budget.spring + budget.surface;
+  const VectorA weight = rendering.twin_chain().gravity();
+  return !is_load(rendering, torque) && !is_load(rendering, weight);
+}
+
+// Whether the twin is slow, or the wrench delivers its energy within two seconds.
+bool is_slow(const rendering::Rendering& rendering, const rendering::RenderingState& state,
+             const rendering::LawResult& law) noexcept {
+  constexpr double kSlow = 0.02, kSlowTurn = 0.1;  // m/s, rad/s
+  constexpr double kWithin = 2.0;                  // s
+  const Vector6 twist = rendering.end_effector_twist(state);
+  if (twist.head<3>().norm() < kSlow && twist.tail<3>().norm() < kSlowTurn) return true;
+  const VectorA& dq = state.twin.dq_a;
+  const VectorA momentum = rendering.twin_chain().M().lazyProduct(dq);
+  return kWithin * law.tau_a.dot(dq) >= 0.5 * momentum.dot(dq);
+}
+
 }  // namespace
 
 CycleStages::CycleStages(const CycleConfig& config, const DeviceModel& device,
@@ -145,6 +173,7 @@ void CycleStages::step(const SensorFrame& sensors, const OperatorFrame& operator
 
   const rendering::LawResult& law = render(motion, is_held(sensors), robot, gantry);
   const PassivityReport passivity = watch_energy(motion, robot, law);
+  watch_rest(motion, robot, law);
   const Moved moved = advance(motion, robot, gantry, law);
   time_stop(motion, robot, moved);
   ended_(Stage::kIntegration);
@@ -233,7 +262,9 @@ void CycleStages::reset_controllers() noexcept {
   const estimation::InertialCheck& before = state_.estimation.inertial;
   const estimation::InertialCheck inertial = {.bias = before.bias,
                                               .rest_samples = before.rest_samples};
+  const estimation::RestState rest = {.zero = state_.estimation.rest.zero};
   state_.estimation = {};
+  state_.estimation.rest = rest;
   state_.estimation.wrench.tare = tare;
   state_.estimation.inertial = inertial;
   control_.restart(state_.control);
@@ -362,7 +393,8 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
   if (motion == Motion::kNone) return law_;
   const double share = ramp_forces(motion, is_held);
   const bool is_braked = motion == Motion::kHold || state_.touch.is_reported;
-  const double ramped_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
+  const double ramped_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share)
+                                                 : estimation::braking_rate(state_.estimation.rest);
   const bool slows_joints = is_stopping(motion) && share == 0.0 && !state_.touch.is_reported;
   rendering_.step({.robot = robot,
                    .braking_rate = is_braked ? kBrakingRate : ramped_rate,
@@ -410,6 +442,28 @@ PassivityReport CycleStages::watch_energy(Motion motion, const RobotState& robot
   const Fault fault = passivity::passivity_fault(config_.passivity, report, state_.passivity);
   if (fault.code != FaultCode::kNone) safety::break_rule(fault, state_.supervisor);
   return report;
+}
+
+// Looks for drift of the force sensor's zero while the handle is free; at standstill only
+// for one that would be felt.
+void CycleStages::watch_rest(Motion motion, const RobotState& robot,
+                             const rendering::LawResult& law) noexcept {
+  if (motion == Motion::kNone) return;
+  constexpr double kFelt = 0.3, kFeltTorque = 0.03;  // N, Nm
+  estimation::RestInput input;
+  if (motion == Motion::kHold) {
+    const Vector6& w = state_.w_H;
+    input.is_free = w.head<3>().norm() > kFelt || w.tail<3>().norm() > kFeltTorque;
+    input.is_slow = true;
+  } else if (motion == Motion::kRender) {
+    input.v_H = rendering_.handle_twist(robot).head<3>();
+    const VectorA held = law.budget.limits + law.budget.conflict;
+    input.acceleration = law.a_H.norm();
+    input.is_free = is_free(rendering_, law.budget);
+    input.is_at_limit = is_load(rendering_, held);
+    input.is_slow = is_slow(rendering_, state_.rendering, law);
+  }
+  estimation_.watch_rest(input, state_.estimation);
 }
 
 // The motion that the solution permits: without a solution the law cannot brake.
@@ -620,6 +674,7 @@ void CycleStages::fill(const Results& results, const Fault& warning, const Track
   record.robot = results.robot;
   record.tare = state_.estimation.wrench.tare.status;
   record.is_tared = estimation_.is_tared(state_.estimation);
+  record.rest = {state_.estimation.rest.is_untouched, state_.estimation.rest.zero};
   if (results.motion != Motion::kNone && estimation_.has_units()) {
     record.inertial = estimation_.inertial_report(state_.estimation);
   }

@@ -89,6 +89,7 @@ class CycleStages {
                                      const GantryAim& gantry) noexcept;
   PassivityReport watch_energy(Motion motion, const RobotState& robot,
                                const rendering::LawResult& law) noexcept;
+  void watch_rest(Motion motion, const RobotState& robot, const rendering::LawResult& law) noexcept;
   Moved advance(Motion motion, const RobotState& robot, const GantryAim& gantry,
                 const rendering::LawResult& law) noexcept;
   void time_stop(Motion motion, const RobotState& robot, const Moved& moved) noexcept;

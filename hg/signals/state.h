@@ -305,12 +305,10 @@ struct CycleRecord : LawReport {
   InertialReport inertial;
   TareStatus tare = TareStatus::kNone;
   bool is_tared = false;
+  RestReport rest;
 
-  // Computed by the collision guard.
-  CollisionReport collision;
-
-  // Computed by prepositioning.
-  VectorP q_p_target;
+  CollisionReport collision;  // computed by the collision guard
+  VectorP q_p_target;         // computed by prepositioning
 
   // Computed by rendering, besides LawReport. A cycle that brakes the joints without the law
   // replaces reference, twin and sync_error.
@@ -383,6 +381,7 @@ void fields(Archive& a, T& record) {
   a("state_hash", record.state_hash, "hash of the state after this cycle; equal in a replay");
   a("inertial", record.inertial, "estimates from inertial units on the links");
   a("felt_scale", record.felt_scale, "factors of the user's wrench on the twin", unit::kNone);
+  a("rest", record.rest, "drift of the force sensor");
 }
 
 /// Complete record of one cycle.

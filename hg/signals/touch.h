@@ -1,5 +1,5 @@
 /// Contact of the arm anywhere but at the handle: as detected by the cycle, and its true effect on
-/// a simulated bystander.
+/// a simulated bystander. Whether anything touches the handle.
 #pragma once
 
 #include "hg/core/fields.h"
@@ -24,6 +24,19 @@ void fields(Archive& a, T& touch) {
   a("is_reported", touch.is_reported, "contact detected: the arm yields");
   a("joint", touch.joint, "most distal joint beyond its threshold: its link is touched; -1 = none");
   a("wrench", touch.wrench, "equivalent wrench on the handle: force, torque", unit::kWrench);
+}
+
+/// Drift of the force sensor's zero since its tare; hg/controller/estimation/rest_watch.h.
+struct RestReport {
+  bool is_untouched = false;
+  Vector6 zero = Vector6::Zero();
+};
+
+template <typename Archive, Is<RestReport> T>
+void fields(Archive& a, T& rest) {
+  a("is_untouched", rest.is_untouched, "nothing touches the handle: its wrench is steady");
+  a("zero", rest.zero, "drift of the sensor's zero since the tare, in S; subtracted",
+    unit::kWrench);
 }
 
 /// Load on a simulated bystander hit by the arm.

@@ -108,6 +108,7 @@ void bind_signals(nb::module_& module) {
   bind_fields<ContactReport>(module, "ContactReport", "Contact of the twin with virtual surfaces.");
   bind_fields<TouchReport>(module, "TouchReport",
                            "Contact with the arm anywhere but at the handle.");
+  bind_fields<RestReport>(module, "RestReport", "Drift of the force sensor's zero.");
   bind_fields<CycleRecord>(module, "CycleRecord", "All results of a cycle.");
 }
 

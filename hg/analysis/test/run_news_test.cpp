@@ -65,6 +65,35 @@ TEST(RunNews, AContactBeginsOnceAndNamesItsJoint) {
   EXPECT_EQ(one(news, sample), "contact: something touches the arm: it gives way");
 }
 
+TEST(RunNews, ADriftOfTheForceSensorIsReportedOnceSettledAndWhenItHasGrown) {
+  RunNews news({});
+  Sample sample;
+  RestReport& rest = sample.record.rest;
+  rest.is_untouched = true;
+  rest.zero[0] = 2.0;
+  EXPECT_EQ(one(news, sample), "nothing");  // on its way
+  EXPECT_TRUE(one(news, sample)
+                  .starts_with("zero: the force sensor is off by 2 N and 0 Nm while the "
+                               "handle is free: taken off; tare it"));
+  rest.zero[0] = 2.5;
+  EXPECT_EQ(one(news, sample), "nothing");
+  EXPECT_EQ(one(news, sample), "nothing");
+  rest.zero[0] = 4.0;
+  one(news, sample);
+  EXPECT_TRUE(one(news, sample).starts_with("zero: the force sensor is off by 4 N"));
+}
+
+// Pressed against a limit, the zero stays.
+TEST(RunNews, TheForceOfAFreeHandleIsReportedOnceWhereItCannotBeTakenOff) {
+  RunNews news({});
+  Sample sample;
+  sample.record.rest.is_untouched = true;
+  sample.record.robot.w_H[2] = 5.0;
+  int reported = 0;
+  for (int i = 0; i < 5000; ++i) reported += one(news, sample).starts_with("zero: ") ? 1 : 0;
+  EXPECT_EQ(reported, 1);
+}
+
 TEST(RunNews, AStopByTheOperatorIsNoFault) {
   RunNews news({});
   Sample sample;

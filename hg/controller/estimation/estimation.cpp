@@ -46,6 +46,21 @@ void Estimation::check_motion(const SensorFrame& sensors, bool is_on,
           is_on, state.inertial);
 }
 
+void Estimation::watch_rest(RestInput input, EstimationState& state) const noexcept {
+  const Eigen::Matrix3d R_B_S = chain_.pose(handle_).R * T_H_S_.R;
+  input.w_S = state.wrench.w_S;
+  input.up_S = R_B_S.row(2);
+  input.is_free = input.is_free && is_tared(state);
+  input.noise = config_.wrench.tare.noise_force;
+  input.payload_mass = config_.wrench.payload.mass;
+  if (!config_.wrench.has_imu) {
+    const Eigen::Vector3d a = (input.v_H - state.rest.v_H) / dt_;
+    input.inertia_S = -input.payload_mass * (R_B_S.transpose() * a);
+  }
+  state.rest.v_H = input.v_H;
+  advance(dt_, input, state.rest);
+}
+
 RobotState Estimation::step(const SensorFrame& sensors, const VectorP& dq_p_cmd,
                             const VectorM& ddq_m_reference, EstimationState& state) noexcept {
   if (!state.is_started) start(sensors, state);
@@ -130,19 +145,34 @@ VectorP Estimation::gantry_disturbance(const EstimationState& state) const noexc
   return ddq;
 }
 
+// A hand that leans on the handle trembles less than the tare itself can see.
+void Estimation::take_tare(const SensorFrame& sensors, const Eigen::Matrix3d& R_B_S,
+                           const RobotState& robot, EstimationState& state) const noexcept {
+  TareState& tare = state.wrench.tare;
+  const Vector6 offset = tare.offset;
+  const bool was_valid = tare.is_valid;
+  advance(config_.wrench.tare, dt_, without_weight(config_.wrench, sensors, R_B_S),
+          sensors.dead_man, robot.q_m, robot.q_p, tare);
+  if (tare.status != TareStatus::kDone) return;
+  if (trembles(dt_, config_.wrench.tare.noise_force, state.rest)) {
+    tare.status = TareStatus::kRefusedUnsteady;
+    tare.offset = offset;
+    tare.is_valid = was_valid;
+  } else {
+    state.rest = {};
+  }
+}
+
 void Estimation::observe_wrench(const SensorFrame& sensors, EstimationState& state,
                                 RobotState& robot) noexcept {
   chain_.update_poses(stacked(robot.q_p, robot.q_m));
   const Eigen::Matrix3d& R_B_H = chain_.pose(handle_).R;
   const Eigen::Matrix3d R_B_S = R_B_H * T_H_S_.R;
-  if (state.wrench.tare.status == TareStatus::kUnderWay) {
-    advance(config_.wrench.tare, dt_, without_weight(config_.wrench, sensors, R_B_S),
-            sensors.dead_man, robot.q_m, robot.q_p, state.wrench.tare);
-  }
+  if (state.wrench.tare.status == TareStatus::kUnderWay) take_tare(sensors, R_B_S, robot, state);
   estimate(config_.wrench, dt_, sensors, R_B_S, state.wrench);
 
   // the sensor measures in S; the law needs the same wrench about H, resolved in B
-  const Vector6& w_S = state.wrench.w_S;
+  const Vector6 w_S = state.wrench.w_S - state.rest.zero;
   const Eigen::Vector3d f_H = T_H_S_.R * w_S.head<3>();
   const Eigen::Vector3d n_H = T_H_S_.R * w_S.tail<3>() + T_H_S_.p.cross(f_H);
   robot.w_H << R_B_H * f_H, R_B_H * n_H;

@@ -13,6 +13,7 @@
 #include "hg/controller/estimation/inertial_check.h"
 #include "hg/controller/estimation/inertial_units.h"
 #include "hg/controller/estimation/joint_observer.h"
+#include "hg/controller/estimation/rest_watch.h"
 #include "hg/controller/estimation/user_wrench.h"
 #include "hg/core/types.h"
 #include "hg/model/chain_data.h"
@@ -28,13 +29,14 @@ struct EstimationState {
   std::array<LinkObserver, kMaxManipulator> link;
   std::array<MotorObserver, kMaxManipulator> motor;
   WrenchState wrench;
+  RestState rest;
   InertialCheck inertial;
   InertialUnitsState units;
 };
 
 /// Words of the state hash, in its order.
 void hashed(auto& hash, const EstimationState& state) {
-  const auto& [is_started, gantry, q_m, link, motor, wrench, inertial, units] = state;
+  const auto& [is_started, gantry, q_m, link, motor, wrench, rest, inertial, units] = state;
   for (const GantryObserver& axis : gantry) hash.mix(axis);
   hash.mix(q_m);
   for (int i = 0; i < q_m.size(); ++i) {
@@ -42,6 +44,7 @@ void hashed(auto& hash, const EstimationState& state) {
   }
   hash.mix(std::uint64_t{is_started} | std::uint64_t{wrench.is_started} << 1U, wrench, inertial);
   if (units.is_started) hash.mix(units);
+  hash.mix(rest);
 }
 
 class Estimation {
@@ -57,6 +60,10 @@ class Estimation {
   /// Compares inertial unit and encoders, after step(); no effect without a unit. `is_on`: the
   /// drives have power.
   void check_motion(const SensorFrame& sensors, bool is_on, EstimationState& state) const noexcept;
+
+  /// Looks for drift of the wrench's zero, after step(), from whose next call on it counts. `input`
+  /// has what the twin and the handle do; the rest is found here.
+  void watch_rest(RestInput input, EstimationState& state) const noexcept;
 
   /// Starts a tare of the wrench when requested, unless one is under way; ends a running one unless
   /// the device is at rest.
@@ -81,6 +88,8 @@ class Estimation {
                          EstimationState& state, RobotState& robot) const noexcept;
   VectorP observe_gantry(const SensorFrame& sensors, const VectorP& dq_p_cmd,
                          EstimationState& state, RobotState& robot) const noexcept;
+  void take_tare(const SensorFrame& sensors, const Eigen::Matrix3d& R_B_S, const RobotState& robot,
+                 EstimationState& state) const noexcept;
   void observe_wrench(const SensorFrame& sensors, EstimationState& state,
                       RobotState& robot) noexcept;
 

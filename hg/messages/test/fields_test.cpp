@@ -105,7 +105,8 @@ TEST(Fields, AllStructsOfASampleHaveThem) {
                                         "TwinState",       "Pose",           "Budget",
                                         "LimitReport",     "TrackingReport", "CollisionReport",
                                         "PassivityReport", "ContactReport",  "TouchReport",
-                                        "InertialReport",  "Truth",          "BystanderReport"}));
+                                        "InertialReport",  "Truth",          "BystanderReport",
+                                        "RestReport"}));
 }
 
 TEST(Fields, NameEveryMemberOfEveryStruct) {

@@ -1,0 +1,162 @@
+#include "hg/controller/estimation/rest_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hg::estimation {
+namespace {
+
+constexpr double kTremor = 0.015;      // N, rms of an axis, besides the sensor's noise
+constexpr double kStill = 0.009;       // N, the same, of an arm that has been braked
+constexpr double kMostNoise = 0.016;   // N, in the band: more hides a tremor
+constexpr double kBlock = 0.1;         // s
+constexpr int kLeftOut = 4;            // blocks in which the arm itself jerks
+constexpr double kForce = 0.5;         // N, change of the wrench that is a touch
+constexpr double kLever = 0.08;        // m, of its torque
+constexpr double kMet = 0.05;          // N, between a zero and the wrench that it has met
+constexpr double kFast = 0.008;        // s, low-pass of what touches
+constexpr double kMean = 0.3;          // s, low-pass of what is steady
+constexpr double kHertz = 10.0;        // of the band
+constexpr double kQuality = 1.5;       // of each of its two band-passes
+constexpr double kBand = 4.1;          // Hz, of noise in the band without the blocks left out
+constexpr double kDrift = 0.02;        // N/s, of a sensor: 10 N in 10 minutes
+constexpr double kFastestStep = 0.05;  // N/s, of a zero that follows
+constexpr double kRamp = 60.0;         // 1/s^2, of the braking rate
+constexpr double kFullRate = 60.0;     // 1/s
+constexpr double kAnswer = 1.0;        // s of braking that a hand would answer
+
+// Force of a payload whose mass may be wrong by as much as itself, or by a kilogram.
+double payload_force(const RestInput& input, double acceleration) noexcept {
+  return std::max(1.0, 2.0 * input.payload_mass) * acceleration;
+}
+
+bool is_within(const Vector6& w, double force) noexcept {
+  const bool is_small = w.head<3>().lpNorm<Eigen::Infinity>() <= force;
+  return is_small && w.tail<3>().lpNorm<Eigen::Infinity>() <= kLever * force;
+}
+
+// A band-pass by the bilinear transformation, with 1 at kHertz.
+struct BandPass {
+  explicit BandPass(double dt) noexcept {
+    const double omega = 2.0 * std::numbers::pi * kHertz * dt;
+    const double alpha = std::sin(omega) / (2.0 * kQuality);
+    through = alpha / (1.0 + alpha);
+    back = 2.0 * std::cos(omega) / (1.0 + alpha);
+    far_back = (1.0 - alpha) / (1.0 + alpha);
+  }
+  Eigen::Vector3d passed(const Eigen::Vector3d& x,
+                         std::array<Eigen::Vector3d, 2>& state) const noexcept {
+    const Eigen::Vector3d y = through * x + state[0];
+    state[0] = state[1] + back * y;
+    state[1] = -through * x - far_back * y;
+    return y;
+  }
+
+  double through, back, far_back;
+};
+
+// Mean square of an axis over all blocks but the largest.
+double mean_of_blocks(std::array<double, RestState::kBlocks> blocks) noexcept {
+  std::sort(blocks.begin(), blocks.end());
+  constexpr int kCount = RestState::kBlocks - kLeftOut;
+  double sum = 0.0;
+  for (int i = 0; i < kCount; ++i) sum += blocks[i];
+  return sum / kCount;
+}
+
+// Square of a tremor of `least` in the band with the sensor's noise; 0: noise hides it.
+double tremor_limit(double dt, double noise, double least) noexcept {
+  const double hidden = 2.0 * kBand * dt * noise * noise;
+  return hidden < kMostNoise * kMostNoise ? least * least + hidden : 0.0;
+}
+
+// Whether the zero has met the steady wrench since the twin is braked.
+bool is_met(const RestState& rest) noexcept {
+  return rest.is_known && rest.known_s < rest.braked_s - kAnswer;
+}
+
+// Filters that have always seen the first sample.
+void begin(const BandPass& pass, const RestInput& input, const Eigen::Vector3d& f,
+           RestState& rest) noexcept {
+  rest.band[0].fill(-pass.through * f);
+  rest.fast = rest.mean = input.w_S;
+}
+
+// Whether the wrench stays and nothing trembles.
+void look(double dt, const RestInput& input, RestState& rest) noexcept {
+  const Eigen::Vector3d f = input.w_S.head<3>() - input.inertia_S;
+  const BandPass pass(dt);
+  if (rest.mean.isZero(0.0)) begin(pass, input, f, rest);
+  const Eigen::Vector3d y = pass.passed(pass.passed(f, rest.band[0]), rest.band[1]);
+  rest.sum += y.squaredNorm() / 3.0;
+  if (++rest.samples * dt >= kBlock) {
+    std::shift_right(rest.blocks.begin(), rest.blocks.end(), 1);
+    rest.blocks[0] = rest.sum / rest.samples;
+    rest.tremor = mean_of_blocks(rest.blocks);
+    rest.sum = 0.0;
+    rest.samples = 0;
+  }
+  rest.fast += std::min(1.0, dt / kFast) * (input.w_S - rest.fast);
+  rest.mean += std::min(1.0, dt / kMean) * (input.w_S - rest.mean);
+  const Vector6 change = rest.fast - (is_met(rest) ? rest.zero : rest.mean);
+  const bool is_steady = is_within(change, kForce + payload_force(input, input.acceleration));
+  rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
+  if (!is_steady) rest.mean = rest.fast;
+  const bool is_calm = rest.tremor < tremor_limit(dt, input.noise, kTremor);
+  rest.is_untouched = is_calm && rest.steady * dt >= RestState::kBlocks * kBlock;
+}
+
+// Whether time and turning explain how far the steady wrench is from the zero.
+bool is_explained(const RestInput& input, const RestState& rest) noexcept {
+  if (!rest.is_known) return true;
+  const double turned = (input.up_S - rest.known_up).norm();
+  const double force = kForce + kDrift * rest.known_s + payload_force(input, 9.81 * turned);
+  return is_within(rest.mean - rest.zero, force);
+}
+
+void follow(double dt, const RestInput& input, RestState& rest) noexcept {
+  const Vector6 off = rest.mean - rest.zero;
+  Vector6 step = std::min(1.0, dt / kMean) * off;
+  if (is_met(rest)) {
+    const double most = kFastestStep * dt;
+    step.head<3>() = step.head<3>().cwiseMax(-most).cwiseMin(most);
+    step.tail<3>() = step.tail<3>().cwiseMax(-kLever * most).cwiseMin(kLever * most);
+  }
+  rest.zero += step;
+  if (!is_within(off, kMet)) return;
+  rest.is_known = true;
+  rest.known_up = input.up_S;
+  rest.known_s = 0.0;
+}
+
+}  // namespace
+
+void advance(double dt, const RestInput& input, RestState& rest) noexcept {
+  look(dt, input, rest);
+  rest.known_s += dt;
+  const bool may_act = rest.is_untouched && input.is_free && is_explained(input, rest);
+  if (!may_act || !(input.is_slow || rest.braked_s > 0.0)) {
+    rest.braked_s = 0.0;
+    return;
+  }
+  rest.braked_s += dt;
+  const bool is_still = rest.tremor < tremor_limit(dt, input.noise, kStill);
+  if (rest.braked_s > kAnswer && is_still && !input.is_at_limit) follow(dt, input, rest);
+}
+
+bool trembles(double dt, double noise, const RestState& rest) noexcept {
+  constexpr int kNewest = 4;
+  constexpr double kWhole = 5.2, kCertain = 3.0;  // Hz, of noise in the band; times
+  double sum = 0.0;
+  for (int i = 0; i < kNewest; ++i) sum += rest.blocks[i];
+  const double hidden = 2.0 * kWhole * dt * noise * noise;
+  const double limit = tremor_limit(dt, noise, kTremor);
+  return limit > 0.0 && (sum > kNewest * kCertain * hidden || rest.tremor > limit);
+}
+
+double braking_rate(const RestState& rest) noexcept {
+  return std::min(kFullRate, kRamp * rest.braked_s);
+}
+
+}  // namespace hg::estimation

@@ -1,0 +1,142 @@
+#include "hg/controller/estimation/rest_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+namespace hg::estimation {
+namespace {
+
+constexpr double kDt = 1e-3;
+
+// A handle whose sensor shows a drift along x, what touches it, and noise, as functions of time.
+struct Trial {
+  std::function<double(double)> force = [](double) { return 0.0; };
+  std::function<double(double)> tremor = [](double) { return 0.0; };  ///< N, rms
+  double noise = 0.08;                                                ///< N, rms of a sample
+  RestInput input = {.payload_mass = 1.0, .is_free = true, .is_slow = true};
+  std::function<void(double, const RestState&)> look = [](double, const RestState&) {};
+
+  RestState run(unsigned seed, double begin, double end, RestState rest = {}) const {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform;
+    std::array<double, 8> omega{}, phase{};
+    for (int i = 0; i < 8; ++i) {
+      omega[i] = 2.0 * std::numbers::pi * (8.0 + 0.5 * (i + uniform(random)));
+      phase[i] = 2.0 * std::numbers::pi * uniform(random);
+    }
+    RestInput now = input;
+    for (double t = begin; t < end; t += kDt) {
+      now.w_S = Vector6::Unit(0) * force(t);
+      for (int i = 0; i < 3; ++i) {
+        double sum = 0.0;
+        for (int k = 0; k < 8; ++k) sum += std::sin(omega[k] * t + phase[k] + 2.0 * i * k);
+        now.w_S[i] += 0.5 * tremor(t) * sum + noise * normal(random);
+        now.w_S[i + 3] += noise / 30.0 * normal(random);
+      }
+      advance(kDt, now, rest);
+      look(t, rest);
+    }
+    return rest;
+  }
+};
+
+class RestWatchSeeds : public testing::TestWithParam<unsigned> {};
+INSTANTIATE_TEST_SUITE_P(Seeds, RestWatchSeeds, testing::Range(0u, 20u));
+
+TEST_P(RestWatchSeeds, ASteadyWrenchOfAFreeHandleBecomesTheZero) {
+  Trial trial = {.force = [](double t) { return t < 1.0 ? 20.0 : 2.0; }};
+  const RestState rest = trial.run(GetParam(), 0.0, 6.0);
+  EXPECT_TRUE(rest.is_untouched);
+  EXPECT_NEAR(rest.zero[0], 2.0, 0.1);
+  EXPECT_LT(rest.zero.tail<5>().norm(), 0.06);
+  EXPECT_GT(braking_rate(rest), 20.0);
+}
+
+TEST_P(RestWatchSeeds, TenNewtonInTenMinutesAreFollowed) {
+  Trial trial = {.force = [](double t) { return t / 60.0; }};
+  trial.look = [&](double t, const RestState& rest) {
+    if (t > 6.0) {
+      ASSERT_NEAR(rest.zero[0], trial.force(t), 0.1) << t;
+    }
+  };
+  trial.run(GetParam(), 0.0, 60.0);
+}
+
+// A hand pushes with 2 N for a minute.
+TEST_P(RestWatchSeeds, AHandThatPushesSteadilyIsNotTakenForDrift) {
+  Trial trial = {.force = [](double) { return 2.0; }, .tremor = [](double) { return 0.035; }};
+  trial.look = [](double t, const RestState& rest) {
+    ASSERT_EQ(braking_rate(rest), 0.0) << t;
+    ASSERT_EQ(rest.zero, Vector6::Zero().eval()) << t;
+  };
+  trial.run(GetParam(), 0.0, 60.0);
+}
+
+// That of a relaxed person trembles least: at worst the twin is braked for a moment.
+TEST_P(RestWatchSeeds, ARelaxedHandIsNotTakenForDrift) {
+  Trial trial = {.force = [](double) { return 2.0; }, .tremor = [](double) { return 0.025; }};
+  EXPECT_EQ(trial.run(GetParam(), 0.0, 60.0).zero, Vector6::Zero().eval());
+}
+
+// Even one without any tremor, once the zero is known.
+TEST_P(RestWatchSeeds, ATouchEndsTheBrakingAtOnceAndNothingIsTakenFromIt) {
+  for (const double push : {0.8, 1.0, -5.0}) {
+    Trial trial = {.force = [=](double t) { return t < 8.0 ? 0.5 : 0.5 + push; }};
+    trial.look = [](double t, const RestState& rest) {
+      if (t > 8.015) {
+        ASSERT_EQ(braking_rate(rest), 0.0) << t;
+      }
+    };
+    const RestState rest = trial.run(GetParam(), 0.0, 14.0);
+    EXPECT_NEAR(rest.zero[0], 0.5, 0.06);
+  }
+}
+
+TEST_P(RestWatchSeeds, ASlowlyGrowingPushIsFelt) {
+  Trial trial = {.force = [](double t) { return t < 6.0 ? 0.0 : 0.2 * (t - 6.0); }};
+  const RestState rest = trial.run(GetParam(), 0.0, 16.0);
+  EXPECT_LT(rest.zero[0], 0.4);
+  EXPECT_EQ(braking_rate(rest), 0.0);
+}
+
+TEST_P(RestWatchSeeds, ATareSeesAHandThatTrembles) {
+  Trial trial = {.force = [](double) { return 5.0; }};
+  EXPECT_FALSE(trembles(kDt, 0.08, trial.run(GetParam(), 0.0, 0.5)));
+  trial.tremor = [](double) { return 0.035; };
+  EXPECT_TRUE(trembles(kDt, 0.08, trial.run(GetParam(), 0.0, 0.5)));
+}
+
+TEST(RestWatch, LetsTheTwinBeWhereSomethingElseMovesOrHoldsIt) {
+  Trial held = {.force = [](double) { return 2.0; }};
+  held.input.is_free = false;
+  EXPECT_EQ(held.run(1, 0.0, 10.0).zero, Vector6::Zero().eval());
+  Trial coasting = {.force = [](double) { return 2.0; }};
+  coasting.input.is_slow = false;
+  EXPECT_EQ(coasting.run(1, 0.0, 10.0).zero, Vector6::Zero().eval());
+}
+
+TEST(RestWatch, AKnownZeroIsGivenUpWhereTheToolHasTurned) {
+  Trial trial;
+  const RestState known = trial.run(1, 0.0, 5.0);
+  trial.force = [](double) { return 5.0; };
+  EXPECT_NEAR(trial.run(2, 5.0, 12.0, known).zero[0], 0.0, 0.1);
+  trial.input.up_S = Eigen::Vector3d::UnitX();
+  EXPECT_NEAR(trial.run(2, 5.0, 12.0, known).zero[0], 5.0, 0.1);
+}
+
+TEST(RestWatch, ASensorWhoseNoiseHidesATremorIsNeverUntouched) {
+  Trial trial = {.force = [](double) { return 2.0; },
+                 .noise = 0.3,
+                 .input = {.noise = 0.3, .is_free = true, .is_slow = true}};
+  trial.look = [](double, const RestState& rest) { ASSERT_FALSE(rest.is_untouched); };
+  trial.run(1, 0.0, 20.0);
+}
+
+}  // namespace
+}  // namespace hg::estimation
