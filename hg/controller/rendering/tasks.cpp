@@ -120,9 +120,9 @@ Interval stoppable(Interval ddq, const Interval& lasting, double speed) noexcept
 // the motors give no more than a part of its rating.
 double speed_in_stop(double dq, double ddq_max, double rate, double dt) noexcept {
   constexpr double kShare = 0.3;  // of the rating
-  constexpr double kSlow = 0.02;  // rad/s or m/s
+  constexpr double kAtRest = 5e-4;  // rad/s or m/s, half of the speed at which a stop is over
   const double speed = std::abs(dq);
-  return std::max(speed - dt * std::min(rate * speed, kShare * ddq_max), kSlow);
+  return std::max(speed - dt * std::min(rate * speed, kShare * ddq_max), kAtRest);
 }
 
 }  // namespace
