@@ -65,12 +65,14 @@ std::vector<Eigen::Vector3d> places_on(const Eigen::AlignedBox3d& box, int axis,
   constexpr int kPlaces = 7;  // along each edge
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   std::vector<Eigen::Vector3d> places;
-  for (int k = 0; k < kPlaces * kPlaces; ++k) {
-    Eigen::Vector3d p;
-    p[axis] = is_upper ? box.max()[axis] : box.min()[axis];
-    p[u] = std::lerp(box.min()[u], box.max()[u], (k % kPlaces) / (kPlaces - 1.0));
-    p[v] = std::lerp(box.min()[v], box.max()[v], (k / kPlaces) / (kPlaces - 1.0));
-    places.push_back(p);
+  for (int row = 0; row < kPlaces; ++row) {
+    for (int column = 0; column < kPlaces; ++column) {
+      Eigen::Vector3d p;
+      p[axis] = is_upper ? box.max()[axis] : box.min()[axis];
+      p[u] = std::lerp(box.min()[u], box.max()[u], column / (kPlaces - 1.0));
+      p[v] = std::lerp(box.min()[v], box.max()[v], row / (kPlaces - 1.0));
+      places.push_back(p);
+    }
   }
   return places;
 }

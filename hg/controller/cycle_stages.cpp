@@ -393,12 +393,12 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
   if (motion == Motion::kNone) return law_;
   const double share = ramp_forces(motion, is_held);
   const bool is_braked = motion == Motion::kHold || state_.touch.is_reported;
-  const double ramped_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share)
-                                                 : estimation::braking_rate(state_.estimation.rest);
-  const bool slows_joints = is_stopping(motion) && share == 0.0 && !state_.touch.is_reported;
+  const double stop_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
+  const double ramped_rate =
+      is_stopping(motion) ? stop_rate : estimation::braking_rate(state_.estimation.rest);
   rendering_.step({.robot = robot,
                    .braking_rate = is_braked ? kBrakingRate : ramped_rate,
-                   .joint_braking_rate = slows_joints ? kBrakingRate : 0.0,
+                   .joint_braking_rate = state_.touch.is_reported ? 0.0 : stop_rate,
                    .force_share = share,
                    .handle_speed_max = speed_max() / std::sqrt(3.0),
                    .most_active_sets = most_active_sets(config_.solver_caps, time_s()),

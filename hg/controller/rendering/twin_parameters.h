@@ -14,6 +14,7 @@
 
 #include "hg/controller/rendering/twin_model.h"
 #include "hg/limits/moving_limits.h"
+#include "hg/model/chain_data.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/state.h"
 

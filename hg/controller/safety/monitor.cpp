@@ -277,8 +277,6 @@ void Monitor::check_braking(const Rendered& rendered, const Watched& watched,
     state.ramp_speed = rendered.reference.dq_m;
     state.stop_from_p = state.braking_ramp_p = robot.q_p;
   } else {
-    state.ramp_speed += dt_ * rendered.reference.ddq_m;
-    state.braking_ramp += dt_ * state.ramp_speed;
     // a joint that a hand held back for a moment, and that brakes since, is no fault
     state.braking_ramp += dt_ / kRampMemory_s * (robot.q_m - state.braking_ramp);
     state.braking_ramp_p += dt_ * state.dq_p_model;
@@ -308,6 +306,10 @@ void Monitor::check_braking(const Rendered& rendered, const Watched& watched,
     look<FaultCode::kStopTooFar>(n_m_ + i, moved,
                                  kUntilBrakes * config_.stop_distance_of_gantry(is_slide));
   }
+  // to the next sample: this one shows nothing yet of the acceleration that it asks for
+  const VectorM& ddq = rendered.reference.ddq_m;
+  state.braking_ramp += dt_ * (state.ramp_speed + 0.5 * dt_ * ddq);
+  state.ramp_speed += dt_ * ddq;
 }
 
 void Monitor::check_limits(const Rendered& rendered, const Watched& watched) noexcept {

@@ -153,7 +153,8 @@ double Guard::bound_between(int pair, const BrakingPath& path, const Place& from
   return std::max(by_travel, by_planes - path.bend(watched, from.time, to.time));
 }
 
-// Depth first from the start of the path; `ends` holds the ends of pending intervals.
+// Depth first from the start of the path; `ends` holds the ends of pending intervals. Where the
+// budget ends it early, the faded bound of the last cycle may be the better one.
 void Guard::evaluate(int index, const BrakingPath& path, bool is_powered, int& budget,
                      CollisionState& state) noexcept {
   const Pair& pair = config_.pairs.watched[index];
@@ -161,6 +162,7 @@ void Guard::evaluate(int index, const BrakingPath& path, bool is_powered, int& b
   Place from = place(index, *now_, 0.0);
   --budget;
   const double accepted = std::min(config_.safe_distance, from.distance - kApproach);
+  const double faded = state.left[index] + allowed;
   allowed = is_powered ? std::max(allowed, accepted) : accepted;
 
   double smallest = from.distance;
@@ -191,6 +193,7 @@ void Guard::evaluate(int index, const BrakingPath& path, bool is_powered, int& b
     ends[waiting++] = place_at(middle);
     --budget;
   }
+  if (budget <= 0) smallest = std::max(smallest, faded);
   state.left[index] = smallest - allowed;
 }
 
@@ -220,6 +223,7 @@ Prediction Guard::step(const VectorPM& q, const VectorPM& dq, bool is_powered,
     fading_ = {};
     for (int i = 0; i < count; ++i) {
       state.allowed[i] = is_powered ? config_.safe_distance : 0.0;
+      state.left[i] = -kInfinity;
       int first_budget = most_distances_;
       evaluate(i, path, is_powered, first_budget, state);
       prediction.distances += most_distances_ - first_budget;
