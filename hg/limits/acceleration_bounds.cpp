@@ -38,7 +38,11 @@ double speed_on_root(double d, double v, double ddq_max, double dt) noexcept {
 // The speed v+ = w(d+) of bounds R.
 double recoverable_speed(double d, double v, double ddq_max, const RecoverableOptions& options,
                          double dt) noexcept {
-  if (d < 0.0) return std::max(speed_on_line(d, v, options.tau_rec, dt), -options.v_rec);
+  if (d < 0.0) {
+    const double back = std::max(speed_on_line(d, v, options.tau_rec, dt), -options.v_rec);
+    const double kept = std::max(0.0, 1.0 - dt / options.tau_onset);
+    return back + kept * std::max(std::min(v, 0.0) - back, 0.0);
+  }
 
   // line and root touch at v+ = A tau, the line is above: it decides on which of them v+ lies
   const double v_line = speed_on_line(d, v, options.tau, dt);

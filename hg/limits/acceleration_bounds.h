@@ -36,8 +36,8 @@ struct RecoverableOptions {
   double tau_rec = 20e-3;       ///< time constant of the return, s; slow enough to be no jerk
   double v_rec = 0.5;           ///< speed of the return, rad/s or m/s; a slow hand movement
   double ddq_rec_factor = 1.5;  ///< Braking beyond the limits, times ddq_max, >= 1
-  double tau_onset = 0.0;       ///< Time constant of the onset of braking, s; 0: immediate
-  bool is_capped = true;        ///< ddq_max limits accelerations everywhere, not only braking
+  double tau_onset = 0.0;  ///< Time constant of the onset of braking and return, s; 0: immediate
+  bool is_capped = true;   ///< ddq_max limits accelerations everywhere, not only braking
 };
 
 /// Default options for a nominal period `dt` and the longest period `dt_max` that may occur, s:
@@ -57,7 +57,7 @@ void check_recoverable_options(const RecoverableOptions& options, const JointLim
 ///
 /// With tau_onset T > dt what the speed still lacks to each of the two, w(d) - v and dq_max - v,
 /// shrinks by no more than dt / T in a sample: braking comes in before it is needed, without a
-/// jump.
+/// jump. Likewise, beyond a limit, what a speed of at most 0 lacks to that of the return.
 ///
 /// A state with |dq| <= dq_max and -w(q - q_min) <= dq <= w(q_max - q) is viable. From a viable
 /// state every choice inside the bounds leads to a viable state, keeps position and speed inside

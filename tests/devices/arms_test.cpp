@@ -1,8 +1,10 @@
 /// The arms of models/arms: each opens its cupboard and its drawer and moves its tool, on a machine
 /// in which nothing is ideal.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -128,6 +130,60 @@ TEST_P(ArmWithGaps, MovesWithinItsRatingsOrStops) {
   }
 }
 
+// A hand throws a light tool about, and a stop is asked for in the middle of it: it ends with the
+// device armed and within its limits, not in a fault.
+class StoppedArm : public testing::TestWithParam<const char*> {
+ protected:
+  static std::string thrown_until(double time) {
+    std::string text =
+        "frame: base\nhand: {tremor_N: 0.035}\nsegments:\n"
+        "  - {start_s: 0, duration_s: 0.001, grip: 0}\n";
+    for (int k = 0; 0.3 + 0.23 * k < time; ++k) {
+      const auto wave = [k](double size, double rate, double start) {
+        return size * std::sin(rate * k + start);
+      };
+      text += fmt::format(
+          "  - {{start_s: {}, duration_s: 0.05, fx_N: {:.3f}, fy_N: {:.3f}, fz_N: {:.3f}, "
+          "nx_Nm: {:.3f}, ny_Nm: {:.3f}, nz_Nm: {:.3f}}}\n",
+          0.3 + 0.23 * k, wave(10, 2.1, 0.7), wave(10, 1.3, 2 + 10 * time), wave(8, 2.9, 10 * time),
+          wave(0.4, 1.7, 0), wave(0.4, 2.3, 10 * time), wave(0.4, 1, 0));
+    }
+    return text + "duration_s: 5\n";
+  }
+  static std::string light_tool(const std::string& tool) {
+    const std::size_t start = tool.find("start: {");
+    return "name: tool\nfree_body: {mass_kg: 1.5, inertia_kg_m2: [0.03, 0.03, 0.03]}\n"
+           "end_effector: handle\njoints:\n  root:\n    damping_Ns_per_m: 3\n"
+           "    angular_damping_Nms_per_rad: 0.03\n    " +
+           tool.substr(start, tool.find('}', start) + 1 - start) + "\n";
+  }
+  config::Scenario stopped_at(double time) const {
+    constexpr double kBeforeTheHand = 0.7;  // s
+    const TemporaryFolder folder;
+    const std::string arm = std::filesystem::absolute("models/arms").string() + "/" + GetParam();
+    folder.write("throw.yaml", thrown_until(time));
+    folder.write("tool.yaml", light_tool(read_file(arm + "/tool.yaml")));
+    return config::load_scenario(folder.write(
+        "thrown.yaml",
+        fmt::format("title: Throw\ndescription: A stop amid motion.\ndevice: {}/device.yaml\n"
+                    "twin: tool.yaml\nperson: throw.yaml\nduration_s: {}\n"
+                    "panel: [{{at_s: {}, request: stop}}]\n",
+                    arm, time + 1.5, kBeforeTheHand + time)));
+  }
+};
+
+TEST_P(StoppedArm, IsAtRestWithoutAFault) {
+  for (const double time : {1.0, 1.2, 1.4, 1.6, 1.8, 2.0}) {
+    SCOPED_TRACE(time);
+    ScenarioRun run(stopped_at(time));
+    Mode mode = Mode::kOff;
+    run.play([&](const Sample& sample) { mode = sample.record.mode; });
+    EXPECT_EQ(mode, Mode::kArmed);
+    EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
+    for (const double excess : run.summary().truth().worst_excess()) EXPECT_LE(excess, 2e-3);
+  }
+}
+
 // The wrist of a UR is singular at 0, and a hand that has let go leaves the noise of the force
 // sensor: it moves no joint by more than what a free tool drifts anywhere.
 class SingularStart : public testing::TestWithParam<std::pair<const char*, const char*>> {
@@ -188,6 +244,9 @@ INSTANTIATE_TEST_SUITE_P(Arms, SingularStart,
                                                    "roll_rad: -1.298611}")),
                          [](const auto& arm) { return std::string(arm.param.first); });
 INSTANTIATE_TEST_SUITE_P(Arms, ArmWithGaps,
+                         testing::Values("fr3", "iiwa14", "ur5e", "ur10e", "xarm7", "gen3"),
+                         [](const auto& arm) { return std::string(arm.param); });
+INSTANTIATE_TEST_SUITE_P(Arms, StoppedArm,
                          testing::Values("fr3", "iiwa14", "ur5e", "ur10e", "xarm7", "gen3"),
                          [](const auto& arm) { return std::string(arm.param); });
 INSTANTIATE_TEST_SUITE_P(Arms, PushedArm,

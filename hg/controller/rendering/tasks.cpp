@@ -11,10 +11,12 @@ namespace hg::rendering {
 namespace {
 
 // where the law models the torques of the motors:
-constexpr double kTrackingMargin = 1e-3;     // rad or m, of a joint behind its reference
-constexpr double kDriveMargin = 3e-3;        // the same of a drive that follows positions
-constexpr double kBrakingOnset = 25e-3;      // s, of the device in front of its limits
-constexpr double kJumped = 1.5;              // times the speed of a motor without load
+constexpr double kTrackingMargin = 1e-3;  // rad or m, of a joint behind its reference
+constexpr double kDriveMargin = 3e-3;     // the same of a drive that follows positions
+constexpr double kBrakingOnset = 25e-3;   // s, of the device in front of its limits
+constexpr double kReturn = 0.3;           // s, of the device from beyond them
+constexpr double kReturnWithin = 1.0;     // s, of a joint that is within, but too near to its end
+constexpr double kJumped = 1.5;           // times the speed of a motor without load
 constexpr double kTwinBrakingOnset = 10e-3;  // s, of the twin in front of its own
 
 constexpr double kApartMargin = 3e-3;  // m, of shapes beyond the distance at which a stop begins
@@ -233,6 +235,7 @@ void Tasks::add_device_limits(const DeviceModel& device) {
     for (LimitRow& row : limit_rows_) {
       row.options.is_capped = device.has_rated_accelerations();
       row.options.tau_onset = kBrakingOnset;
+      row.options.tau_rec = kReturn;
     }
   }
 }
@@ -407,6 +410,9 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
                         input.joint_braking_rate, dt_);
       limits.dq_max = std::min(limits.dq_max, slower);
     }
+    LimitRow& row = limit_rows_[limit];
+    const bool is_within = row.range.contains(reference.q_m[limit]);
+    if (has_torques_) row.options.tau_rec = is_within ? kReturnWithin : kReturn;
     set_limit(limit, limits, reference.q_m[limit], reference.dq_m[limit], 0.0);
   }
 

@@ -621,6 +621,23 @@ TEST(Monitor, AStopThatFollowsItsRampIsLeftAlone) {
   }
 }
 
+TEST(Monitor, ABrakingRampBeginsWithTheAccelerationOfItsFirstSample) {
+  Bench bench;
+  bench.watched.state = SafetyState::kToArmed;
+  double speed = 0.3, position = bench.results.robot.q_m[0];
+  for (int k = 0; k < 800; ++k) {
+    const double ddq = k == 0 ? -200.0 : 0.0;  // to 0.1 rad/s, which is kept
+    bench.results.reference.dq_m[0] = bench.results.robot.dq_m[0] = speed;
+    bench.results.reference.ddq_m[0] = ddq;
+    bench.results.robot.q_m[0] = bench.results.reference.q_m[0] = position;
+    bench.sensors.q_m[0] = bench.sensors.theta_m[0] = position;
+    bench.step();
+    EXPECT_EQ(bench.verdict.fault.code, FaultCode::kNone) << k;
+    position += 1e-3 * (speed + 0.5e-3 * ddq);
+    speed += 1e-3 * ddq;
+  }
+}
+
 TEST(Monitor, AnAxisThatDoesNotBrakeAsCommandedGetsItsBrakes) {
   const auto first = [](double joint, double gantry, int samples) {
     BrakingBench bench;

@@ -211,6 +211,7 @@ TEST(Guard, RemembersBoundsThatHold) {
   auto& [seed, device, guard, judge, wanderer, state] = watch;
   long distances = 0;
   int worst = 0;
+  double needless = 0.0;  // largest distance of a pair because of which the device had to brake
   constexpr int kCycles = 20000;
   for (int n = 0; n < kCycles; ++n) {
     wanderer.move();
@@ -219,6 +220,10 @@ TEST(Guard, RemembersBoundsThatHold) {
     if (!is_first) {
       distances += prediction.distances;
       worst = std::max(worst, prediction.distances);
+    }
+    if (prediction.must_brake) {
+      const auto pair = static_cast<std::size_t>(prediction.report.pair);
+      needless = std::max(needless, judge.along_braking(pair, wanderer.q, wanderer.dq, 120));
     }
     if (n % 50 != 0) continue;
     for (std::size_t pair = 0; pair < device.config.pairs.watched.size(); ++pair) {
@@ -229,6 +234,7 @@ TEST(Guard, RemembersBoundsThatHold) {
   }
   EXPECT_LE(worst, most_distances(device.braking.period) + 1);
   EXPECT_LT(static_cast<double>(distances) / kCycles, 6.0);
+  EXPECT_LT(needless, device.config.safe_distance + 0.02);
   RecordProperty("distances_per_cycle", std::to_string(static_cast<double>(distances) / kCycles));
 }
 
