@@ -119,11 +119,14 @@ Interval stoppable(Interval ddq, const Interval& lasting, double speed) noexcept
 }
 
 // Largest speed of a joint at the end of a sample of a stop: it slows down with `rate`, but by no
-// more than `ddq`.
-double speed_in_stop(double dq, double ddq, double rate, double dt) noexcept {
+// more than the motors give, all joints on one line in the time `line` (s), or without such a line,
+// of a stretched arm, a part of the rating.
+double speed_in_stop(double dq, double ddq_max, double rate, double line, double dt) noexcept {
   constexpr double kAtRest = 1e-4;  // rad/s or m/s
+  constexpr double kShare = 0.3;    // of the rating
   const double speed = std::abs(dq);
-  return std::max(speed - dt * std::min(rate * speed, ddq), kAtRest);
+  const double given = line > 0.0 ? speed / line : kShare * ddq_max;
+  return std::max(speed - dt * std::min(rate * speed, given), kAtRest);
 }
 
 }  // namespace
@@ -388,16 +391,6 @@ void Tasks::hold(int limit, double ddq) noexcept {
   if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, row.ddq);
 }
 
-// Deceleration that the motors give a joint in a stop: all joints on one line, or without such a
-// line, of a stretched arm, a part of the rating.
-double Tasks::deceleration_in_stop(int joint, const ReferenceState& reference) const noexcept {
-  constexpr double kShare = 0.3;
-  if (stop_path_ && stop_path_->time() > 0.0) {
-    return std::abs(reference.dq_m[joint]) / stop_path_->time();
-  }
-  return kShare * limit_rows_[joint].limits.ddq_max;
-}
-
 void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept {
   const ReferenceState& reference = input.reference;
   int limit = 0;
@@ -405,9 +398,9 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
     limits::JointLimits limits = limit_rows_[limit].limits;
     limits.dq_max = device.joint_limits[limit].dq_max;
     if (input.joint_braking_rate > 0.0) {
+      const double line = stop_path_ ? stop_path_->time() : 0.0;
       const double slower =
-          speed_in_stop(reference.dq_m[limit], deceleration_in_stop(limit, reference),
-                        input.joint_braking_rate, dt_);
+          speed_in_stop(reference.dq_m[limit], limits.ddq_max, input.joint_braking_rate, line, dt_);
       limits.dq_max = std::min(limits.dq_max, slower);
     }
     LimitRow& row = limit_rows_[limit];

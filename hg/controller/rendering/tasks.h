@@ -105,7 +105,6 @@ class Tasks {
   double weight_of(const LimitRow& row) const noexcept;
   void fill_coupling(const DeviceModel& device, const TwinModel& twin,
                      const TaskInput& input) noexcept;
-  double deceleration_in_stop(int joint, const ReferenceState& reference) const noexcept;
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
   void brake_together() noexcept;
