@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hg/device/udp/codec.h"
+#include "hg/device/udp/round_trip.h"
 #include "tests/fuzz/targets.h"
 
 namespace hg::fuzz {
@@ -57,6 +58,8 @@ void protocol(Bytes bytes) {
       return go_round<CommandFrame>(datagram, header);
     case MessageType::kGoodbye:
       return go_round<Goodbye>(datagram, header);
+    case MessageType::kRoundTrip:
+      return go_round<RoundTrip>(datagram, header);
   }
   fail("a good header of no message");
 }
