@@ -7,8 +7,7 @@
 namespace hg::estimation {
 namespace {
 
-constexpr double kTremor = 0.015;      // N, rms of an axis, besides the sensor's noise
-constexpr double kStill = 0.009;       // N, the same, of an arm that has been braked
+constexpr double kTremor = 0.009;      // N, rms of an axis, besides the sensor's noise
 constexpr double kMostNoise = 0.016;   // N, in the band: more hides a tremor
 constexpr double kBlock = 0.1;         // s
 constexpr int kLeftOut = 4;            // blocks in which the arm itself jerks
@@ -65,10 +64,10 @@ double mean_of_blocks(std::array<double, RestState::kBlocks> blocks) noexcept {
   return sum / kCount;
 }
 
-// Square of a tremor of `least` in the band with the sensor's noise; 0: noise hides it.
-double tremor_limit(double dt, double noise, double least) noexcept {
+// Square of the least tremor in the band with the sensor's noise; 0: noise hides it.
+double tremor_limit(double dt, double noise) noexcept {
   const double hidden = 2.0 * kBand * dt * noise * noise;
-  return hidden < kMostNoise * kMostNoise ? least * least + hidden : 0.0;
+  return hidden < kMostNoise * kMostNoise ? kTremor * kTremor + hidden : 0.0;
 }
 
 // Whether the zero has met the steady wrench since the twin is braked.
@@ -103,7 +102,7 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const bool is_steady = is_within(change, kForce + payload_force(input, input.acceleration));
   rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
   if (!is_steady) rest.mean = rest.fast;
-  const bool is_calm = rest.tremor < tremor_limit(dt, input.noise, kTremor);
+  const bool is_calm = rest.tremor < tremor_limit(dt, input.noise);
   rest.is_untouched = is_calm && rest.steady * dt >= RestState::kBlocks * kBlock;
 }
 
@@ -141,8 +140,7 @@ void advance(double dt, const RestInput& input, RestState& rest) noexcept {
     return;
   }
   rest.braked_s += dt;
-  const bool is_still = rest.tremor < tremor_limit(dt, input.noise, kStill);
-  if (rest.braked_s > kAnswer && is_still && !input.is_at_limit) follow(dt, input, rest);
+  if (rest.braked_s > kAnswer && !input.is_at_limit) follow(dt, input, rest);
 }
 
 bool trembles(double dt, double noise, const RestState& rest) noexcept {
@@ -151,7 +149,7 @@ bool trembles(double dt, double noise, const RestState& rest) noexcept {
   double sum = 0.0;
   for (int i = 0; i < kNewest; ++i) sum += rest.blocks[i];
   const double hidden = 2.0 * kWhole * dt * noise * noise;
-  const double limit = tremor_limit(dt, noise, kTremor);
+  const double limit = tremor_limit(dt, noise);
   return limit > 0.0 && (sum > kNewest * kCertain * hidden || rest.tremor > limit);
 }
 
