@@ -157,8 +157,7 @@ class StoppedArm : public testing::TestWithParam<const char*> {
            "    angular_damping_Nms_per_rad: 0.03\n    " +
            tool.substr(start, tool.find('}', start) + 1 - start) + "\n";
   }
-  config::Scenario stopped_at(double time) const {
-    constexpr double kBeforeTheHand = 0.7;  // s
+  config::Scenario thrown(double time) const {
     const TemporaryFolder folder;
     const std::string arm = std::filesystem::absolute("models/arms").string() + "/" + GetParam();
     folder.write("throw.yaml", thrown_until(time));
@@ -166,18 +165,21 @@ class StoppedArm : public testing::TestWithParam<const char*> {
     return config::load_scenario(folder.write(
         "thrown.yaml",
         fmt::format("title: Throw\ndescription: A stop amid motion.\ndevice: {}/device.yaml\n"
-                    "twin: tool.yaml\nperson: throw.yaml\nduration_s: {}\n"
-                    "panel: [{{at_s: {}, request: stop}}]\n",
-                    arm, time + 1.5, kBeforeTheHand + time)));
+                    "twin: tool.yaml\nperson: throw.yaml\nduration_s: {}\n",
+                    arm, time + 1.5)));
   }
 };
 
 TEST_P(StoppedArm, IsAtRestWithoutAFault) {
   for (const double time : {1.0, 1.2, 1.4, 1.6, 1.8, 2.0}) {
     SCOPED_TRACE(time);
-    ScenarioRun run(stopped_at(time));
+    constexpr double kBeforeTheHand = 0.7;  // s
+    ScenarioRun run(thrown(time));
     Mode mode = Mode::kOff;
-    run.play([&](const Sample& sample) { mode = sample.record.mode; });
+    run.play([&](const Sample& sample) {
+      mode = sample.record.mode;
+      if (sample.record.time_s > kBeforeTheHand + time) run.request(ModeRequest::kStop);
+    });
     EXPECT_EQ(mode, Mode::kArmed);
     EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
     for (const double excess : run.summary().truth().worst_excess()) EXPECT_LE(excess, 2e-3);

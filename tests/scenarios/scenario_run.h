@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,10 +22,7 @@
 namespace hg {
 
 /// A scenario that ships with the program, to be played as it is or changed first.
-inline config::Scenario shipped(const std::string& name) {
-  return scenario::load({.scenario = name});
-}
-inline config::Scenario shipped(const std::string& name, double rate_Hz) {
+inline config::Scenario shipped(const std::string& name, std::optional<double> rate_Hz = {}) {
   return scenario::load({.scenario = name, .rate_Hz = rate_Hz});
 }
 
@@ -34,12 +32,10 @@ inline config::Scenario with_ideal_device(config::Scenario scenario) {
   scenario.device.model.actuators.clear();
   config::settle_law(scenario);
   scenario.device.simulation.sensors = simulator::ideal_sensors();
+  scenario.device.estimation.wrench.tare.noise_force = 1.0;  // N: whether a hand trembles is hidden
   return scenario;
 }
-inline config::Scenario law_alone(const std::string& name) {
-  return with_ideal_device(shipped(name));
-}
-inline config::Scenario law_alone(const std::string& name, double rate_Hz) {
+inline config::Scenario law_alone(const std::string& name, std::optional<double> rate_Hz = {}) {
   return with_ideal_device(shipped(name, rate_Hz));
 }
 
@@ -100,6 +96,9 @@ class ScenarioRun {
       if (look) look(sample);
     } while (sample.record.time_s < end && !session_.is_over());
   }
+
+  /// Asks for a mode in the next cycle, as an operator does.
+  void request(ModeRequest request) { session_.request(request); }
 
   const config::Scenario& scenario() const { return scenario_; }
   const analysis::Summary& summary() const { return summary_; }

@@ -8,6 +8,7 @@ namespace hg::estimation {
 namespace {
 
 constexpr double kTremor = 0.009;      // N, rms of an axis, besides the sensor's noise
+constexpr double kHand = 0.015;        // N, the same, of what is certainly a hand
 constexpr double kMostNoise = 0.016;   // N, in the band: more hides a tremor
 constexpr double kBlock = 0.1;         // s
 constexpr int kLeftOut = 4;            // blocks in which the arm itself jerks
@@ -64,10 +65,17 @@ double mean_of_blocks(std::array<double, RestState::kBlocks> blocks) noexcept {
   return sum / kCount;
 }
 
-// Square of the least tremor in the band with the sensor's noise; 0: noise hides it.
-double tremor_limit(double dt, double noise) noexcept {
-  const double hidden = 2.0 * kBand * dt * noise * noise;
-  return hidden < kMostNoise * kMostNoise ? kTremor * kTremor + hidden : 0.0;
+// Square of the sensor's noise in a band of `width`, Hz. Sensors give a new sample at most every
+// millisecond: what a faster loop reads between is no other noise.
+double noise_in(double width, double dt, double noise) noexcept {
+  constexpr double kShortest = 1e-3;  // s
+  return 2.0 * width * std::max(dt, kShortest) * noise * noise;
+}
+
+// Square of a tremor of `least` in the band with the sensor's noise; 0: noise hides it.
+double tremor_limit(double dt, double noise, double least) noexcept {
+  const double hidden = noise_in(kBand, dt, noise);
+  return hidden < kMostNoise * kMostNoise ? least * least + hidden : 0.0;
 }
 
 // Whether the zero has met the steady wrench since the twin is braked.
@@ -75,19 +83,18 @@ bool is_met(const RestState& rest) noexcept {
   return rest.is_known && rest.known_s < rest.braked_s - kAnswer;
 }
 
-// Filters that have always seen the first sample.
-void begin(const BandPass& pass, const RestInput& input, const Eigen::Vector3d& f,
-           RestState& rest) noexcept {
-  rest.band[0].fill(-pass.through * f);
-  rest.fast = rest.mean = input.w_S;
-}
-
 // Whether the wrench stays and nothing trembles.
 void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const Eigen::Vector3d f = input.w_S.head<3>() - input.inertia_S;
   const BandPass pass(dt);
-  if (rest.mean.isZero(0.0)) begin(pass, input, f, rest);
-  const Eigen::Vector3d y = pass.passed(pass.passed(f, rest.band[0]), rest.band[1]);
+  if (rest.mean.isZero(0.0)) rest.fast = rest.mean = input.w_S;
+  rest.fast += std::min(1.0, dt / kFast) * (input.w_S - rest.fast);
+  rest.mean += std::min(1.0, dt / kMean) * (input.w_S - rest.mean);
+  const bool is_new = rest.blocks[0] == 0.0 && rest.samples * dt < 0.5 * kBlock;
+  const Eigen::Vector3d x = is_new ? rest.fast.head<3>() - input.inertia_S : f;
+  // as if the band had always seen this wrench: a first sample's noise would be a step
+  if (is_new) rest.band[0].fill(-pass.through * x);
+  const Eigen::Vector3d y = pass.passed(pass.passed(x, rest.band[0]), rest.band[1]);
   rest.sum += y.squaredNorm() / 3.0;
   if (++rest.samples * dt >= kBlock) {
     std::shift_right(rest.blocks.begin(), rest.blocks.end(), 1);
@@ -96,13 +103,11 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
     rest.sum = 0.0;
     rest.samples = 0;
   }
-  rest.fast += std::min(1.0, dt / kFast) * (input.w_S - rest.fast);
-  rest.mean += std::min(1.0, dt / kMean) * (input.w_S - rest.mean);
   const Vector6 change = rest.fast - (is_met(rest) ? rest.zero : rest.mean);
   const bool is_steady = is_within(change, kForce + payload_force(input, input.acceleration));
   rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
   if (!is_steady) rest.mean = rest.fast;
-  const bool is_calm = rest.tremor < tremor_limit(dt, input.noise);
+  const bool is_calm = rest.tremor < tremor_limit(dt, input.noise, kTremor);
   rest.is_untouched = is_calm && rest.steady * dt >= RestState::kBlocks * kBlock;
 }
 
@@ -148,8 +153,8 @@ bool trembles(double dt, double noise, const RestState& rest) noexcept {
   constexpr double kWhole = 5.2, kCertain = 3.0;  // Hz, of noise in the band; times
   double sum = 0.0;
   for (int i = 0; i < kNewest; ++i) sum += rest.blocks[i];
-  const double hidden = 2.0 * kWhole * dt * noise * noise;
-  const double limit = tremor_limit(dt, noise);
+  const double hidden = noise_in(kWhole, dt, noise);
+  const double limit = tremor_limit(dt, noise, kHand);
   return limit > 0.0 && (sum > kNewest * kCertain * hidden || rest.tremor > limit);
 }
 

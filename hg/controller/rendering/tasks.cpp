@@ -118,15 +118,12 @@ Interval stoppable(Interval ddq, const Interval& lasting, double speed) noexcept
   return ddq;
 }
 
-// Largest speed of a joint at the end of a sample of a stop: it slows down with `rate`, but by no
-// more than the motors give, all joints on one line in the time `line` (s), or without such a line,
-// of a stretched arm, a part of the rating.
-double speed_in_stop(double dq, double ddq_max, double rate, double line, double dt) noexcept {
-  constexpr double kAtRest = 1e-4;  // rad/s or m/s
-  constexpr double kShare = 0.3;    // of the rating
-  const double speed = std::abs(dq);
-  const double given = line > 0.0 ? speed / line : kShare * ddq_max;
-  return std::max(speed - dt * std::min(rate * speed, given), kAtRest);
+// Deceleration of a joint in a stop: with `rate`, but no more than the motors give, all joints on
+// one line in the time `line` (s), or without such a line, of a stretched arm, a part of the
+// rating.
+double deceleration_in_stop(double speed, double ddq_max, double rate, double line) noexcept {
+  constexpr double kShare = 0.3;  // of the rating
+  return std::min(rate * speed, line > 0.0 ? speed / line : kShare * ddq_max);
 }
 
 }  // namespace
@@ -398,10 +395,16 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
     limits::JointLimits limits = limit_rows_[limit].limits;
     limits.dq_max = device.joint_limits[limit].dq_max;
     if (input.joint_braking_rate > 0.0) {
+      constexpr double kAtRest = 1e-4;  // rad/s or m/s
       const double line = stop_path_ ? stop_path_->time() : 0.0;
-      const double slower =
-          speed_in_stop(reference.dq_m[limit], limits.ddq_max, input.joint_braking_rate, line, dt_);
-      limits.dq_max = std::min(limits.dq_max, slower);
+      const double speed = std::abs(reference.dq_m[limit]);
+      const double ddq =
+          input.force_share * std::abs(reference.ddq_m[limit]) -
+          deceleration_in_stop(speed, limits.ddq_max, input.joint_braking_rate, line);
+      // speeds below the largest one are approached with the time constant of the onset
+      const double onset = std::max(limit_rows_[limit].options.tau_onset, dt_);
+      const double most = speed + (ddq > 0.0 ? onset : dt_) * ddq;
+      limits.dq_max = std::min(limits.dq_max, std::max(most, kAtRest));
     }
     LimitRow& row = limit_rows_[limit];
     const bool is_within = row.range.contains(reference.q_m[limit]);
