@@ -394,11 +394,15 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
   const double share = ramp_forces(motion, is_held);
   const bool is_braked = motion == Motion::kHold || state_.touch.is_reported;
   const double stop_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
+  // joints make up for a gantry that brakes until the forces are out
+  const bool may_slow = share == 0.0 || rendering_.device().n_p == 0;
+  const bool slows_joints = may_slow && !state_.touch.is_reported;
   const double ramped_rate =
       is_stopping(motion) ? stop_rate : estimation::braking_rate(state_.estimation.rest);
   rendering_.step({.robot = robot,
                    .braking_rate = is_braked ? kBrakingRate : ramped_rate,
-                   .joint_braking_rate = state_.touch.is_reported ? 0.0 : stop_rate,
+                   .joint_braking_rate = slows_joints ? stop_rate : 0.0,
+                   .kept_acceleration = share / (share + dt_ / kRampOut),  // fades with the force
                    .force_share = share,
                    .handle_speed_max = speed_max() / std::sqrt(3.0),
                    .most_active_sets = most_active_sets(config_.solver_caps, time_s()),

@@ -476,7 +476,7 @@ void Rendering::fill_tasks(const LawInput& input, const VectorA& tau,
                .tau = tau,
                .handle_speed = input.handle_speed_max,
                .joint_braking_rate = input.joint_braking_rate,
-               .force_share = input.force_share,
+               .kept_acceleration = input.kept_acceleration,
                .is_braked = input.braking_rate > 0.0,
                .collision = input.collision});
 }

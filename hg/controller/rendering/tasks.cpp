@@ -399,7 +399,7 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
       const double line = stop_path_ ? stop_path_->time() : 0.0;
       const double speed = std::abs(reference.dq_m[limit]);
       const double ddq =
-          input.force_share * std::abs(reference.ddq_m[limit]) -
+          input.kept_acceleration * std::abs(reference.ddq_m[limit]) -
           deceleration_in_stop(speed, limits.ddq_max, input.joint_braking_rate, line);
       // speeds below the largest one are approached with the time constant of the onset
       const double onset = std::max(limit_rows_[limit].options.tau_onset, dt_);
