@@ -108,11 +108,11 @@ bool is_load(const rendering::Rendering& rendering, const VectorA& torque) noexc
   return !((torque.cwiseAbs() - most).maxCoeff() <= 0.0);
 }
 
-// Whether neither springs nor weight nor surfaces act on the twin.
+// Whether the twin has no spring where it is, and neither weight nor surfaces act on it.
 bool is_free(const rendering::Rendering& rendering, const Budget& budget) noexcept {
-  const VectorA torque = budget.spring + budget.surface;
+  if (!budget.spring.isZero(0.0)) return false;
   const VectorA weight = rendering.twin_chain().gravity();
-  return !is_load(rendering, torque) && !is_load(rendering, weight);
+  return !is_load(rendering, budget.surface) && !is_load(rendering, weight);
 }
 
 // Whether the twin is slow, or the wrench delivers its energy within two seconds.
