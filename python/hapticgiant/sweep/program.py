@@ -17,7 +17,7 @@ QUIET = ["--fast", "--no-viewer", "--no-recording", "--flight-recorder", "off"]
 SUMMARY = ["--summary", "/dev/stdout"]
 # of a summary: what depends on the computer, what a run is told, and what has a column of its own
 LEFT_OUT = {"version", "scenario", "law", "bounds", "gantry", "braking", "plant", "sensors",
-            "rate_Hz", "fast", "wall_time_s", "cycle_time_us", "overruns",
+            "rate_Hz", "fast", "wall_time_s", "cycle_time_us", "latency", "overruns",
             "most_overruns_in_a_row", "overruns_stop", "real_time", "priority", "cpu",
             "memory_locked", "page_faults_in_loop", "unrecorded_samples", "recording",
             "recording_error", "state_hash", "fault", "configuration", "interrupted"}
