@@ -16,8 +16,8 @@ namespace hg::rendering {
 struct LawInput {
   const RobotState& robot;    ///< Measured device and wrench of the user
   double braking_rate = 0.0;  ///< Rate at which the twin is brought to rest, 1/s; 0: not braked
-  /// Rate at which every joint of the manipulator at least slows down, 1/s, with up to a part of
-  /// its rating; in a stop, so that none gets faster while the handle comes to rest.
+  /// Rate at which every joint of the manipulator at least slows down, 1/s, with what its motors
+  /// give; in a stop, so that none gets faster while the handle comes to rest.
   double joint_braking_rate = 0.0;
   double kept_acceleration = 0.0;  ///< In a stop: share of its last one that a joint may keep
   /// Share of the user's wrench, the twin's springs, its weight, its reference wrench and the
