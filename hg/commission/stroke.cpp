@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hg::commission {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStood = 0.2;  // share of the commanded way below which a joint has not moved
-constexpr double kRatio = 0.1;  // largest deviation of a ratio of encoders and speeds
+constexpr double kStood = 0.2;   // share of the commanded way below which a joint has not moved
+constexpr double kSwing = 0.01;  // rad or m, of a joint that is held, while another one is led
+constexpr double kRatio = 0.1;   // largest deviation of a ratio of encoders and speeds
 constexpr double kRatioUnderWay = 0.3;
 constexpr double kTurnRatio = 0.1;    // the same of the gyroscope
 constexpr double kAxisAngle = 0.087;  // rad, largest deviation of an axis: 5 degrees
@@ -48,6 +50,15 @@ std::string wrong_zero(const Vector3d& axis, int joint, const std::vector<Vector
                          name_of(device, k), offset * 180.0 / M_PI);
   }
   return names;
+}
+
+// The joint beside the one that is led that moved most, and by how much.
+std::pair<int, double> most_of_others(const Stroke& stroke) {
+  VectorPM others = stroke.swing;
+  others[stroke.joint] = 0.0;
+  Eigen::Index most = 0;
+  const double swing = others.maxCoeff(&most);
+  return {static_cast<int>(most), swing};
 }
 
 std::string problem_of_turn(const Stroke& stroke, const DeviceModel& device,
@@ -116,19 +127,16 @@ std::string problem_of(const Stroke& stroke, const DeviceModel& device,
   const int i = stroke.joint;
   const std::string& name = name_of(device, i);
   const double moved = stroke.moved[i];
-  Eigen::Index most = 0;
-  stroke.moved.cwiseAbs().maxCoeff(&most);
-  const double other = std::abs(stroke.moved[most]);
-  if (most != i && other > kStood * std::abs(stroke.way)) {
-    const std::string& name_of_other = name_of(device, static_cast<int>(most));
-    if (std::abs(moved) < kStood * other) {
-      return fmt::format("{} moves when {} is led: commands or encoders are swapped", name_of_other,
-                         name);
-    }
-    if (stroke.is_cut) {
-      return fmt::format("{} leaves its place while {} is led: it is not held as its model says",
-                         name_of_other, name);
-    }
+  const auto [swinging, swing] = most_of_others(stroke);
+  const std::string& name_of_other = name_of(device, swinging);
+  const bool has_stood = std::abs(moved) < kStood * swing;
+  if (has_stood && swing > kStood * std::abs(stroke.way)) {
+    return fmt::format("{} moves when {} is led: commands or encoders are swapped", name_of_other,
+                       name);
+  }
+  if (!has_stood && swing > kSwing) {
+    return fmt::format("{} moves by {:.0f} {} while {} is led: it is not held as its model says",
+                       name_of_other, 1e3 * swing, unit_of(device, swinging), name);
   }
   if (std::abs(moved) < kStood * std::abs(stroke.way)) {
     return fmt::format("{} does not move: {:.1f} of {:.1f} {}", name, 1e3 * moved, 1e3 * stroke.way,
