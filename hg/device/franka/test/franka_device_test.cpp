@@ -64,10 +64,12 @@ struct Bench {
     command.q_m = VectorM::Zero(kJoints);
     command.dq_m = command.ddq_m = command.q_m;
     device->read(sensors);
+    robot.send_one();
   }
   ~Bench() { robot.send_freely(); }
   void cycle() {
-    robot.send_one();
+    // a state that is still under way is read first: an answer to an older one is not sent
+    if (sensors.sequence >= robot.newest()) robot.send_one();
     device->read(sensors);
     command.sequence = sensors.sequence;
     if (!is_led) command.q_m = sensors.q_m;
