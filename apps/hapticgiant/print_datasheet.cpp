@@ -102,6 +102,41 @@ void print_capability(const Datasheet& sheet) {
   }
 }
 
+nlohmann::json vector_json(const Eigen::Ref<const Eigen::VectorXd>& v) {
+  return std::vector<double>(v.data(), v.data() + v.size());
+}
+
+std::string name_of(const check::WallForce& wall) {
+  return std::string{"xyz"[wall.axis], wall.is_upper ? '+' : '-'};
+}
+
+void print_walls(const Datasheet& sheet) {
+  if (sheet.walls.empty()) return;
+  std::string text;
+  for (const check::WallForce& wall : sheet.walls) {
+    text += text.empty() ? "" : ", ";
+    text += wall.places == 0
+                ? name_of(wall) + " not reached"
+                : fmt::format("{} {:.0f} N ({})", name_of(wall), wall.least, wall.motor);
+  }
+  print_out("  walls hold          {}: least over their places\n", text);
+}
+
+nlohmann::json walls_json(const Datasheet& sheet) {
+  nlohmann::json walls = nlohmann::json::array();
+  for (const check::WallForce& wall : sheet.walls) {
+    nlohmann::json json = {{"wall", name_of(wall)}, {"places", wall.places}};
+    if (wall.places > 0) {
+      json["least_N"] = wall.least;
+      json["median_N"] = wall.median;
+      json["motor"] = wall.motor;
+      json["place_m"] = vector_json(wall.place);
+    }
+    walls.push_back(json);
+  }
+  return walls;
+}
+
 void print_conditioning(const Datasheet& sheet) {
   print_out(
       "  conditioning        condition number {:.1f}, 5 % above {:.0f}; lengths in {:.2f} m\n",
@@ -130,10 +165,6 @@ void print_bandwidth(const check::Bandwidth& bandwidth) {
 
 nlohmann::json distribution_json(const Distribution& d) {
   return {{"least", d.smallest}, {"low_5_percent", d.low}, {"median", d.median}};
-}
-
-nlohmann::json vector_json(const Eigen::Ref<const Eigen::VectorXd>& v) {
-  return std::vector<double>(v.data(), v.data() + v.size());
 }
 
 nlohmann::json joint_json(const JointLine& joint) {
@@ -188,6 +219,7 @@ void print_datasheet(const Datasheet& sheet) {
   print_joints(sheet);
   print_workspace(sheet);
   print_capability(sheet);
+  print_walls(sheet);
   print_conditioning(sheet);
   print_bandwidth(sheet.bandwidth);
   print_stopping(sheet);
@@ -207,6 +239,7 @@ nlohmann::json datasheet_json(const Datasheet& sheet) {
   if (sheet.postures == 0) return json;
   for (const JointLine& joint : sheet.joints) json["joints"].push_back(joint_json(joint));
   json["stopping"] = stopping_json(sheet);
+  json["walls"] = walls_json(sheet);
   const workspace::HandleWorkspace& space = sheet.workspace;
   json["reach_m"] = sheet.reach;
   json["workspace"] = {{"volume_m3", space.volume},

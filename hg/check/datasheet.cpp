@@ -119,6 +119,7 @@ Datasheet make_datasheet(const config::DeviceConfig& device, const workspace::Su
   sheet.most_singular = survey.most_singular;
   sheet.stopping = stopping_of(device);
   sheet.stop_time = device.monitor.stop_time;
+  sheet.walls = wall_forces(device);
   sheet.bandwidth = {
       .rate_Hz = device.model.rate_Hz,
       .synchronisation_Hz = std::sqrt(device.rendering.kP_tran) / (2.0 * M_PI),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hg/check/stopping_rule.h"
+#include "hg/check/wall_force.h"
 #include "hg/config/device.h"
 #include "hg/workspace/survey.h"
 #include "hg/workspace/workspace.h"
@@ -70,6 +71,7 @@ struct Datasheet {
   Bandwidth bandwidth;
   std::vector<Stopping> stopping;  ///< stopping per axis, gantry first
   double stop_time = 0.0;          ///< stated stopping time, s
+  std::vector<WallForce> walls;    ///< What the motors hold at the walls of the handle's box
 };
 
 Datasheet make_datasheet(const config::DeviceConfig& device, const workspace::Survey& survey);

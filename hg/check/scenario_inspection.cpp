@@ -10,6 +10,7 @@
 
 #include "hg/check/stiffness.h"
 #include "hg/check/twin_inspection.h"
+#include "hg/check/way_force.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
@@ -148,8 +149,10 @@ bool has_start(const config::DeviceConfig& device, const config::Twin& twin, Col
 void inspect_way(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
                  Collector& out) {
   try {
-    const std::string problem = workspace::problem_of(workspace::lead(device, twin));
+    const workspace::Way way = workspace::lead(device, twin);
+    const std::string problem = workspace::problem_of(way);
     if (!problem.empty()) out.add(Severity::kWarning, "placement", problem, workspace::kCuresOfWay);
+    inspect_way_forces(device, twin, way, out);
   } catch (const SetupError& error) {
     out.add(Severity::kFault, "placement", error.what(), "");
   }

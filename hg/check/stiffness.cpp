@@ -116,7 +116,7 @@ std::string frequency_text(const StiffnessLimits& limits) {
 
 std::string known_of(const StiffnessLimits& limits) {
   return fmt::format(
-      "{:.2g} kg and {:.2g} Ns/m at the handle; T = {:g} ms, T_d = {:.1f} ms from "
+      "{:.2g} kg and {:.2g} Ns/m as felt at the handle; T = {:g} ms, T_d = {:.1f} ms from "
       "wrench to motion",
       limits.mass, limits.damping, 1e3 * limits.period, 1e3 * limits.delay);
 }
@@ -224,7 +224,7 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
 
 StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
                                  const config::Twin& twin) {
-  const auto [mass, dq] = rendering::felt_mass(twin.model);
+  const auto [mass, dq] = rendering::felt_mass(twin.model, twin.model.felt_scale.head<3>());
   StiffnessLimits limits = {.mass = mass.lb,
                             .period = device.model.dt(),
                             .delay = std::max(delay_of(device), device.model.dt())};
@@ -258,6 +258,7 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
   if (scenario.surfaces.empty()) return {};
   const StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);
   const Interval mass = rendering::felt_mass(scenario.twin.model).mass;
+  const double scale = scenario.twin.model.felt_scale.head<3>().minCoeff();
   for (std::size_t i = 0; i < scenario.surfaces.size(); ++i) {
     const surfaces::Surface& surface = scenario.surfaces[i];
     if (surface.contact == surfaces::Contact::kStop) continue;
@@ -277,12 +278,13 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
          {limits.by_acceleration(kFeelingSpeed),
           fmt::format("a hand at {:g} m/s needs no more than the handle's {:.3g} m/s^2",
                       kFeelingSpeed, limits.acceleration)},
-         {limits.by_passivity(damping),
+         {limits.by_passivity(damping / scale),
           fmt::format("it is passive in any hand with {:.3g} Ns/m, {}", damping,
                       surface.damping ? "as given" : "which is critical, as none is given")}}};
     std::string beyond;
     double most = surface.stiffness;
-    for (const auto& [bound, why] : bounds) {
+    for (const auto& [felt, why] : bounds) {
+      const double bound = scale * felt;
       if (surface.stiffness <= bound) continue;
       beyond += fmt::format("{}{} ({})", beyond.empty() ? "" : ", ", kilo(bound), why);
       most = std::min(most, bound);
@@ -294,7 +296,7 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
         fmt::format("{:g} N/m of '{}' is more than this device shows: {}; {}. A hand faster than "
                     "{:.2f} m/s goes deeper than the spring alone would let it",
                     surface.stiffness, surface.name, beyond, known_of(limits),
-                    limits.meeting_speed(surface.stiffness)),
+                    limits.meeting_speed(surface.stiffness / scale)),
         is_possible
             ? fmt::format("lower it to {:.0f}, or raise its damping and the mass of the twin", most)
             : fmt::format("raise its damping and the mass of the twin: a surface has at least "

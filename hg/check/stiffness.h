@@ -28,8 +28,9 @@ struct CalmTwin {
 /// available from the motors, or the rating of its Cartesian limits where the law does not model
 /// the motors; without either it is infinite.
 struct StiffnessLimits {
-  double mass = 0.0;     ///< mass of the twin in the direction in which it is lightest, kg
-  double damping = 0.0;  ///< damping of the twin in that direction, Ns/m
+  /// Mass of the twin as it is felt, TwinModel::felt_scale, where it is lightest, kg.
+  double mass = 0.0;
+  double damping = 0.0;  ///< damping of the twin in that direction, as it is felt, Ns/m
   double period = 0.0;   ///< T, s
   double delay = 0.0;    ///< delay T_d of the wrench: sensor, low-pass and drives, s
   double acceleration = kInfinity;  ///< a, along the worst axis of B, m/s^2

@@ -116,22 +116,47 @@ std::string text_of(const WallForce& wall, const std::string& name) {
                      name, wall.least, wall.motor, p.x(), p.y(), p.z(), tilt, wall.median);
 }
 
+// Lever of the handle about each joint of the manipulator, m, or 1 of a slide.
+Eigen::Matrix3Xd levers(const DeviceModel& device, const model::ChainData& chain) {
+  return chain.jacobian(device.handle).topRows<3>().rightCols(device.n_m);
+}
+
+// What a motor has left beside the weight of the device, at rest; without 0 where it does not hold
+// the weight.
+Interval left_of(const DeviceModel& device, const model::ChainData& chain, int motor) {
+  const Interval torque = rendering::allowed_torque(device.motors()[motor], 0.0);
+  const double weight = chain.gravity()[device.n_p + motor];
+  return {torque.lb - weight, torque.ub - weight};
+}
+
+// `used`: the end of `left` that the force goes to.
+void keep_least(Interval left, double used, double lever, int motor, HeldForce& held) {
+  constexpr double kNoLever = 1e-9;  // m
+  const bool holds_weight = left.contains(0.0);
+  if (holds_weight && lever < kNoLever) return;
+  const double force = holds_weight ? used / lever : 0.0;
+  if (force < held.force) held = {force, motor};
+}
+
 }  // namespace
 
 HeldForce held_force(const DeviceModel& device, const model::ChainData& chain,
                      const Eigen::Vector3d& direction) {
-  constexpr double kNoLever = 1e-9;  // m
-  const Eigen::VectorXd lever =
-      chain.jacobian(device.handle).topRows<3>().rightCols(device.n_m).transpose() * direction;
+  const Eigen::VectorXd lever = levers(device, chain).transpose() * direction;
   HeldForce held;
   for (int i = 0; i < device.n_m; ++i) {
-    const Interval torque = rendering::allowed_torque(device.motors()[i], 0.0);
-    const double weight = chain.gravity()[device.n_p + i];
-    const double left = lever[i] > 0.0 ? weight - torque.lb : torque.ub - weight;
-    const bool holds_weight = torque.contains(weight);
-    if (holds_weight && std::abs(lever[i]) < kNoLever) continue;
-    const double force = holds_weight ? left / std::abs(lever[i]) : 0.0;
-    if (force < held.force) held = {force, i};
+    const Interval left = left_of(device, chain, i);
+    keep_least(left, lever[i] > 0.0 ? -left.lb : left.ub, std::abs(lever[i]), i, held);
+  }
+  return held;
+}
+
+HeldForce held_force(const DeviceModel& device, const model::ChainData& chain) {
+  const Eigen::Matrix3Xd lever = levers(device, chain);
+  HeldForce held;
+  for (int i = 0; i < device.n_m; ++i) {
+    const Interval left = left_of(device, chain, i);
+    keep_least(left, std::min(-left.lb, left.ub), lever.col(i).norm(), i, held);
   }
   return held;
 }

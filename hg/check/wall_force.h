@@ -25,6 +25,9 @@ struct HeldForce {
 HeldForce held_force(const DeviceModel& device, const model::ChainData& chain,
                      const Eigen::Vector3d& direction);
 
+/// The same in the direction in which it is least.
+HeldForce held_force(const DeviceModel& device, const model::ChainData& chain);
+
 /// One wall of the box, over places of the handle spread evenly over it.
 struct WallForce {
   int limit = 0;  ///< Index of the Cartesian limit that has this wall

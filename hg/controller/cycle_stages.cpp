@@ -461,11 +461,14 @@ void CycleStages::watch_rest(Motion motion, const RobotState& robot,
     input.is_slow = true;
   } else if (motion == Motion::kRender) {
     input.v_H = rendering_.handle_twist(robot).head<3>();
-    const VectorA held = law.budget.limits + law.budget.conflict;
     input.acceleration = law.a_H.norm();
-    input.is_free = is_free(rendering_, law.budget);
-    input.is_at_limit = is_load(rendering_, held);
-    input.is_slow = is_slow(rendering_, state_.rendering, law);
+    // a hand is on the handle nearly always: only without one the rest counts
+    if (state_.estimation.rest.is_untouched) {
+      const VectorA held = law.budget.limits + law.budget.conflict;
+      input.is_free = is_free(rendering_, law.budget);
+      input.is_at_limit = is_load(rendering_, held);
+      input.is_slow = is_slow(rendering_, state_.rendering, law);
+    }
   }
   estimation_.watch_rest(input, state_.estimation);
 }

@@ -10,6 +10,7 @@
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/controller/rendering/twin_elements.h"
+#include "hg/core/stacked.h"
 #include "hg/model/chain_data.h"
 #include "hg/scenario/session.h"
 
@@ -32,6 +33,7 @@ constexpr double kAtLimit = 0.1;     // s, from which a limit counts as in the w
 constexpr double kAtSpeed = 0.2;     // s, the same for the largest speed of a joint
 constexpr double kNearLever = 0.02;  // m, below it a joint turns the handle on the spot
 constexpr double kReached = 0.02;    // share of a range within which an end counts as reached
+constexpr double kPlaces = 0.05;     // share of a range between two places
 
 // Only what moves the device is left of the twin. It coasts, so that the hand has hardly to pull.
 // `chain` is the twin at its start.
@@ -164,6 +166,7 @@ class Watch {
     }
     look_at_limits(sample.record);
     look_at_truth(sample.truth);
+    note_place(sample);
   }
 
   Way result(const CycleRecord& last) {
@@ -203,6 +206,17 @@ class Watch {
       count(acts && limit.cause == LimitCause::kVelocity, i, kAtSpeed, at_speed_s_, way_.rushed_s,
             way_.rushed);
     }
+  }
+
+  void note_place(const Sample& sample) {
+    const ConfigurationA& q_a = sample.record.twin.q_a;
+    const auto is_far = [&](int dof) {
+      const limits::JointLimits& limits = trial_.scenario.twin.model.dofs[dof].limits;
+      const double way = std::abs(position(q_a, dof) - position(way_.places.back().q_a, dof));
+      return way >= kPlaces * (limits.q_max - limits.q_min);
+    };
+    if (!way_.places.empty() && std::ranges::none_of(trial_.led, is_far)) return;
+    way_.places.push_back({stacked(sample.truth.q_p, sample.truth.q_m), q_a});
   }
 
   void look_at_truth(const Truth& truth) {

@@ -6,12 +6,19 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "hg/config/simulation/scenario.h"
 #include "hg/config/simulation/simulation.h"
 #include "hg/config/twin.h"
 
 namespace hg::workspace {
+
+/// Device and twin somewhere on the way.
+struct Place {
+  Eigen::VectorXd q;   ///< Posture of the device, gantry first
+  ConfigurationA q_a;  ///< Coordinates of the twin
+};
 
 /// Result of a trial.
 struct Way {
@@ -25,6 +32,7 @@ struct Way {
   double excess = 0.0;    ///< Largest true excess over a limit of the device, rad or m
   double shaken_s = 0.0;  ///< Time in which hand and device oscillated against each other, s
   std::string exceeded;   ///< That limit; empty: none by more than kExcessAllowed
+  std::vector<Place> places;  ///< Where it came to, each 5 % of a joint's range from the last
 };
 
 /// Share from which a way counts as whole.

@@ -78,6 +78,9 @@ class Check(unittest.TestCase):
         # 110 Nm less 30.7 Nm of gravity by a lever of at most 0.54 m
         self.assertGreater(sheet["force_N"]["least"], 50)
         self.assertLess(sheet["force_N"]["median"], 110 / 0.42)
+        self.assertEqual([wall["wall"] for wall in sheet["walls"]],
+                         ["x-", "x+", "y-", "y+", "z-", "z+"])
+        self.assertAlmostEqual(sheet["walls"][0]["least_N"], 154, delta=5)
 
     def test_all_faults_of_all_files_at_once_with_their_places(self):
         device = self.changed(DEVICE.parent, "device.yaml", ("kD_rot_1_per_s: 40", "kD_rot: 40"),

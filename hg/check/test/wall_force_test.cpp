@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hg/check/device_inspection.h"
+#include "hg/check/way_force.h"
 #include "hg/controller/rendering/motor_torque.h"
 #include "hg/workspace/test/cartesian_device.h"
 
@@ -127,6 +128,34 @@ TEST(WallForce, BelowFiftyNewtonsIsAWarning) {
                                     return finding.what.find(" holds ") != std::string::npos;
                                   }),
             6);
+}
+
+// A drawer along y that is led from one place to another.
+TEST(WayForce, OfADrawerIsWhatTheMotorsAlongItHoldAndInAnyDirectionTheWeakest) {
+  const config::DeviceConfig device = boxed_device();
+  config::Twin twin = config::load_twin("models/arms/fr3/drawer.yaml");
+  workspace::Way way;
+  for (const double at : {0.1, 0.3}) {
+    way.places.push_back(
+        {Eigen::VectorXd{{0.5, 0.4 + at, 0.5, 0.0, 1.5, 0.0}}, ConfigurationA::Constant(1, at)});
+  }
+  const std::vector<WayForce> forces = way_forces(device, twin, way);
+  ASSERT_EQ(forces.size(), 1u);
+  EXPECT_EQ(forces[0].twin_joint, "slide");
+  model::ChainData chain(twin.model.chain);
+  chain.update_kinematics(way.places[0].q_a, VectorA::Zero(1));
+  const Eigen::Vector3d column = chain.jacobian(twin.model.end_effector).col(0).head<3>();
+  const bool is_along_x = std::abs(column.x()) > 0.9;
+  EXPECT_NEAR(forces[0].along, is_along_x ? 75.0 : 60.0, 1e-6);
+  EXPECT_EQ(forces[0].motor, is_along_x ? "px" : "py");
+  EXPECT_NEAR(forces[0].any, 0.75 * 120.0 - 5.0 * 9.81, 1e-6);
+  EXPECT_EQ(forces[0].motor_of_any, "pz");
+
+  Collector out(twin.sources, twin.places);
+  inspect_way_forces(device, twin, way, out);
+  ASSERT_EQ(out.findings.size(), 1u);
+  EXPECT_EQ(out.findings[0].severity, Severity::kWarning);
+  EXPECT_NE(out.findings[0].what.find("of 41 N in any direction (pz)"), std::string::npos);
 }
 
 }  // namespace

@@ -41,12 +41,13 @@ void check_twin_model(const TwinModel& twin) {
   }
 }
 
-FeltMass felt_mass(const TwinModel& twin) {
+FeltMass felt_mass(const TwinModel& twin, const Eigen::Vector3d& scale) {
   constexpr double kStuck = 1e-6;  // of the largest mobility
   model::ChainData chain(twin.chain);
   const VectorA at_rest = VectorA::Zero(chain.model().nv());
   chain.update(twin.q_start, at_rest);
-  const Eigen::MatrixXd J = chain.jacobian(twin.end_effector).topRows<3>();
+  const Eigen::MatrixXd J =
+      scale.cwiseSqrt().asDiagonal() * chain.jacobian(twin.end_effector).topRows<3>();
   const Eigen::MatrixXd inverse_mass = inverse(Eigen::MatrixXd(chain.M()));
   const Eigen::Matrix3d mobility = J * inverse_mass * J.transpose();
   const SymmetricEigen eigen = symmetric_eigen(mobility);  // the smallest first
