@@ -186,6 +186,35 @@ TEST_P(StoppedArm, IsAtRestWithoutAFault) {
   }
 }
 
+// A hand pulls a drawer onto its stop and pushes it back at once, faster than the torque of the
+// wrist may build up: the device gives way, or stands, but does not push against the hand.
+TEST(PushedDrawer, NeverMovesAgainstTheHand) {
+  const TemporaryFolder folder;
+  folder.write("to_and_fro.yaml",
+               "frame: twin_joints\nhand: {stiffness_N_per_m: [400, 400, 400], damping_Ns_per_m: "
+               "[40, 40, 40], force_max_N: 30, angular_stiffness_Nm_per_rad: [0, 0, 0]}\n"
+               "segments:\n  - {start_s: 0.5, duration_s: 0.556, slide: 0.73}\n"
+               "  - {start_s: 1.486, duration_s: 0.774, slide: -0.3}\nduration_s: 2.6\n");
+  const std::string arm = std::filesystem::absolute("models/arms/fr3").string();
+  ScenarioRun run(config::load_scenario(
+      folder.write("drawer.yaml", "title: Drawer\ndescription: To and fro.\ndevice: " + arm +
+                                      "/device.yaml\ntwin: " + arm +
+                                      "/drawer.yaml\nperson: to_and_fro.yaml\nduration_s: 2.6\n")));
+  constexpr double kPush = 10.0;  // N
+  double fastest = 0.0, largest_push = 0.0;
+  bool is_at_its_end = false;
+  run.play([&](const Sample& sample) {
+    const CycleRecord& record = sample.record;
+    if (record.twin.q_a.size() == 0) return;
+    if (record.twin.q_a[0] > 0.2999) is_at_its_end = true;
+    const double push = -sample.truth.w_H[0];
+    largest_push = std::max(largest_push, push);
+    if (is_at_its_end && push > kPush) fastest = std::max(fastest, record.twin.dq_a[0]);
+  });
+  EXPECT_GT(largest_push, 3.0 * kPush);
+  EXPECT_LT(fastest, 1e-3);  // m/s
+}
+
 // The wrist of a UR is singular at 0, and a hand that has let go leaves the noise of the force
 // sensor: it moves no joint by more than what a free tool drifts anywhere.
 class SingularStart : public testing::TestWithParam<std::pair<const char*, const char*>> {

@@ -444,6 +444,21 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   }
 }
 
+// Accelerations of the joints that move the handle as the twin without its limits.
+VectorM Tasks::free_motion(const DeviceModel& device, const TaskInput& input) noexcept {
+  constexpr double kDamping = 1e-6;  // m^2, for singular postures
+  VectorA ddq_a = input.tau - input.twin_chain.c();
+  input.L.triangularView<Eigen::Lower>().solveInPlace(ddq_a);
+  input.L.transpose().triangularView<Eigen::Upper>().solveInPlace(ddq_a);
+  const auto J = input.J_H.middleCols(device.n_p, n_m_);
+  Vector6 a = input.J_a.lazyProduct(ddq_a);
+  a.noalias() -= input.J_H.leftCols(device.n_p).lazyProduct(ddq_p_);
+  Eigen::Matrix<double, 6, 6> JJ = J.lazyProduct(J.transpose());
+  JJ.diagonal().array() += kDamping;
+  const Vector6 f = JJ.llt().solve(a);
+  return J.transpose().lazyProduct(f);
+}
+
 // What each motor can give, as an acceleration of its joint: row and bounds are divided by the
 // inertia that the motor moves while all other joints keep their speed.
 void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexcept {
@@ -460,6 +475,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     if (std::abs(input.reference.dq_m[i]) > fastest) are_torques_known_ = false;
   }
 
+  VectorM led;  // found where a motor does not hold what it has to
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < n_m_; ++i) {
@@ -481,7 +497,13 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
-      torque = reached_torque(torque, input.motor_torque[i], dt_);
+      const double before = input.motor_torque[i];
+      torque = reached_torque(torque, before, dt_);
+      if (!torque.contains(known[i])) {
+        if (led.size() == 0) led = free_motion(device, input);
+        const double change = inertia * row.head(n_m_).dot(led);
+        torque = eased_torque(torque, limit.torque, before, known[i], known[i] + change);
+      }
     }
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};

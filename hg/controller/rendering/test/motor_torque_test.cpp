@@ -159,6 +159,21 @@ TEST(MotorRows, RatingsCapAccelerationsOnlyWithoutMotorModel) {
   EXPECT_GT(largest_acceleration(true), 10.0);
 }
 
+TEST(MotorTorque, IsEasedOnlyWhereToYieldTakesMoreThanToStand) {
+  const Interval allowed = {-9.0, 9.0}, reached = {-1.0, 6.5};
+  const auto eased = [&](double before, double held, double led) {
+    return eased_torque(reached, allowed, before, held, led);
+  };
+  EXPECT_EQ(eased(6.2, 8.0, 10.0).ub, 8.0);
+  EXPECT_EQ(eased(6.2, 8.0, 7.0).ub, 6.5);   // yields
+  EXPECT_EQ(eased(6.2, 6.4, 10.0).ub, 6.5);  // within reach
+  EXPECT_EQ(eased(8.5, 8.0, 10.0).ub, 6.5);  // the load falls
+  EXPECT_EQ(eased(-0.5, -8.0, -10.0).lb, -8.0);
+  EXPECT_EQ(eased(-0.5, -8.0, -10.0).ub, 6.5);
+  EXPECT_EQ(eased(-0.5, -8.0, -7.0).lb, -1.0);
+  EXPECT_EQ(eased(-0.5, -4.0, -10.0).lb, -1.0);  // a light load
+}
+
 TEST(MotorRows, AReferenceThatHasJumpedIsSolvedWithoutThem) {
   Pulled twin(true);
   twin.pull(force(1.0, 0.0, 0.0));
