@@ -87,10 +87,11 @@ bool is_met(const RestState& rest) noexcept {
 void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const Eigen::Vector3d f = input.w_S.head<3>() - input.inertia_S;
   const BandPass pass(dt);
-  if (rest.mean.isZero(0.0)) rest.fast = rest.mean = input.w_S;
+  if (rest.watched_s == 0.0) rest.fast = rest.mean = input.w_S;
+  const bool is_new = rest.watched_s < 0.5 * kBlock;
+  rest.watched_s += dt;
   rest.fast += std::min(1.0, dt / kFast) * (input.w_S - rest.fast);
   rest.mean += std::min(1.0, dt / kMean) * (input.w_S - rest.mean);
-  const bool is_new = rest.blocks[0] == 0.0 && rest.samples * dt < 0.5 * kBlock;
   const Eigen::Vector3d x = is_new ? rest.fast.head<3>() - input.inertia_S : f;
   // as if the band had always seen this wrench: a first sample's noise would be a step
   if (is_new) rest.band[0].fill(-pass.through * x);
@@ -104,7 +105,10 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
     rest.samples = 0;
   }
   const Vector6 change = rest.fast - (is_met(rest) ? rest.zero : rest.mean);
-  const bool is_steady = is_within(change, kForce + payload_force(input, input.acceleration));
+  // a hand that pushes a light twin off accelerates the payload, too: at least half is a touch
+  const double inertia =
+      std::min(payload_force(input, input.acceleration), 0.5 * rest.fast.head<3>().norm());
+  const bool is_steady = is_within(change, kForce + inertia);
   rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
   if (!is_steady) rest.mean = rest.fast;
   const bool is_calm = rest.tremor < tremor_limit(dt, input.noise, kTremor);

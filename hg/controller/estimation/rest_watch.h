@@ -35,6 +35,7 @@ struct RestInput {
 /// Part of the copyable state of a cycle.
 struct RestState {
   static constexpr int kBlocks = 16;
+  double watched_s = 0.0;  ///< Since the watch began
   /// Two band-passes of the force, one after the other; states of each.
   std::array<std::array<Eigen::Vector3d, 2>, 2> band = {
       {{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()},
@@ -56,8 +57,8 @@ struct RestState {
 
 /// Words of the state hash. Filters, and all while the watch does not act, are left out.
 void hashed(auto& hash, const RestState& state) {
-  const auto& [band, blocks, tremor, sum, samples, steady, v_H, fast, mean, is_untouched, braked_s,
-               is_known, known_up, known_s, zero] = state;
+  const auto& [watched_s, band, blocks, tremor, sum, samples, steady, v_H, fast, mean, is_untouched,
+               braked_s, is_known, known_up, known_s, zero] = state;
   if (is_known || braked_s > 0.0) hash.mix(is_untouched, braked_s, known_s, zero);
 }
 

@@ -112,6 +112,21 @@ TEST_P(RestWatchSeeds, ATareSeesAHandThatTrembles) {
   EXPECT_TRUE(trembles(kDt, 0.08, trial.run(GetParam(), 0.0, 0.5)));
 }
 
+// A steady push moves a light twin off with a heavy payload's acceleration: no rest for 1.6 s.
+TEST(RestWatch, APushIsSeenAlsoWhereThePayloadIsHeavy) {
+  Trial pushed = {.force = [](double t) { return t < 3.0 ? 0.0 : 10.0; }, .noise = 0.0};
+  pushed.input.payload_mass = 3.0;
+  pushed.input.acceleration = 1.7;
+  RestState rest = pushed.run(1, 0.0, 2.9);
+  rest.braked_s = 0.0;  // a twin that is pushed is not at rest before
+  pushed.input.is_free = false;
+  rest = pushed.run(1, 2.9, 3.05, rest);
+  EXPECT_FALSE(rest.is_untouched);
+  pushed.input.is_free = true;
+  pushed.look = [](double t, const RestState& now) { ASSERT_EQ(braking_rate(now), 0.0) << t; };
+  pushed.run(1, 3.05, 4.5, rest);
+}
+
 TEST(RestWatch, LetsTheTwinBeWhereSomethingElseMovesOrHoldsIt) {
   Trial held = {.force = [](double) { return 2.0; }};
   held.input.is_free = false;
