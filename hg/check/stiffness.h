@@ -30,9 +30,9 @@ struct CalmTwin {
 struct StiffnessLimits {
   /// Mass of the twin as it is felt, TwinModel::felt_scale, where it is lightest, kg.
   double mass = 0.0;
-  double damping = 0.0;  ///< damping of the twin in that direction, as it is felt, Ns/m
-  double period = 0.0;   ///< T, s
-  double delay = 0.0;    ///< delay T_d of the wrench: sensor, low-pass and drives, s
+  double damping = 0.0;             ///< damping of the twin in that direction, as it is felt, Ns/m
+  double period = 0.0;              ///< T, s
+  double delay = 0.0;               ///< delay T_d of the wrench: sensor, low-pass and drives, s
   double acceleration = kInfinity;  ///< a, along the worst axis of B, m/s^2
 
   /// Of drives that follow positions, see DriveLoop; empty for others.

@@ -223,7 +223,7 @@ Stroke Rig::lead(int joint, double way) {
     speed_bias += sensors_.dq_m / still;
   }
   const VectorPM from = positions();
-  VectorPM lowest = VectorPM::Zero(from.size()), highest = lowest;
+  stroke.lowest = stroke.highest = VectorPM::Zero(from.size());
   const VectorM motors_from = robot_.theta_m;
   double t = 0.0, pace = 0.0, lag = 0.0, torque = 0.0;
   int in_the_middle = 0;
@@ -247,9 +247,8 @@ Stroke Rig::lead(int joint, double way) {
     exchange_on();
     stroke.way = way * at.position;
     stroke.moved = positions() - from;
-    lowest = lowest.cwiseMin(stroke.moved);
-    highest = highest.cwiseMax(stroke.moved);
-    stroke.swing = highest - lowest;
+    stroke.lowest = stroke.lowest.cwiseMin(stroke.moved);
+    stroke.highest = stroke.highest.cwiseMax(stroke.moved);
     if (robot_.theta_m.size() > 0) stroke.motors = robot_.theta_m - motors_from;
     if (pace > 0.0) {
       stroke.by_speed += dt() * (sensors_.dq_m - speed_bias);

@@ -54,7 +54,7 @@ std::string wrong_zero(const Vector3d& axis, int joint, const std::vector<Vector
 
 // The joint beside the one that is led that moved most, and by how much.
 std::pair<int, double> most_of_others(const Stroke& stroke) {
-  VectorPM others = stroke.swing;
+  VectorPM others = stroke.highest - stroke.lowest;
   others[stroke.joint] = 0.0;
   Eigen::Index most = 0;
   const double swing = others.maxCoeff(&most);

@@ -15,7 +15,7 @@ struct Stroke {
   int joint = -1;
   double way = 0.0;            ///< Commanded change, up to where the stroke ended
   VectorPM moved;              ///< Change of each encoder
-  VectorPM swing;              ///< Its largest less its smallest value under way
+  VectorPM lowest, highest;    ///< Its smallest and largest value under way
   VectorM motors;              ///< Change of each motor encoder; empty: there are none
   VectorM by_speed;            ///< Measured speed of each manipulator joint, integrated
   bool has_gyroscope = false;  ///< Whether `turned` was measured

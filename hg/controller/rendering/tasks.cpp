@@ -118,6 +118,23 @@ Interval stoppable(Interval ddq, const Interval& lasting, double speed) noexcept
   return ddq;
 }
 
+// Accelerations of the manipulator's joints that move the handle as the twin without its limits,
+// with the gantry as known.
+VectorM free_motion(const DeviceModel& device, const TaskInput& input,
+                    const VectorP& ddq_p) noexcept {
+  constexpr double kDamping = 1e-6;  // m^2, for singular postures
+  VectorA ddq_a = input.tau - input.twin_chain.c();
+  input.L.triangularView<Eigen::Lower>().solveInPlace(ddq_a);
+  input.L.transpose().triangularView<Eigen::Upper>().solveInPlace(ddq_a);
+  const auto J = input.J_H.middleCols(device.n_p, device.n_m);
+  Vector6 a = input.J_a.lazyProduct(ddq_a);
+  a.noalias() -= input.J_H.leftCols(device.n_p).lazyProduct(ddq_p);
+  Eigen::Matrix<double, 6, 6> JJ = J.lazyProduct(J.transpose());
+  JJ.diagonal().array() += kDamping;
+  const Vector6 f = JJ.llt().solve(a);
+  return J.transpose().lazyProduct(f);
+}
+
 // Deceleration of a joint in a stop: with `rate`, but no more than the motors give, all joints on
 // one line in the time `line` (s), or without such a line, of a stretched arm, a part of the
 // rating.
@@ -444,21 +461,6 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
   }
 }
 
-// Accelerations of the joints that move the handle as the twin without its limits.
-VectorM Tasks::free_motion(const DeviceModel& device, const TaskInput& input) noexcept {
-  constexpr double kDamping = 1e-6;  // m^2, for singular postures
-  VectorA ddq_a = input.tau - input.twin_chain.c();
-  input.L.triangularView<Eigen::Lower>().solveInPlace(ddq_a);
-  input.L.transpose().triangularView<Eigen::Upper>().solveInPlace(ddq_a);
-  const auto J = input.J_H.middleCols(device.n_p, n_m_);
-  Vector6 a = input.J_a.lazyProduct(ddq_a);
-  a.noalias() -= input.J_H.leftCols(device.n_p).lazyProduct(ddq_p_);
-  Eigen::Matrix<double, 6, 6> JJ = J.lazyProduct(J.transpose());
-  JJ.diagonal().array() += kDamping;
-  const Vector6 f = JJ.llt().solve(a);
-  return J.transpose().lazyProduct(f);
-}
-
 // What each motor can give, as an acceleration of its joint: row and bounds are divided by the
 // inertia that the motor moves while all other joints keep their speed.
 void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexcept {
@@ -500,7 +502,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
       const double before = input.motor_torque[i];
       torque = reached_torque(torque, before, dt_);
       if (!torque.contains(known[i])) {
-        if (led.size() == 0) led = free_motion(device, input);
+        if (led.size() == 0) led = free_motion(device, input, ddq_p_);
         const double change = inertia * row.head(n_m_).dot(led);
         torque = eased_torque(torque, limit.torque, before, known[i], known[i] + change);
       }

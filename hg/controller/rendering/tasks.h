@@ -107,7 +107,6 @@ class Tasks {
                      const TaskInput& input) noexcept;
   void fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept;
   void fill_motors(const DeviceModel& device, const TaskInput& input) noexcept;
-  VectorM free_motion(const DeviceModel& device, const TaskInput& input) noexcept;
   void brake_together() noexcept;
   void keep_holding(const DeviceModel& device, const TaskInput& input) noexcept;
   void stop_inside(const DeviceModel& device, const TaskInput& input) noexcept;

@@ -74,8 +74,6 @@ class FakeRobot {
   /// From now on sends a state for each of these calls alone, so that none waits for a test that
   /// another program holds up.
   void send_one() { states_to_send_.store(std::max(states_to_send_.load(), 0) + 1); }
-  /// Number of the newest state.
-  std::uint64_t newest() const { return newest_.load(); }
   /// Sends 1000 states per second again.
   void send_freely() { states_to_send_.store(-1); }
   /// The next states leave out as many numbers.
@@ -103,8 +101,8 @@ class FakeRobot {
     is_leaving_ = true;
   }
 
-  std::atomic<int> commands{0};  ///< torques received
-  std::atomic<int> motions{0}, recoveries{0}, connections{0};
+  std::atomic<int> commands{0};                                           ///< torques received
+  std::atomic<int> motions{0}, recoveries{0}, connections{0}, newest{0};  ///< newest: state
   std::array<double, kJoints> last_torques() {
     const std::lock_guard lock(mutex_);
     return last_.tau_J_d;
@@ -329,8 +327,7 @@ class FakeRobot {
   void send_state(udp::UdpSocket& socket) {
     if (states_to_send_.load() == 0) return socket.wait(now_ns() + 100'000);
     if (states_to_send_.load() > 0) states_to_send_.fetch_sub(1);
-    state_.message_id = id_++;
-    newest_.store(state_.message_id);
+    newest = static_cast<int>(state_.message_id = id_++);
     state_.tau_ext_hat_filtered = behaviour_.tau_ext;
     std::array<float, 6> wrench = behaviour_.K_F_ext;
     wrench[2] -= behaviour_.weight_per_kg * (behaviour_.tool_kg - state_.m_load);
@@ -358,7 +355,6 @@ class FakeRobot {
   bool is_connected_ = false, is_leaving_ = false;
   int listener_ = -1, stream_ = -1;
   std::uint16_t port_ = 0;
-  std::atomic<std::uint64_t> newest_{0};
   std::atomic<int> states_to_send_{-1};  ///< -1: as many as there are
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -69,7 +69,7 @@ struct Bench {
   ~Bench() { robot.send_freely(); }
   void cycle() {
     // a state that is still under way is read first: an answer to an older one is not sent
-    if (sensors.sequence >= robot.newest()) robot.send_one();
+    if (static_cast<int>(sensors.sequence) >= robot.newest) robot.send_one();
     device->read(sensors);
     command.sequence = sensors.sequence;
     if (!is_led) command.q_m = sensors.q_m;
