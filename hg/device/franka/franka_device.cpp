@@ -268,7 +268,8 @@ void FrankaDevice::take_answers() noexcept {
     const auto status = static_cast<MoveStatus>(answer.status);
     if (status == MoveStatus::kMotionStarted) continue;
     move_id_ = 0;
-    if (status == MoveStatus::kSuccess || phase_ == Phase::kFinishing) continue;
+    const bool is_ended_by_us = phase_ == Phase::kFinishing || answer.header.id == ended_id_;
+    if (status == MoveStatus::kSuccess || is_ended_by_us) continue;
     if (status == MoveStatus::kEmergencyAborted) {
       phase_ = Phase::kIdle;  // the user stop is an input of safety, no fault of the drives
       continue;
@@ -352,7 +353,8 @@ void FrankaDevice::write(const CommandFrame& command) noexcept {
     was_not_finite_ = true;
     return finish_motion();
   }
-  if (phase_ == Phase::kIdle && !was_not_finite_) start_motion();
+  const bool is_stopped = state_.robot_mode == RobotMode::kUserStopped;
+  if (phase_ == Phase::kIdle && !was_not_finite_ && !is_stopped) start_motion();
   if (phase_ != Phase::kMoving) return;
   if (command.sequence != state_.message_id) {
     ++own_.late;  // an answer to an older state does not count for the robot
@@ -429,6 +431,7 @@ void FrankaDevice::finish_motion() noexcept {
     if (phase_ == Phase::kStarting) session_.send(Command::kStopMove, {});
     phase_ = Phase::kFinishing;
     phase_since_ = id;
+    ended_id_ = move_id_;
   } else if (id - phase_since_ == kEndPatience) {
     session_.send(Command::kStopMove, {});
   }

@@ -125,6 +125,7 @@ class FrankaDevice final : public device::ConnectedDevice {
   Phase phase_ = Phase::kIdle;
   std::uint64_t phase_since_ = 0;   ///< message_id at which the phase began
   std::uint32_t move_id_ = 0;       ///< number of the Move that runs, 0 = none
+  std::uint32_t ended_id_ = 0;      ///< number of the last Move that this driver has ended
   std::uint32_t recovery_id_ = 0;   ///< number of the recovery that was asked for, 0 = none
   std::uint64_t recovered_at_ = 0;  ///< message_id of the newest state when it had recovered
   bool was_reset_ = false;          ///< reset button in the last command

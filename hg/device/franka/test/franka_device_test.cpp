@@ -288,6 +288,9 @@ TEST(FrankaDevice, TheUserStopIsAnEmergencyStop) {
   ASSERT_TRUE(bench.start());
   bench.robot.press_user_stop(true);
   ASSERT_TRUE(bench.cycle_until([&] { return bench.sensors.safety.emergency_stop; }));
+  const int motions = bench.robot.motions;
+  for (int i = 0; i < 20; ++i) bench.cycle();
+  EXPECT_EQ(bench.robot.motions, motions);  // no motion is asked for meanwhile
   bench.command.enable = false;
   bench.robot.press_user_stop(false);
   ASSERT_TRUE(bench.cycle_until([&] { return !bench.sensors.safety.emergency_stop; }));
