@@ -111,7 +111,9 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const bool is_steady = is_within(change, kForce + inertia);
   rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
   if (!is_steady) rest.mean = rest.fast;
-  const bool is_calm = rest.tremor < tremor_limit(dt, input.noise, kTremor);
+  // braking itself shakes the payload: it ends early only by a touch
+  const bool is_braking = rest.braked_s > 0.0 && rest.braked_s < kAnswer;
+  const bool is_calm = is_braking || rest.tremor < tremor_limit(dt, input.noise, kTremor);
   rest.is_untouched = is_calm && rest.steady * dt >= RestState::kBlocks * kBlock;
 }
 
