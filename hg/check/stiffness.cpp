@@ -258,7 +258,7 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
   if (scenario.surfaces.empty()) return {};
   const StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);
   const Interval mass = rendering::felt_mass(scenario.twin.model).mass;
-  const double scale = scenario.twin.model.felt_scale.head<3>().minCoeff();
+  const double scale = mass.lb / limits.mass;  // what is felt is divided by it
   for (std::size_t i = 0; i < scenario.surfaces.size(); ++i) {
     const surfaces::Surface& surface = scenario.surfaces[i];
     if (surface.contact == surfaces::Contact::kStop) continue;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "hg/check/wall_force.h"
@@ -15,11 +14,11 @@ namespace {
 
 constexpr double kLever = 0.02;  // m or 1: below, a joint turns the handle on the spot
 
-void keep_least(const HeldForce& held, const DeviceModel& device, double& least,
-                std::string& motor) {
-  if (held.motor < 0 || held.force >= least) return;
-  least = held.force;
-  motor = device.manipulator_joint(held.motor);
+bool keep_least(const HeldForce& held, const DeviceModel& device, LeastForce& least) {
+  if (held.motor < 0 || held.force >= least.force) return false;
+  least.force = held.force;
+  least.motor = device.manipulator_joint(held.motor);
+  return true;
 }
 
 // The worse of pushes to both sides along `way`.
@@ -29,47 +28,60 @@ HeldForce held_along(const DeviceModel& device, const model::ChainData& chain,
   return there.force < back.force ? there : back;
 }
 
+void add_line(const std::string& item, const std::string& what, double force, Collector& out) {
+  const bool is_weak = force < model::kPaperForce;
+  out.add(is_weak ? Severity::kWarning : Severity::kNote, item,
+          what + (is_weak ? ": with more, rule 111 or 324 may stop the device" : ""),
+          is_weak ? "push less, or place the twin where the arm is stronger" : "");
+}
+
 }  // namespace
 
-std::vector<WayForce> way_forces(const config::DeviceConfig& device, const config::Twin& twin,
-                                 const workspace::Way& way) {
+WayForces way_forces(const config::DeviceConfig& device, const config::Twin& twin,
+                     const workspace::Way& way) {
   const DeviceModel& model = device.model;
-  if (model.motors().empty()) return {};
+  WayForces found;
+  if (model.motors().empty()) return found;
+  for (const int dof : way.led) found.joints.push_back({.dof = dof});
   WallPostures postures(device);
-  model::ChainData chain(twin.model.chain);
+  const model::ChainData& chain = postures.chain();
+  model::ChainData twin_chain(twin.model.chain);
   const VectorA at_rest = VectorA::Zero(twin.model.chain.nv());
-  std::vector<WayForce> found;
-  for (int i = 0; i < std::ssize(twin.model.dofs); ++i) {
-    const rendering::TwinDof& dof = twin.model.dofs[i];
-    WayForce force = {.twin_joint = dof.name};
-    for (const workspace::Place& place : way.places) {
-      chain.update_kinematics(place.q_a, at_rest);
-      const Eigen::Vector3d column = chain.jacobian(twin.model.end_effector).col(i).head<3>();
+  for (const workspace::Place& place : way.places) {
+    postures.best_from(place.q, [&] { return held_force(model, chain).force; });
+    keep_least(held_force(model, chain), model, found.any);
+    twin_chain.update_kinematics(place.q_a, at_rest);
+    const model::Jacobian& J = twin_chain.jacobian(twin.model.end_effector);
+    for (JointForce& joint : found.joints) {
+      const Eigen::Vector3d column = J.col(joint.dof).head<3>();
       if (!(column.norm() > kLever)) continue;
       const Eigen::Vector3d along = column.normalized();
-      const double before = force.along;
-      postures.best_from(place.q, [&] { return held_along(model, postures.chain(), along).force; });
-      keep_least(held_along(model, postures.chain(), along), model, force.along, force.motor);
-      if (force.along < before) force.at = place.q_a[dof.q_index];
-      postures.best_from(place.q, [&] { return held_force(model, postures.chain()).force; });
-      keep_least(held_force(model, postures.chain()), model, force.any, force.motor_of_any);
+      postures.best_from(place.q, [&] { return held_along(model, chain, along).force; });
+      if (!keep_least(held_along(model, chain, along), model, joint)) continue;
+      joint.at = place.q_a[twin.model.dofs[joint.dof].q_index];
     }
-    if (std::isfinite(force.along)) found.push_back(force);
   }
+  std::erase_if(found.joints, [](const JointForce& joint) { return !std::isfinite(joint.force); });
   return found;
 }
 
 void inspect_way_forces(const config::DeviceConfig& device, const config::Twin& twin,
                         const workspace::Way& way, Collector& out) {
-  for (const WayForce& force : way_forces(device, twin, way)) {
-    const bool is_weak = std::min(force.along, force.any) < model::kPaperForce;
-    out.add(is_weak ? Severity::kWarning : Severity::kNote, "joints." + force.twin_joint,
-            fmt::format("where it jams or ends, the motors hold a hand of {:.0f} N along its way "
-                        "({}, at {:.2f}), and of {:.0f} N in any direction ({}){}",
-                        force.along, force.motor, force.at, force.any, force.motor_of_any,
-                        is_weak ? ": with more, rule 111 or 324 may stop the device" : ""),
-            is_weak ? "push less, or place the twin where the arm is stronger" : "");
+  const WayForces found = way_forces(device, twin, way);
+  for (const JointForce& joint : found.joints) {
+    const rendering::TwinDof& dof = twin.model.dofs[joint.dof];
+    add_line("joints." + dof.name,
+             fmt::format("where it jams or ends, the motors hold a hand of {:.0f} N along its way "
+                         "({}, at {:.2f} {})",
+                         joint.force, joint.motor, joint.at, dof.is_angle ? "rad" : "m"),
+             joint.force, out);
   }
+  if (!std::isfinite(found.any.force)) return;
+  add_line(
+      "placement",
+      fmt::format("on the twin's way, the motors hold a hand of {:.0f} N in any direction ({})",
+                  found.any.force, found.any.motor),
+      found.any.force, out);
 }
 
 }  // namespace hg::check

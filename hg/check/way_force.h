@@ -14,24 +14,31 @@
 
 namespace hg::check {
 
-/// Where on its way a joint of the twin is held with the least force.
-struct WayForce {
-  std::string twin_joint;
-  double along = kInfinity;  ///< Force along the way of the joint, to its worse side, N
-  double at = 0.0;           ///< Position of the joint there, m or rad
-  std::string motor;         ///< Motor that gives way first there
-  double any = kInfinity;    ///< Force in the worst direction at the worst place, N
-  std::string motor_of_any;  ///< Motor that gives way first to it
+/// The least force of all places on a way, and the motor that gives way first there.
+struct LeastForce {
+  double force = kInfinity;  ///< N; infinite = none was found
+  std::string motor;
 };
 
-/// One entry for each joint of the twin that moved the handle on the way. A joint that jams, is
-/// locked or meets its stop is pushed along its way; a hand that pushes against its bearings pushes
-/// in any direction. An arm with a motion in itself makes room for its motors with it. Empty for a
-/// device whose law does not model the motors.
-std::vector<WayForce> way_forces(const config::DeviceConfig& device, const config::Twin& twin,
-                                 const workspace::Way& way);
+/// A push along the way of one joint of the twin, to its worse side: where it jams, is locked or
+/// meets its stop.
+struct JointForce : LeastForce {
+  int dof = 0;      ///< Index in TwinModel::dofs
+  double at = 0.0;  ///< Position of the joint there, m or rad
+};
 
-/// Adds a line for each joint: a warning where it is held with less than the 50 N of [HG] III-B.
+struct WayForces {
+  std::vector<JointForce> joints;  ///< Of those that were led and move the handle
+  LeastForce any;                  ///< In the worst direction, as against the joints' bearings
+};
+
+/// Forces held over the places of `way`. An arm with a motion in itself makes room for its motors
+/// with it. Without forces for a device whose law does not model the motors.
+WayForces way_forces(const config::DeviceConfig& device, const config::Twin& twin,
+                     const workspace::Way& way);
+
+/// Adds a line for each joint and one for all directions: a warning where it is less than the 50 N
+/// of [HG] III-B.
 void inspect_way_forces(const config::DeviceConfig& device, const config::Twin& twin,
                         const workspace::Way& way, Collector& out);
 

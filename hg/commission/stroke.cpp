@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace hg::commission {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStood = 0.2;   // share of the commanded way below which a joint has not moved
-constexpr double kSwing = 0.01;  // rad or m, of a joint that is held, while another one is led
-constexpr double kRatio = 0.1;   // largest deviation of a ratio of encoders and speeds
+constexpr double kStood = 0.2;  // share of the commanded way below which a joint has not moved
+constexpr double kSwing = 0.01, kSlideSwing = 0.003;  // rad, m, of a joint that is held
+constexpr double kRatio = 0.1;  // largest deviation of a ratio of encoders and speeds
 constexpr double kRatioUnderWay = 0.3;
 constexpr double kTurnRatio = 0.1;    // the same of the gyroscope
 constexpr double kAxisAngle = 0.087;  // rad, largest deviation of an axis: 5 degrees
@@ -52,13 +51,43 @@ std::string wrong_zero(const Vector3d& axis, int joint, const std::vector<Vector
   return names;
 }
 
-// The joint beside the one that is led that moved most, and by how much.
-std::pair<int, double> most_of_others(const Stroke& stroke) {
-  VectorPM others = stroke.highest - stroke.lowest;
-  others[stroke.joint] = 0.0;
-  Eigen::Index most = 0;
-  const double swing = others.maxCoeff(&most);
-  return {static_cast<int>(most), swing};
+// The joint that moved most while it was held and `stroke.joint` was led; -1: none by much.
+int swinging_beside(const Stroke& stroke, const DeviceModel& device) {
+  int found = -1;
+  double most = 1.0;
+  for (int i = 0; i < stroke.moved.size(); ++i) {
+    const double allowed = device.chain.joints()[i].is_slide() ? kSlideSwing : kSwing;
+    const double swing = (stroke.highest[i] - stroke.lowest[i]) / allowed;
+    if (i == stroke.joint || swing <= most) continue;
+    most = swing;
+    found = i;
+  }
+  return found;
+}
+
+// Whether motor encoder and speed of the joint that was led agree with its link encoder.
+std::string problem_of_ratios(const Stroke& stroke, const DeviceModel& device) {
+  const int k = stroke.joint - device.n_p;
+  const std::string& name = name_of(device, stroke.joint);
+  const double moved = stroke.moved[stroke.joint];
+  if (k >= 0 && stroke.motors.size() > k) {
+    if (const std::string wrong = words_of_ratio(stroke.motors[k] / moved, kRatio);
+        !wrong.empty()) {
+      return fmt::format(
+          "the motor of {} moves {} as its link: sign, gear ratio or order of the motor encoders",
+          name, wrong);
+    }
+  }
+  if (k >= 0) {
+    if (const std::string wrong = words_of_ratio(stroke.by_speed[k] / moved, kRatio);
+        !wrong.empty()) {
+      return fmt::format(
+          "by its speed {} moves {} as by its encoder: sign, unit or order of the "
+          "speeds",
+          name, wrong);
+    }
+  }
+  return "";
 }
 
 std::string problem_of_turn(const Stroke& stroke, const DeviceModel& device,
@@ -127,16 +156,19 @@ std::string problem_of(const Stroke& stroke, const DeviceModel& device,
   const int i = stroke.joint;
   const std::string& name = name_of(device, i);
   const double moved = stroke.moved[i];
-  const auto [swinging, swing] = most_of_others(stroke);
-  const std::string& name_of_other = name_of(device, swinging);
-  const bool has_stood = std::abs(moved) < kStood * swing;
-  if (has_stood && swing > kStood * std::abs(stroke.way)) {
-    return fmt::format("{} moves when {} is led: commands or encoders are swapped", name_of_other,
-                       name);
-  }
-  if (!has_stood && swing > kSwing) {
-    return fmt::format("{} moves by {:.0f} {} while {} is led: it is not held as its model says",
-                       name_of_other, 1e3 * swing, unit_of(device, swinging), name);
+  Eigen::Index most = 0;
+  stroke.moved.cwiseAbs().maxCoeff(&most);
+  const double other = std::abs(stroke.moved[most]);
+  if (most != i && other > kStood * std::abs(stroke.way)) {
+    const std::string& name_of_other = name_of(device, static_cast<int>(most));
+    if (std::abs(moved) < kStood * other) {
+      return fmt::format("{} moves when {} is led: commands or encoders are swapped", name_of_other,
+                         name);
+    }
+    if (stroke.is_cut) {
+      return fmt::format("{} leaves its place while {} is led: it is not held as its model says",
+                         name_of_other, name);
+    }
   }
   if (std::abs(moved) < kStood * std::abs(stroke.way)) {
     return fmt::format("{} does not move: {:.1f} of {:.1f} {}", name, 1e3 * moved, 1e3 * stroke.way,
@@ -152,24 +184,11 @@ std::string problem_of(const Stroke& stroke, const DeviceModel& device,
     return fmt::format("{} moves {} as commanded: gear ratio or unit of its command or its encoder",
                        name, wrong);
   }
-  const int k = i - device.n_p;
-  if (k >= 0 && stroke.motors.size() > k) {
-    if (const std::string wrong = words_of_ratio(stroke.motors[k] / moved, kRatio);
-        !wrong.empty()) {
-      return fmt::format(
-          "the motor of {} moves {} as its link: sign, gear ratio or order of the motor encoders",
-          name, wrong);
-    }
+  if (const int swinging = swinging_beside(stroke, device); swinging >= 0) {
+    return fmt::format("{} swings while {} is led: it is not held as its model says",
+                       name_of(device, swinging), name);
   }
-  if (k >= 0) {
-    if (const std::string wrong = words_of_ratio(stroke.by_speed[k] / moved, kRatio);
-        !wrong.empty()) {
-      return fmt::format(
-          "by its speed {} moves {} as by its encoder: sign, unit or order of the "
-          "speeds",
-          name, wrong);
-    }
-  }
+  if (const std::string wrong = problem_of_ratios(stroke, device); !wrong.empty()) return wrong;
   if (stroke.has_gyroscope && !device.chain.joints()[i].is_slide()) {
     const std::string turn = problem_of_turn(stroke, device, chain);
     if (!turn.empty()) return turn;

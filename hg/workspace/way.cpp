@@ -34,6 +34,7 @@ constexpr double kAtSpeed = 0.2;     // s, the same for the largest speed of a j
 constexpr double kNearLever = 0.02;  // m, below it a joint turns the handle on the spot
 constexpr double kReached = 0.02;    // share of a range within which an end counts as reached
 constexpr double kPlaces = 0.05;     // share of a range between two places
+constexpr double kAtEnd = 0.002;     // the same, from an end of it
 
 // Only what moves the device is left of the twin. It coasts, so that the hand has hardly to pull.
 // `chain` is the twin at its start.
@@ -69,7 +70,7 @@ std::vector<int> led_joints(const rendering::TwinModel& twin, const person::Hand
   for (int i = 0; i < std::ssize(twin.dofs); ++i) {
     const limits::JointLimits& limits = twin.dofs[i].limits;
     const double range = limits.q_max - limits.q_min;
-    if (std::isfinite(range) && duration_of(twin, hand, chain, i, range) < kLongest)
+    if (range > 0.0 && std::isfinite(range) && duration_of(twin, hand, chain, i, range) < kLongest)
       led.push_back(i);
   }
   return led;
@@ -153,6 +154,7 @@ class Watch {
       const double q = position(trial.scenario.twin.model.q_start, dof);
       reached_.push_back({q, q});
     }
+    way_.led = trial.led;
   }
 
   void look(const Sample& sample) {
@@ -212,8 +214,12 @@ class Watch {
     const ConfigurationA& q_a = sample.record.twin.q_a;
     const auto is_far = [&](int dof) {
       const limits::JointLimits& limits = trial_.scenario.twin.model.dofs[dof].limits;
-      const double way = std::abs(position(q_a, dof) - position(way_.places.back().q_a, dof));
-      return way >= kPlaces * (limits.q_max - limits.q_min);
+      const double range = limits.q_max - limits.q_min;
+      const double q = position(q_a, dof), last = position(way_.places.back().q_a, dof);
+      const auto is_at_end = [&](double at) {
+        return std::min(at - limits.q_min, limits.q_max - at) < kAtEnd * range;
+      };
+      return std::abs(q - last) >= kPlaces * range || (is_at_end(q) && !is_at_end(last));
     };
     if (!way_.places.empty() && std::ranges::none_of(trial_.led, is_far)) return;
     way_.places.push_back({stacked(sample.truth.q_p, sample.truth.q_m), q_a});

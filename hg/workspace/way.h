@@ -32,7 +32,8 @@ struct Way {
   double excess = 0.0;    ///< Largest true excess over a limit of the device, rad or m
   double shaken_s = 0.0;  ///< Time in which hand and device oscillated against each other, s
   std::string exceeded;   ///< That limit; empty: none by more than kExcessAllowed
-  std::vector<Place> places;  ///< Where it came to, each 5 % of a joint's range from the last
+  std::vector<int> led;   ///< Joints of the twin that were led
+  std::vector<Place> places;  ///< At their ends, and between them in steps of 5 % of their ranges
 };
 
 /// Share from which a way counts as whole.

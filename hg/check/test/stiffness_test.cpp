@@ -54,6 +54,16 @@ TEST(Stiffness, OfATwinWithAScaleIsThatOfTheBodyThatIsFelt) {
   EXPECT_NEAR(scaled.mass, 0.5 * one.mass, 1e-9);
   EXPECT_NEAR(scaled.damping, 0.5 * one.damping, 1e-9);
 
+  // along an axis the scale cancels: what a file may say does not change
+  scenario.twin.model.felt_scale.head<3>().setConstant(2.0);
+  scenario.surfaces.resize(1);
+  scenario.surfaces[0].contact = surfaces::Contact::kSpring;
+  scenario.surfaces[0].damping = 20.0;
+  scenario.surfaces[0].stiffness = 0.9 * one.by_passivity(20.0);
+  EXPECT_TRUE(inspect_surfaces(scenario).empty());
+  scenario.surfaces[0].stiffness = 1.1 * one.by_passivity(20.0);
+  EXPECT_EQ(inspect_surfaces(scenario).size(), 1u);
+
   // light bodies shake on drives that follow positions: twice the scale is half the body
   const auto calm = [](double scale, double share) {
     config::Scenario arm = config::load_scenario("models/arms/ur5e/move_tool.yaml");

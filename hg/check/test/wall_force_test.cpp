@@ -130,32 +130,45 @@ TEST(WallForce, BelowFiftyNewtonsIsAWarning) {
             6);
 }
 
-// A drawer along y that is led from one place to another.
+// A drawer that opens along x, led from one place to another.
 TEST(WayForce, OfADrawerIsWhatTheMotorsAlongItHoldAndInAnyDirectionTheWeakest) {
   const config::DeviceConfig device = boxed_device();
-  config::Twin twin = config::load_twin("models/arms/fr3/drawer.yaml");
-  workspace::Way way;
+  const config::Twin twin = config::load_twin("models/arms/fr3/drawer.yaml");
+  workspace::Way way = {.led = {0}, .places = {}};
   for (const double at : {0.1, 0.3}) {
     way.places.push_back(
-        {Eigen::VectorXd{{0.5, 0.4 + at, 0.5, 0.0, 1.5, 0.0}}, ConfigurationA::Constant(1, at)});
+        {Eigen::VectorXd{{0.5 + at, 0.4, 0.5, 0.0, 1.5, 0.0}}, ConfigurationA::Constant(1, at)});
   }
-  const std::vector<WayForce> forces = way_forces(device, twin, way);
-  ASSERT_EQ(forces.size(), 1u);
-  EXPECT_EQ(forces[0].twin_joint, "slide");
-  model::ChainData chain(twin.model.chain);
-  chain.update_kinematics(way.places[0].q_a, VectorA::Zero(1));
-  const Eigen::Vector3d column = chain.jacobian(twin.model.end_effector).col(0).head<3>();
-  const bool is_along_x = std::abs(column.x()) > 0.9;
-  EXPECT_NEAR(forces[0].along, is_along_x ? 75.0 : 60.0, 1e-6);
-  EXPECT_EQ(forces[0].motor, is_along_x ? "px" : "py");
-  EXPECT_NEAR(forces[0].any, 0.75 * 120.0 - 5.0 * 9.81, 1e-6);
-  EXPECT_EQ(forces[0].motor_of_any, "pz");
+  const WayForces forces = way_forces(device, twin, way);
+  ASSERT_EQ(forces.joints.size(), 1u);
+  EXPECT_NEAR(forces.joints[0].force, 0.75 * 100.0, 1e-6);
+  EXPECT_EQ(forces.joints[0].motor, "px");
+  EXPECT_EQ(forces.joints[0].at, 0.1);
+  EXPECT_NEAR(forces.any.force, 0.75 * 120.0 - 5.0 * 9.81, 1e-6);
+  EXPECT_EQ(forces.any.motor, "pz");
 
   Collector out(twin.sources, twin.places);
   inspect_way_forces(device, twin, way, out);
-  ASSERT_EQ(out.findings.size(), 1u);
-  EXPECT_EQ(out.findings[0].severity, Severity::kWarning);
-  EXPECT_NE(out.findings[0].what.find("of 41 N in any direction (pz)"), std::string::npos);
+  ASSERT_EQ(out.findings.size(), 2u);
+  EXPECT_EQ(out.findings[0].severity, Severity::kNote);
+  EXPECT_EQ(out.findings[1].severity, Severity::kWarning);
+  EXPECT_NE(out.findings[1].what.find("of 41 N in any direction (pz)"), std::string::npos);
+
+  way.led.clear();
+  EXPECT_TRUE(way_forces(device, twin, way).joints.empty());
+}
+
+TEST(WayForce, IsLookedAtUpToTheEndsOfTheWay) {
+  const auto scenario = config::load_scenario("models/arms/fr3/open_drawer.yaml");
+  const workspace::Way way = workspace::lead(scenario.device, scenario.twin);
+  double lowest = 1.0, highest = 0.0;
+  for (const workspace::Place& place : way.places) {
+    lowest = std::min(lowest, place.q_a[0]);
+    highest = std::max(highest, place.q_a[0]);
+  }
+  EXPECT_NEAR(lowest, 0.0, 1e-3);
+  EXPECT_NEAR(highest, 0.3, 1e-3);
+  EXPECT_LT(way.places.size(), 100u);
 }
 
 }  // namespace

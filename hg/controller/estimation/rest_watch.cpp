@@ -105,14 +105,14 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
     rest.samples = 0;
   }
   const Vector6 change = rest.fast - (is_met(rest) ? rest.zero : rest.mean);
+  // braking shakes the payload, and is ended early only by a touch
+  const bool is_braking = rest.braked_s > 0.0 && rest.braked_s < kAnswer;
+  double inertia = payload_force(input, input.acceleration);
   // a hand that pushes a light twin off accelerates the payload, too: at least half is a touch
-  const double inertia =
-      std::min(payload_force(input, input.acceleration), 0.5 * rest.fast.head<3>().norm());
+  if (!is_braking) inertia = std::min(inertia, 0.5 * change.head<3>().lpNorm<Eigen::Infinity>());
   const bool is_steady = is_within(change, kForce + inertia);
   rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
   if (!is_steady) rest.mean = rest.fast;
-  // braking itself shakes the payload: it ends early only by a touch
-  const bool is_braking = rest.braked_s > 0.0 && rest.braked_s < kAnswer;
   const bool is_calm = is_braking || rest.tremor < tremor_limit(dt, input.noise, kTremor);
   rest.is_untouched = is_calm && rest.steady * dt >= RestState::kBlocks * kBlock;
 }

@@ -21,12 +21,10 @@ Interval reached_torque(Interval allowed, double before, double dt) noexcept {
   return {before + share * (allowed.lb - before), before + share * (allowed.ub - before)};
 }
 
-Interval eased_torque(Interval torque, const Interval& allowed, double before, double held,
-                      double led) noexcept {
-  constexpr double kLoad = 0.5;  // of what is allowed: a lighter load builds up in time
-  if (!(std::abs(held) > std::abs(before))) return torque;
-  if (held > kLoad * allowed.ub && led > held) torque.ub = std::max(torque.ub, held);
-  if (held < kLoad * allowed.lb && led < held) torque.lb = std::min(torque.lb, held);
+Interval eased_torque(Interval torque, double most, double held, double led) noexcept {
+  constexpr double kLoad = 0.4;  // of the torque: a lighter load builds up in time
+  if (held > kLoad * most && led > held) torque.ub = std::max(torque.ub, std::min(held, most));
+  if (held < -kLoad * most && led < held) torque.lb = std::min(torque.lb, std::max(held, -most));
   return torque;
 }
 

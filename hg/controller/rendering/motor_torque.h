@@ -23,10 +23,10 @@ Interval allowed_torque(const ActuatorModel& motor, double dq) noexcept;
 /// over the motors has put it. Never empty.
 Interval reached_torque(Interval allowed, double before, double dt) noexcept;
 
-/// Range that does not ask for a motion against a push. Where a motor that holds its joint at rest
-/// needs more than `torque`, half of what is `allowed` at least and more than in the last sample,
-/// `before`, it may have what that takes, `held`, if to yield takes even more, `led`. Nm or N.
-Interval eased_torque(Interval torque, const Interval& allowed, double before, double held,
-                      double led) noexcept;
+/// Range that does not ask for a motion against a push. A motor of the torque `most` that needs
+/// more than `torque` to hold its joint at rest, `held`, has what that takes where it takes even
+/// more to yield, `led`: to move as the twin would without limits. Nm or N. Light loads, below 0.4
+/// of `most`, do not count.
+Interval eased_torque(Interval torque, double most, double held, double led) noexcept;
 
 }  // namespace hg::rendering

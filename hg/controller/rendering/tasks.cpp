@@ -118,17 +118,16 @@ Interval stoppable(Interval ddq, const Interval& lasting, double speed) noexcept
   return ddq;
 }
 
-// Accelerations of the manipulator's joints that move the handle as the twin without its limits,
-// with the gantry as known.
+// Accelerations of the manipulator's joints that move the handle as the twin without its limits.
+// `known`: right side of the coupling, [HG] (12).
 VectorM free_motion(const DeviceModel& device, const TaskInput& input,
-                    const VectorP& ddq_p) noexcept {
+                    const Vector6& known) noexcept {
   constexpr double kDamping = 1e-6;  // m^2, for singular postures
   VectorA ddq_a = input.tau - input.twin_chain.c();
   input.L.triangularView<Eigen::Lower>().solveInPlace(ddq_a);
   input.L.transpose().triangularView<Eigen::Upper>().solveInPlace(ddq_a);
   const auto J = input.J_H.middleCols(device.n_p, device.n_m);
-  Vector6 a = input.J_a.lazyProduct(ddq_a);
-  a.noalias() -= input.J_H.leftCols(device.n_p).lazyProduct(ddq_p);
+  const Vector6 a = known + input.J_a.lazyProduct(ddq_a);
   Eigen::Matrix<double, 6, 6> JJ = J.lazyProduct(J.transpose());
   JJ.diagonal().array() += kDamping;
   const Vector6 f = JJ.llt().solve(a);
@@ -477,7 +476,9 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     if (std::abs(input.reference.dq_m[i]) > fastest) are_torques_known_ = false;
   }
 
-  VectorM led;  // found where a motor does not hold what it has to
+  Vector6 coupling;
+  for (int i = 0; i < 6; ++i) coupling[i] = problem_.bounds(coupling_row_ + i).lb;
+  VectorM led;  // computed for the first motor that would have to be relieved
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   for (int i = 0; i < n_m_; ++i) {
@@ -499,12 +500,11 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
-      const double before = input.motor_torque[i];
-      torque = reached_torque(torque, before, dt_);
+      torque = reached_torque(torque, input.motor_torque[i], dt_);
       if (!torque.contains(known[i])) {
-        if (led.size() == 0) led = free_motion(device, input, ddq_p_);
+        if (led.size() == 0) led = free_motion(device, input, coupling);
         const double change = inertia * row.head(n_m_).dot(led);
-        torque = eased_torque(torque, limit.torque, before, known[i], known[i] + change);
+        torque = eased_torque(torque, motor.torque_max, known[i], known[i] + change);
       }
     }
     limit.dq = dq;

@@ -270,7 +270,8 @@ void FrankaDevice::take_answers() noexcept {
     move_id_ = 0;
     const bool is_ended_by_us = phase_ == Phase::kFinishing || answer.header.id == ended_id_;
     if (status == MoveStatus::kSuccess || is_ended_by_us) continue;
-    if (status == MoveStatus::kEmergencyAborted) {
+    const bool is_stopped = state_.robot_mode == RobotMode::kUserStopped;
+    if (status == MoveStatus::kEmergencyAborted || is_stopped) {
       phase_ = Phase::kIdle;  // the user stop is an input of safety, no fault of the drives
       continue;
     }

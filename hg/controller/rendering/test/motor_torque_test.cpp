@@ -160,18 +160,19 @@ TEST(MotorRows, RatingsCapAccelerationsOnlyWithoutMotorModel) {
 }
 
 TEST(MotorTorque, IsEasedOnlyWhereToYieldTakesMoreThanToStand) {
-  const Interval allowed = {-9.0, 9.0}, reached = {-1.0, 6.5};
-  const auto eased = [&](double before, double held, double led) {
-    return eased_torque(reached, allowed, before, held, led);
+  const Interval reached = {-1.0, 6.5};
+  const auto eased = [&](double held, double led) {
+    return eased_torque(reached, 12.0, held, led);
   };
-  EXPECT_EQ(eased(6.2, 8.0, 10.0).ub, 8.0);
-  EXPECT_EQ(eased(6.2, 8.0, 7.0).ub, 6.5);   // yields
-  EXPECT_EQ(eased(6.2, 6.4, 10.0).ub, 6.5);  // within reach
-  EXPECT_EQ(eased(8.5, 8.0, 10.0).ub, 6.5);  // the load falls
-  EXPECT_EQ(eased(-0.5, -8.0, -10.0).lb, -8.0);
-  EXPECT_EQ(eased(-0.5, -8.0, -10.0).ub, 6.5);
-  EXPECT_EQ(eased(-0.5, -8.0, -7.0).lb, -1.0);
-  EXPECT_EQ(eased(-0.5, -4.0, -10.0).lb, -1.0);  // a light load
+  EXPECT_EQ(eased(8.0, 10.0).ub, 8.0);
+  EXPECT_EQ(eased(8.0, 10.0).lb, -1.0);
+  EXPECT_EQ(eased(8.0, 7.0).ub, 6.5);     // yields
+  EXPECT_EQ(eased(6.4, 10.0).ub, 6.5);    // within reach
+  EXPECT_EQ(eased(15.0, 20.0).ub, 12.0);  // no more than the motor has
+  EXPECT_EQ(eased(-8.0, -10.0).lb, -8.0);
+  EXPECT_EQ(eased(-8.0, -7.0).lb, -1.0);
+  EXPECT_EQ(eased(-4.0, -10.0).lb, -1.0);  // a light load
+  EXPECT_EQ(eased(std::nan(""), 10.0).ub, 6.5);
 }
 
 TEST(MotorRows, AReferenceThatHasJumpedIsSolvedWithoutThem) {
