@@ -106,18 +106,13 @@ nlohmann::json vector_json(const Eigen::Ref<const Eigen::VectorXd>& v) {
   return std::vector<double>(v.data(), v.data() + v.size());
 }
 
-std::string name_of(const check::WallForce& wall) {
-  return std::string{"xyz"[wall.axis], wall.is_upper ? '+' : '-'};
-}
-
 void print_walls(const Datasheet& sheet) {
   if (sheet.walls.empty()) return;
   std::string text;
   for (const check::WallForce& wall : sheet.walls) {
     text += text.empty() ? "" : ", ";
-    text += wall.places == 0
-                ? name_of(wall) + " not reached"
-                : fmt::format("{} {:.0f} N ({})", name_of(wall), wall.least, wall.motor);
+    text += wall.places == 0 ? wall.name() + " not reached"
+                             : fmt::format("{} {:.0f} N ({})", wall.name(), wall.least, wall.motor);
   }
   print_out("  walls hold          {}: least over their places\n", text);
 }
@@ -125,7 +120,7 @@ void print_walls(const Datasheet& sheet) {
 nlohmann::json walls_json(const Datasheet& sheet) {
   nlohmann::json walls = nlohmann::json::array();
   for (const check::WallForce& wall : sheet.walls) {
-    nlohmann::json json = {{"wall", name_of(wall)}, {"places", wall.places}};
+    nlohmann::json json = {{"wall", wall.name()}, {"places", wall.places}};
     if (wall.places > 0) {
       json["least_N"] = wall.least;
       json["median_N"] = wall.median;

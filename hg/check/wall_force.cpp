@@ -189,8 +189,7 @@ std::vector<WallForce> wall_forces(const config::DeviceConfig& device) {
 void inspect_wall_forces(const config::DeviceConfig& device, Collector& out) {
   for (const WallForce& wall : wall_forces(device)) {
     const std::string item = fmt::format("cartesian_limits[{}].{}", wall.limit, "xyz"[wall.axis]);
-    const std::string name = fmt::format("{} {}{}", device.model.cartesian_limits[wall.limit].name,
-                                         "xyz"[wall.axis], wall.is_upper ? '+' : '-');
+    const std::string name = device.model.cartesian_limits[wall.limit].name + " " + wall.name();
     if (wall.places == 0) {
       out.add(Severity::kNote, item, name + " is not reached with the handle upright or tilted",
               "");

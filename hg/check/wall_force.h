@@ -40,6 +40,8 @@ struct WallForce {
   std::string motor;          ///< Motor that gives way first at the worst place
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< Worst place, m
   Eigen::VectorXd q;                                ///< Posture there, gantry first
+
+  std::string name() const { return {"xyz"[axis], is_upper ? '+' : '-'}; }  ///< As "x+"
 };
 
 /// All walls of the handle's box, where the rendered box has them. The handle keeps the orientation

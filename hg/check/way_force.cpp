@@ -12,8 +12,6 @@
 namespace hg::check {
 namespace {
 
-constexpr double kLever = 0.02;  // m or 1: below, a joint turns the handle on the spot
-
 bool keep_least(const HeldForce& held, const DeviceModel& device, LeastForce& least) {
   if (held.motor < 0 || held.force >= least.force) return false;
   least.force = held.force;
@@ -54,7 +52,7 @@ WayForces way_forces(const config::DeviceConfig& device, const config::Twin& twi
     const model::Jacobian& J = twin_chain.jacobian(twin.model.end_effector);
     for (JointForce& joint : found.joints) {
       const Eigen::Vector3d column = J.col(joint.dof).head<3>();
-      if (!(column.norm() > kLever)) continue;
+      if (!(column.norm() > workspace::kNearLever)) continue;
       const Eigen::Vector3d along = column.normalized();
       postures.best_from(place.q, [&] { return held_along(model, chain, along).force; });
       if (!keep_least(held_along(model, chain, along), model, joint)) continue;

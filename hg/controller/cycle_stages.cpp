@@ -462,7 +462,7 @@ void CycleStages::watch_rest(Motion motion, const RobotState& robot,
   } else if (motion == Motion::kRender) {
     input.v_H = rendering_.handle_twist(robot).head<3>();
     input.acceleration = law.a_H.norm();
-    // a hand is on the handle nearly always: only without one the rest counts
+    // not needed while a hand is on the handle
     if (state_.estimation.rest.is_untouched) {
       const VectorA held = law.budget.limits + law.budget.conflict;
       input.is_free = is_free(rendering_, law.budget);

@@ -31,7 +31,6 @@ constexpr double kSpeedShare = 0.9;  // of the twin's own limits
 constexpr double kPullShare = 0.3;   // of what a hand pulls and turns with
 constexpr double kAtLimit = 0.1;     // s, from which a limit counts as in the way
 constexpr double kAtSpeed = 0.2;     // s, the same for the largest speed of a joint
-constexpr double kNearLever = 0.02;  // m, below it a joint turns the handle on the spot
 constexpr double kReached = 0.02;    // share of a range within which an end counts as reached
 constexpr double kPlaces = 0.05;     // share of a range between two places
 constexpr double kAtEnd = 0.002;     // the same, from an end of it

@@ -36,6 +36,8 @@ struct Way {
   std::vector<Place> places;  ///< At their ends, and between them in steps of 5 % of their ranges
 };
 
+/// Lever below which a joint of the twin turns the handle on the spot, m.
+inline constexpr double kNearLever = 0.02;
 /// Share from which a way counts as whole.
 inline constexpr double kWholeWay = 0.95;
 /// Largest excess of a limit that counts as none, rad or m.

@@ -21,10 +21,15 @@ Interval reached_torque(Interval allowed, double before, double dt) noexcept {
   return {before + share * (allowed.lb - before), before + share * (allowed.ub - before)};
 }
 
-Interval eased_torque(Interval torque, double most, double held, double led) noexcept {
+bool is_loaded(double most, double held) noexcept {
   constexpr double kLoad = 0.4;  // of the torque: a lighter load builds up in time
-  if (held > kLoad * most && led > held) torque.ub = std::max(torque.ub, std::min(held, most));
-  if (held < -kLoad * most && led < held) torque.lb = std::min(torque.lb, std::max(held, -most));
+  return std::abs(held) > kLoad * most;
+}
+
+Interval eased_torque(Interval torque, double most, double held, double led) noexcept {
+  if (!is_loaded(most, held)) return torque;
+  if (held > 0.0 && led > held) torque.ub = std::max(torque.ub, std::min(held, most));
+  if (held < 0.0 && led < held) torque.lb = std::min(torque.lb, std::max(held, -most));
   return torque;
 }
 

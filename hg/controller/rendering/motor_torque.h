@@ -23,10 +23,12 @@ Interval allowed_torque(const ActuatorModel& motor, double dq) noexcept;
 /// over the motors has put it. Never empty.
 Interval reached_torque(Interval allowed, double before, double dt) noexcept;
 
+/// Whether a motor of the torque `most` holds so much that eased_torque() may change its range.
+bool is_loaded(double most, double held) noexcept;
+
 /// Range that does not ask for a motion against a push. A motor of the torque `most` that needs
 /// more than `torque` to hold its joint at rest, `held`, has what that takes where it takes even
-/// more to yield, `led`: to move as the twin would without limits. Nm or N. Light loads, below 0.4
-/// of `most`, do not count.
+/// more to yield, `led`: to move as the twin would without limits. Nm or N.
 Interval eased_torque(Interval torque, double most, double held, double led) noexcept;
 
 }  // namespace hg::rendering

@@ -119,15 +119,15 @@ Interval stoppable(Interval ddq, const Interval& lasting, double speed) noexcept
 }
 
 // Accelerations of the manipulator's joints that move the handle as the twin without its limits.
-// `known`: right side of the coupling, [HG] (12).
+// `coupling`: right side of [HG] (12).
 VectorM free_motion(const DeviceModel& device, const TaskInput& input,
-                    const Vector6& known) noexcept {
+                    const Vector6& coupling) noexcept {
   constexpr double kDamping = 1e-6;  // m^2, for singular postures
   VectorA ddq_a = input.tau - input.twin_chain.c();
   input.L.triangularView<Eigen::Lower>().solveInPlace(ddq_a);
   input.L.transpose().triangularView<Eigen::Upper>().solveInPlace(ddq_a);
   const auto J = input.J_H.middleCols(device.n_p, device.n_m);
-  const Vector6 a = known + input.J_a.lazyProduct(ddq_a);
+  const Vector6 a = coupling + input.J_a.lazyProduct(ddq_a);
   Eigen::Matrix<double, 6, 6> JJ = J.lazyProduct(J.transpose());
   JJ.diagonal().array() += kDamping;
   const Vector6 f = JJ.llt().solve(a);
@@ -476,8 +476,6 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     if (std::abs(input.reference.dq_m[i]) > fastest) are_torques_known_ = false;
   }
 
-  Vector6 coupling;
-  for (int i = 0; i < 6; ++i) coupling[i] = problem_.bounds(coupling_row_ + i).lb;
   VectorM led;  // computed for the first motor that would have to be relieved
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
@@ -501,8 +499,12 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
       torque = reached_torque(torque, input.motor_torque[i], dt_);
-      if (!torque.contains(known[i])) {
-        if (led.size() == 0) led = free_motion(device, input, coupling);
+      if (is_loaded(motor.torque_max, known[i]) && !torque.contains(known[i])) {
+        if (led.size() == 0) {
+          Vector6 coupling;
+          for (int k = 0; k < 6; ++k) coupling[k] = problem_.bounds(coupling_row_ + k).lb;
+          led = free_motion(device, input, coupling);
+        }
         const double change = inertia * row.head(n_m_).dot(led);
         torque = eased_torque(torque, motor.torque_max, known[i], known[i] + change);
       }

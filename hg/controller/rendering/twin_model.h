@@ -107,16 +107,16 @@ struct TwinModel {
 /// Throws SetupError naming the first inconsistency.
 void check_twin_model(const TwinModel& twin);
 
-/// Mass that a force at the end effector has to move, at the start of the twin. `scale`: factors of
-/// forces along x, y, z of B on the twin.
+/// Mass that a force at the end effector has to move, at the start of the twin.
 struct FeltMass {
   /// Masses in the lightest and the heaviest direction, kg; directions in which the twin cannot
   /// move do not count. Infinite where there is no other.
   Interval mass = {kInfinity, kInfinity};
-  /// Joint velocity that moves the end effector with 1 m/s in the lightest direction; with a scale,
-  /// with the inverse of its root.
+  /// Joint velocity that moves the end effector with 1 m/s in the lightest direction, or with
+  /// 1 / sqrt(s) m/s where forces are scaled by s.
   VectorA dq;
 };
+/// `scale`: factors of forces along x, y, z of B on the twin.
 FeltMass felt_mass(const TwinModel& twin, const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
 
 /// Position of degree of freedom `dof`, which is not one of a floating joint; rad or m.

@@ -268,8 +268,7 @@ void FrankaDevice::take_answers() noexcept {
     const auto status = static_cast<MoveStatus>(answer.status);
     if (status == MoveStatus::kMotionStarted) continue;
     move_id_ = 0;
-    const bool is_ended_by_us = phase_ == Phase::kFinishing || answer.header.id == ended_id_;
-    if (status == MoveStatus::kSuccess || is_ended_by_us) continue;
+    if (status == MoveStatus::kSuccess || answer.header.id == ended_id_) continue;
     const bool is_stopped = state_.robot_mode == RobotMode::kUserStopped;
     if (status == MoveStatus::kEmergencyAborted || is_stopped) {
       phase_ = Phase::kIdle;  // the user stop is an input of safety, no fault of the drives
