@@ -30,12 +30,12 @@ from python_package_test import install  # noqa: E402
 
 SCENARIO = pathlib.Path("models/scenarios/walk.yaml")
 DEVICE = pathlib.Path("models/haptic_giant/device.yaml")
-FAULT_TIMES_S = (2.0, 9.0)  # 1 to 8 s after the hand has grasped the handle
+FAULT_TIMES_S = (2.0, 6.0)  # 1 to 5 s after the hand has grasped the handle
 UNTIL_RUNNING_S, UNTIL_ENDED_S, FAULT_TO_STOP_S, FROZEN_S = 60.0, 30.0, 0.3, 1.0
 WATCHED_AFTER_S = 1.0  # the session
 ENERGY_BOUND_J = 30.0
 UNWRITTEN = 1000  # samples that a recording may lack at its end
-TRIES = 3  # a computer that is busy with other things may end the run before its fault begins
+TRIES = 20  # of a run that is to reach its fault: a busy computer may hold it up for more than the 10 ms of rule 120
 
 
 @dataclasses.dataclass(frozen=True)
@@ -208,10 +208,13 @@ def play(program, fault, at_s):
             return has_happened()
 
         def is_due():
-            return controller.has_ended() or device.is_on and device.periods * device.dt > at_s
+            return has_failed() or device.is_on and device.periods * device.dt > at_s
+
+        def has_failed():
+            return controller.has_ended() or device.was_on and not device.is_on
 
         try:
-            case.has_run = advance(time.monotonic() + UNTIL_RUNNING_S, is_due) and not controller.has_ended()
+            case.has_run = advance(time.monotonic() + UNTIL_RUNNING_S, is_due) and not has_failed()
             if not case.has_run:
                 return case
             device.is_watched = fault.is_stop

@@ -65,7 +65,7 @@ class ServedDevice:
         self.address = "127.0.0.1:{}".format(self.socket.getsockname()[1])
         self.client, self.session, self.number, self.newest = None, secrets.randbelow(2**32 - 1) + 1, 0, 0
         self.state = "waiting"  # then "serving", and "alone" when the session is over
-        self.command, self.is_on = hg.CommandFrame(), False
+        self.command, self.is_on, self.was_on = hg.CommandFrame(), False, False
         self.periods = 0
         self.due_s = self.heard_s = 0.0
 
@@ -139,6 +139,7 @@ class ServedDevice:
         for name in ("q_m", "dq_m", "ddq_m", "tau_m", "dq_p"):
             setattr(command, name, np.array(words[name]))
         self.command, self.is_on = command, words["enable"]
+        self.was_on = self.was_on or self.is_on
 
 
 def fields_of(sensors):
