@@ -17,15 +17,17 @@ using Complex = std::complex<double>;
 // the loops of PositionLoop, whose commands are reached with the lag of the current.
 class DrivenArm {
  public:
-  DrivenArm(const config::SimulatedDeviceConfig& device, const VectorPM& q)
+  DrivenArm(const config::SimulatedDeviceConfig& device, const VectorPM& q,
+            const Eigen::Matrix3Xd& directions)
       : model_(device.model), drives_(device.simulation.drives) {
     model::ChainData chain(model_.chain);
     chain.update(q, Eigen::VectorXd::Zero(q.size()));
     const config::RealityFactors& factors = device.simulation.factors;
     const int n = model_.n_m;
     M_ = factors.mass * chain.M().bottomRightCorner(n, n);
-    J_ = chain.jacobian(model_.handle).rightCols(n);
-    inverse_ = LeastSquares(J_).pseudo_inverse();
+    const Eigen::MatrixXd J = chain.jacobian(model_.handle).rightCols(n);
+    levers_ = J.topRows<3>().transpose() * directions;
+    inverse_ = LeastSquares(J).pseudo_inverse().leftCols<3>() * directions;
     const auto& known = model_.actuators;
     for (int i = 0; i < n; ++i) {
       motors_.push_back(config::actual(known.empty() ? drives_.actuators[i] : known[i], factors));
@@ -33,11 +35,11 @@ class DrivenArm {
     }
   }
 
-  // How the handle follows a command along `axis` and yields to a force along it, m/m and m/N.
+  // How the handle follows a command along a direction and yields to a force there, m/m and m/N.
   struct Response {
     Complex follows, yields;
   };
-  std::array<Response, 3> at(Complex s) const {
+  std::vector<Response> at(Complex s) const {
     constexpr double kTurn = 2.0 * std::numbers::pi;
     const int n = model_.n_m;
     const double w_q = kTurn * drives_.loop.position_Hz, w_v = kTurn * drives_.loop.speed_Hz;
@@ -54,12 +56,12 @@ class DrivenArm {
       driving(i, i) = spring / (moved + spring) * (held + current * inertia_[i] * s * s);
     }
     const Eigen::PartialPivLU<Eigen::MatrixXcd> links(A);
-    std::array<Response, 3> result;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::VectorXcd lever = J_.row(axis).transpose().cast<Complex>();
-      const Eigen::VectorXcd driven = driving * inverse_.col(axis).cast<Complex>();
-      result[axis] = {lever.cwiseProduct(links.solve(driven)).sum(),
-                      lever.cwiseProduct(links.solve(lever)).sum()};
+    std::vector<Response> result;
+    for (Eigen::Index i = 0; i < levers_.cols(); ++i) {
+      const Eigen::VectorXcd lever = levers_.col(i).cast<Complex>();
+      const Eigen::VectorXcd driven = driving * inverse_.col(i).cast<Complex>();
+      result.push_back({lever.cwiseProduct(links.solve(driven)).sum(),
+                        lever.cwiseProduct(links.solve(lever)).sum()});
     }
     return result;
   }
@@ -67,7 +69,7 @@ class DrivenArm {
  private:
   const DeviceModel& model_;
   const config::PositionDrives& drives_;
-  Eigen::MatrixXd M_, J_, inverse_;
+  Eigen::MatrixXd M_, levers_, inverse_;
   std::vector<ActuatorModel> motors_;
   std::vector<double> inertia_;  // that the drives expect
 };
@@ -90,9 +92,10 @@ double drive_delay(const config::SimulatedDeviceConfig& device) {
 }
 
 DriveLoop::DriveLoop(const config::SimulatedDeviceConfig& device, const VectorPM& q,
-                     const FeelingHand& hand) {
+                     const Eigen::Matrix3Xd& directions, const FeelingHand& hand)
+    : response_(static_cast<std::size_t>(directions.cols())) {
   constexpr double kFirst_Hz = 0.5, kLast_Hz = 60.0, kRatio = 1.01;
-  const DrivenArm arm(device, q);
+  const DrivenArm arm(device, q, directions);
   const double delay = drive_delay(device);
   const estimation::WrenchConfig& wrench = device.estimation.wrench;
   const double beyond = wrench.has_imu ? 0.0 : wrench.payload.mass;
@@ -101,27 +104,27 @@ DriveLoop::DriveLoop(const config::SimulatedDeviceConfig& device, const VectorPM
     const Complex s(0.0, w_.back());
     const Complex felt = impedance(hand, s);
     const auto handle = arm.at(s);
-    for (int axis = 0; axis < 3; ++axis) {
-      response_[axis].push_back((felt + beyond * s * s) * handle[axis].follows *
-                                std::exp(-delay * s) / (1.0 + felt * handle[axis].yields));
+    for (std::size_t i = 0; i < handle.size(); ++i) {
+      response_[i].push_back((felt + beyond * s * s) * handle[i].follows * std::exp(-delay * s) /
+                             (1.0 + felt * handle[i].yields));
     }
   }
 }
 
-double DriveLoop::stiffest_wall(int axis, double mass, double damping) const noexcept {
+double DriveLoop::stiffest_wall(int direction, double mass, double damping) const noexcept {
   double least = kInfinity;
   for (std::size_t i = 0; i < w_.size(); ++i) {
-    const Complex response = response_[axis][i];
+    const Complex response = response_[direction][i];
     if (damping + response.imag() / w_[i] >= 0.0) continue;
     least = std::min(least, mass * w_[i] * w_[i] - response.real());
   }
   return std::max(least, 0.0);
 }
 
-double DriveLoop::lightest_mass(int axis, double damping) const noexcept {
+double DriveLoop::lightest_mass(int direction, double damping) const noexcept {
   double most = 0.0;
   for (std::size_t i = 0; i < w_.size(); ++i) {
-    const Complex response = response_[axis][i];
+    const Complex response = response_[direction][i];
     if (damping + response.imag() / w_[i] >= 0.0) continue;
     most = std::max(most, response.real() / (w_[i] * w_[i]));
   }

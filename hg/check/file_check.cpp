@@ -197,7 +197,7 @@ void check_twins(Check& check) {
   }
   for (const config::Scenario& scenario : check.scenarios) {
     add(inspect(scenario.twin, scenario.device.model.dt()), check);
-    add(inspect(scenario.device, scenario.twin), check);
+    add(inspect(scenario.device, scenario.twin, scenario.surfaces), check);
     add(inspect_surfaces(scenario), check);
     add(inspect_spheres(scenario), check);
   }

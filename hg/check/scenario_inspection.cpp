@@ -200,11 +200,12 @@ Match match(const config::DeviceConfig& device, const config::Twin& twin) {
   return result;
 }
 
-Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin& twin) {
+Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
+                 std::span<const surfaces::Surface> surfaces) {
   Collector out(twin.sources, twin.places);
   const bool can_start = has_start(device, twin, out);
   inspect_work(device, twin, out);
-  inspect_stiffness(device, twin, out);
+  inspect_stiffness(device, twin, surfaces, out);
   const bool is_bounded = std::ranges::all_of(
       twin.model.dofs, [](const rendering::TwinDof& dof) { return dof.q_index >= 0; });
   if (!is_bounded) return std::move(out.findings);  // a floating twin goes where the device goes

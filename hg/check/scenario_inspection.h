@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,10 @@ struct Match {
 
 Match match(const config::DeviceConfig& device, const config::Twin& twin);
 
-/// All findings about the pair; they stand at keys of the twin.
-Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin& twin);
+/// All findings about the pair, in front of the surfaces of a scenario; they stand at keys of the
+/// twin.
+Findings inspect(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
+                 std::span<const surfaces::Surface> surfaces = {});
 
 /// A note where the twin has collision spheres and the scenario has no surface that they meet.
 Findings inspect_spheres(const config::Scenario& scenario);

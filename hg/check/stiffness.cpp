@@ -7,8 +7,10 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "hg/check/drive_loop.h"
@@ -70,15 +72,42 @@ double braking_of(const DeviceModel& device, const scenario::Start& start) {
   return least;
 }
 
-// What the twin can be in the loop of hand and drives, along the axes of B.
-void close_loop(const config::SimulatedDeviceConfig& device, const scenario::Start& start,
-                StiffnessLimits& limits) {
-  const DriveLoop loop(device, stacked(start.q_p, start.q_m));
-  limits.calm.emplace();
+double damping_of(const surfaces::Surface& surface, const Interval& mass, double period) {
+  return surface.damping.value_or(surfaces::critical_damping(surface.stiffness, mass, period));
+}
+
+// Directions in B in which a surface pushes: across its faces, for curved ones along the axes.
+Eigen::Matrix3Xd normals(const surfaces::Surface& surface) {
+  const Eigen::Matrix3d R = surface.pose.R;
+  if (std::holds_alternative<surfaces::Plane>(surface.shape)) return R.col(2);
+  if (std::holds_alternative<surfaces::Box>(surface.shape)) return R;
+  return Eigen::Matrix3d::Identity();
+}
+
+// What the twin can be in the loop of hand and drives.
+CalmTwin close_loop(const config::SimulatedDeviceConfig& device, const scenario::Start& start,
+                    const StiffnessLimits& limits, const Interval& mass,
+                    std::span<const surfaces::Surface> surfaces) {
+  CalmTwin calm;
+  const VectorPM q = stacked(start.q_p, start.q_m);
+  const DriveLoop loop(device, q);
   for (int axis = 0; axis < 3; ++axis) {
-    limits.calm->stiffness[axis] = loop.stiffest_wall(axis, limits.mass, limits.damping);
-    limits.calm->mass[axis] = loop.lightest_mass(axis, limits.damping);
+    calm.stiffness[axis] = loop.stiffest_wall(axis, limits.mass, limits.damping);
+    calm.mass[axis] = loop.lightest_mass(axis, limits.damping);
   }
+  const double scale = mass.lb / limits.mass;
+  for (const surfaces::Surface& surface : surfaces) {
+    double& stiffest = calm.surfaces.emplace_back(kInfinity);
+    if (surface.contact == surfaces::Contact::kStop) continue;
+    stiffest = limits.mass < std::ranges::max(calm.mass) ? 0.0 : surfaces::kStiffness.ub / scale;
+    const Eigen::Matrix3Xd directions = normals(surface);
+    const DriveLoop across(device, q, directions);
+    const double damping = limits.damping + damping_of(surface, mass, limits.period) / scale;
+    for (int i = 0; i < directions.cols(); ++i) {
+      stiffest = std::min(stiffest, across.stiffest_wall(i, limits.mass, damping));
+    }
+  }
+  return calm;
 }
 
 std::string kilo(double stiffness) { return fmt::format("{:.2g} kN/m", 1e-3 * stiffness); }
@@ -108,10 +137,21 @@ std::string frequency_text(const StiffnessLimits& limits) {
         by_axis(limits.calm->mass, 1.0), by_axis(limits.calm->stiffness, 1e-3));
   }
   return fmt::format(
-      "up to {:.1f} Hz, where drives and elastic joints take the damping of a hand, which is {} "
+      "up to {:.1f} Hz, where drives and elastic joints take the damping of a hand, which is {}{} "
       "(across {} kN/m; without a surface it shakes below {} kg)",
-      limits.frequency_Hz(), kilo(limits.by_frequency()), by_axis(limits.calm->stiffness, 1e-3),
-      by_axis(limits.calm->mass, 1.0));
+      limits.frequency_Hz(), kilo(limits.by_frequency()),
+      limits.calm->surfaces.empty() ? "" : " on the surfaces of the scenario",
+      by_axis(limits.calm->stiffness, 1e-3), by_axis(limits.calm->mass, 1.0));
+}
+
+std::string swing_text(const StiffnessLimits& limits, std::size_t surface) {
+  const double stiffest = limits.by_frequency(surface);
+  if (stiffest > 0.0) {
+    return fmt::format("the body swings on it up to {:.1f} Hz",
+                       std::sqrt(stiffest / limits.mass) / kTurn);
+  }
+  return fmt::format("in a hand the body shakes without it below {} kg",
+                     by_axis(limits.calm->mass, 1.0));
 }
 
 std::string known_of(const StiffnessLimits& limits) {
@@ -206,8 +246,13 @@ double StiffnessLimits::frequency_Hz() const noexcept {
 }
 
 double StiffnessLimits::by_frequency() const noexcept {
-  if (calm) return std::ranges::min(calm->stiffness);
-  return mass * std::pow(kTurn * frequency_Hz(), 2);
+  if (!calm) return mass * std::pow(kTurn * frequency_Hz(), 2);
+  return calm->surfaces.empty() ? std::ranges::min(calm->stiffness)
+                                : std::ranges::min(calm->surfaces);
+}
+
+double StiffnessLimits::by_frequency(std::size_t surface) const noexcept {
+  return calm ? calm->surfaces[surface] : by_frequency();
 }
 
 double StiffnessLimits::by_passivity(double extra) const noexcept {
@@ -223,7 +268,8 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
 }
 
 StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
-                                 const config::Twin& twin) {
+                                 const config::Twin& twin,
+                                 std::span<const surfaces::Surface> surfaces) {
   const auto [mass, dq] = rendering::felt_mass(twin.model, twin.model.felt_scale.head<3>());
   StiffnessLimits limits = {.mass = mass.lb,
                             .period = device.model.dt(),
@@ -235,13 +281,16 @@ StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
   }
   const std::optional<scenario::Start> start = start_of(device, twin);
   if (start) limits.acceleration = braking_of(device.model, *start);
-  if (start && has_position_drives(device)) close_loop(device, *start, limits);
+  if (start && has_position_drives(device)) {
+    limits.calm =
+        close_loop(device, *start, limits, rendering::felt_mass(twin.model).mass, surfaces);
+  }
   return limits;
 }
 
 void inspect_stiffness(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
-                       Collector& out) {
-  const StiffnessLimits limits = stiffness_limits(device, twin);
+                       std::span<const surfaces::Surface> surfaces, Collector& out) {
+  const StiffnessLimits limits = stiffness_limits(device, twin, surfaces);
   if (!can_be_pushed(limits.mass)) return;
   out.add(Severity::kNote, "end_effector",
           fmt::format(
@@ -256,14 +305,14 @@ void inspect_stiffness(const config::SimulatedDeviceConfig& device, const config
 Findings inspect_surfaces(const config::Scenario& scenario) {
   Collector out(scenario.sources, scenario.places);
   if (scenario.surfaces.empty()) return {};
-  const StiffnessLimits limits = stiffness_limits(scenario.device, scenario.twin);
+  const StiffnessLimits limits =
+      stiffness_limits(scenario.device, scenario.twin, scenario.surfaces);
   const Interval mass = rendering::felt_mass(scenario.twin.model).mass;
   const double scale = mass.lb / limits.mass;  // what is felt is divided by it
   for (std::size_t i = 0; i < scenario.surfaces.size(); ++i) {
     const surfaces::Surface& surface = scenario.surfaces[i];
     if (surface.contact == surfaces::Contact::kStop) continue;
-    const double damping = surface.damping.value_or(
-        surfaces::critical_damping(surface.stiffness, mass, limits.period));
+    const double damping = damping_of(surface, mass, limits.period);
     if (surface.damping && damping > mass.lb / limits.period) {
       out.add(
           Severity::kWarning, fmt::format("surfaces[{}].damping_Ns_per_m", i),
@@ -273,8 +322,7 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
           "lower it, or leave it out: then it is critical for the twin");
     }
     const std::array<std::pair<double, std::string>, 3> bounds = {
-        {{limits.by_frequency(),
-          fmt::format("the body swings on it up to {:.1f} Hz", limits.frequency_Hz())},
+        {{limits.by_frequency(i), swing_text(limits, i)},
          {limits.by_acceleration(kFeelingSpeed),
           fmt::format("a hand at {:g} m/s needs no more than the handle's {:.3g} m/s^2",
                       kFeelingSpeed, limits.acceleration)},

@@ -5,12 +5,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "hg/check/findings.h"
 #include "hg/config/device.h"
 #include "hg/config/simulation/scenario.h"
 #include "hg/config/twin.h"
+#include "hg/controller/rendering/surfaces/surface.h"
 
 namespace hg::check {
 
@@ -18,10 +22,13 @@ namespace hg::check {
 /// along any direction the mass is infinite, or nearly.
 constexpr bool can_be_pushed(double mass) noexcept { return mass < 1e6; }
 
-/// Where hand, twin and drives that follow positions do not swing together, along x, y, z of B.
+/// Where hand, twin and drives that follow positions do not swing together.
 struct CalmTwin {
-  std::array<double, 3> stiffness = {};  ///< stiffest wall, N/m
-  std::array<double, 3> mass = {};       ///< lightest twin without a wall, kg
+  std::array<double, 3> stiffness = {};  ///< stiffest wall across x, y, z of B, N/m
+  std::array<double, 3> mass = {};       ///< lightest twin without a wall along them, kg
+  /// Stiffest that a file may state for each surface, as felt, across its faces and with its
+  /// damping, N/m; infinite for stops, 0 where the twin shakes without a surface.
+  std::vector<double> surfaces;
 };
 
 /// Quantities that determine the limits. The acceleration is the deceleration of the handle
@@ -42,8 +49,11 @@ struct StiffnessLimits {
   /// Measured: 6 kg and 3 kg on surfaces come to rest at 8.2 Hz but not at 11.6 Hz, which with 4 ms
   /// are 12 and 16.7 degrees. With `calm` that of by_frequency(), a quarter of its turn at most.
   double frequency_Hz() const noexcept;
-  /// Stiffness limit by frequency: m (2 pi f)^2, with `calm` the least of its axes, N/m.
+  /// Stiffness limit by frequency, N/m: m (2 pi f)^2, with `calm` the least of its surfaces, or of
+  /// its axes where it has none.
   double by_frequency() const noexcept;
+  /// by_frequency() for one of the surfaces that the limits were made for, N/m.
+  double by_frequency(std::size_t surface) const noexcept;
   /// Stiffness limit by passivity: b / (T / 2 + T_d), N/m; passive in any hand, with `extra` Ns/m
   /// of a surface.
   double by_passivity(double extra) const noexcept;
@@ -57,12 +67,14 @@ struct StiffnessLimits {
 /// Speed of a hand that explores a surface, m/s; [A].
 inline constexpr double kFeelingSpeed = 0.1;
 
+/// Limits of a twin on a device, in front of the surfaces of a scenario.
 StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
-                                 const config::Twin& twin);
+                                 const config::Twin& twin,
+                                 std::span<const surfaces::Surface> surfaces = {});
 
 /// Adds a note with the limits, and a warning for each spring beyond them.
 void inspect_stiffness(const config::SimulatedDeviceConfig& device, const config::Twin& twin,
-                       Collector& out);
+                       std::span<const surfaces::Surface> surfaces, Collector& out);
 
 /// Warnings for each surface beyond the stiffness limits.
 Findings inspect_surfaces(const config::Scenario& scenario);

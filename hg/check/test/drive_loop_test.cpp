@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -42,7 +43,7 @@ TEST(DriveLoop, OfRigidDrivesIsTheHandLateByTheDelay) {
   device.estimation.wrench.has_imu = true;  // nothing beyond the sensor
   for (ActuatorModel& motor : device.model.actuators) motor.stiffness = 1e9;
   const FeelingHand held = {.stiffness = 1e9, .grip_stiffness = 500.0, .grip_damping = 5.0};
-  const DriveLoop loop(device, start_of(scenario), held);
+  const DriveLoop loop(device, start_of(scenario), Eigen::Matrix3d::Identity(), held);
   const double T = drive_delay(device), b = 4.0, k = 500.0, c = 5.0, m = 3.0;
   double expected = kInfinity;
   for (double w = 2.0 * M_PI * 0.5; w < 2.0 * M_PI * 60.0; w += 0.01) {
@@ -86,11 +87,29 @@ TEST(DriveLoop, GivesTheLimitsOfDevicesWhoseDrivesFollowPositions) {
   ASSERT_TRUE(limits.calm);
   EXPECT_EQ(limits.by_frequency(), std::ranges::min(limits.calm->stiffness));
   Collector out(scenario.twin.sources, scenario.twin.places);
-  inspect_stiffness(scenario.device, scenario.twin, out);
+  inspect_stiffness(scenario.device, scenario.twin, {}, out);
   ASSERT_FALSE(out.findings.empty());
   EXPECT_NE(out.findings[0].what.find("T_d = 11.0 ms"), std::string::npos);
   EXPECT_NE(out.findings[0].what.find("without a surface it shakes below x "), std::string::npos)
       << out.findings[0].what;
+
+  // 3 kg against a wall across y and z, with 4 Ns/m: 36 to 38 and 18 to 19 kN/m were calm
+  surfaces::Surface wall = {.name = "wall", .shape = surfaces::Plane{}, .damping = 4.0};
+  const auto stiffest = [&](double mass_share, const Eigen::Vector3d& normal) {
+    config::Scenario light = scenario;
+    light.twin.model.mass_scale *= mass_share;
+    wall.pose.R = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+    const StiffnessLimits found = stiffness_limits(light.device, light.twin, {&wall, 1});
+    EXPECT_EQ(found.by_frequency(0), found.by_frequency());
+    return found.by_frequency();
+  };
+  const double three_kg = 3.0 / limits.mass;
+  EXPECT_NEAR(stiffest(three_kg, Eigen::Vector3d::UnitY()), 37e3, 0.2 * 37e3);
+  EXPECT_NEAR(stiffest(three_kg, Eigen::Vector3d::UnitZ()), 18e3, 0.2 * 18e3);
+  EXPECT_EQ(stiffest(0.2 * three_kg, Eigen::Vector3d::UnitY()), 0.0);  // shakes in the hand alone
+  EXPECT_EQ(stiffest(10.0 * three_kg, Eigen::Vector3d::UnitY()), surfaces::kStiffness.ub);
+  wall.contact = surfaces::Contact::kStop;
+  EXPECT_EQ(stiffest(three_kg, Eigen::Vector3d::UnitY()), kInfinity);
 
   const config::Scenario torques = tool("fr3");
   EXPECT_FALSE(stiffness_limits(torques.device, torques.twin).calm);

@@ -14,7 +14,7 @@ config::Scenario walk() { return config::load_scenario("models/scenarios/walk.ya
 
 Findings found(const config::Scenario& scenario) {
   Collector out(scenario.twin.sources, scenario.twin.places);
-  inspect_stiffness(scenario.device, scenario.twin, out);
+  inspect_stiffness(scenario.device, scenario.twin, {}, out);
   return out.findings;
 }
 
