@@ -95,7 +95,7 @@ CalmTwin close_loop(const config::SimulatedDeviceConfig& device, const scenario:
     calm.stiffness[axis] = loop.stiffest_wall(axis, limits.mass, limits.damping);
     calm.mass[axis] = loop.lightest_mass(axis, limits.damping);
   }
-  const double scale = mass.lb / limits.mass;
+  const double scale = can_be_pushed(limits.mass) ? mass.lb / limits.mass : 1.0;
   for (const surfaces::Surface& surface : surfaces) {
     double& stiffest = calm.surfaces.emplace_back(kInfinity);
     if (surface.contact == surfaces::Contact::kStop) continue;
@@ -307,6 +307,7 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
   if (scenario.surfaces.empty()) return {};
   const StiffnessLimits limits =
       stiffness_limits(scenario.device, scenario.twin, scenario.surfaces);
+  if (!can_be_pushed(limits.mass)) return {};
   const Interval mass = rendering::felt_mass(scenario.twin.model).mass;
   const double scale = mass.lb / limits.mass;  // what is felt is divided by it
   for (std::size_t i = 0; i < scenario.surfaces.size(); ++i) {

@@ -74,6 +74,10 @@ struct DeviceModel {
            static_cast<int>(virtual_joints.size() + motors().size() + 3 * cartesian_limits.size()) +
            (keeps_apart ? 1 : 0);
   }
+  /// Catalogue entry of the first axis of the first Cartesian limit; the others follow.
+  int first_cartesian() const noexcept {
+    return limit_count() - (keeps_apart ? 1 : 0) - 3 * static_cast<int>(cartesian_limits.size());
+  }
   const std::string& manipulator_joint(int i) const { return chain.joints()[n_p + i].name; }
   /// Whether a manipulator joint is prismatic.
   bool is_slide(int joint) const noexcept { return chain.joints()[n_p + joint].is_slide(); }

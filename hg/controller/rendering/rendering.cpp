@@ -15,6 +15,13 @@
 namespace hg::rendering {
 namespace {
 
+// Distance outside `range` that a device at `q` with `dq` reaches within kLookAhead; 0 inside.
+double passing(const Interval& range, double q, double dq) noexcept {
+  const double outside = std::max(q - range.ub, range.lb - q);
+  const double speed = q > range.ub ? dq : -dq;
+  return outside > 0.0 ? outside + kLookAhead * std::max(speed, 0.0) : 0.0;
+}
+
 // slower than this a joint with Coulomb friction stands still, rad/s or m/s
 constexpr double kStandstill = 1e-9;
 
@@ -250,6 +257,7 @@ SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
   if (environment_.has_stops()) add_stops(result.contact);
   to_hand(state, result);
   find_kinematics(state, result);
+  follow_device(input.robot, state.reference.q_m, result);
   ended_(Stage::kReactions);
   return result.solver_status;
 }
@@ -580,6 +588,28 @@ void Rendering::to_hand(const RenderingState& state, LawResult& result) const no
   result.w_felt.array() /= scale.array();
   result.budget.structure.array() /= scale.array();
   result.contact.force.array() /= scale.head<3>().array();
+}
+
+// Where drives lag and motors are overpowered, the device leaves limits that its reference keeps.
+void Rendering::follow_device(const RobotState& robot, const VectorM& q_m,
+                              LawResult& result) const noexcept {
+  const auto look = [&](int limit, double q, double lag, double dq) {
+    const Interval& range = tasks_.limit_rows()[limit].range;
+    const Interval room = {std::min(range.lb, q), std::max(range.ub, q)};
+    result.passing[limit] = std::max(result.passing[limit], passing(room, q + lag, dq));
+  };
+  const VectorM lag = robot.q_m - q_m;
+  for (int i = 0; i < device_.n_m; ++i) look(i, q_m[i], lag[i], robot.dq_m[i]);
+  const VectorPM lags = stacked(VectorP::Zero(device_.n_p), lag);
+  const VectorPM dq = stacked(robot.dq_p, robot.dq_m);
+  int limit = device_.first_cartesian();
+  for (const CartesianLimit& frame : device_.cartesian_limits) {
+    const model::Jacobian& J = device_now_.jacobian(frame.frame);
+    const Eigen::Vector3d p = device_now_.pose(frame.frame).p;
+    for (int axis = 0; axis < 3; ++axis, ++limit) {
+      look(limit, p[axis], J.row(axis).dot(lags), J.row(axis).dot(dq));
+    }
+  }
 }
 
 void Rendering::find_kinematics(const RenderingState& state, LawResult& result) const noexcept {

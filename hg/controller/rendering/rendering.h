@@ -121,6 +121,7 @@ class Rendering {
   void add_stops(ContactReport& contact) const noexcept;
   void to_hand(const RenderingState& state, LawResult& result) const noexcept;
   void find_kinematics(const RenderingState& state, LawResult& result) const noexcept;
+  void follow_device(const RobotState& robot, const VectorM& q_m, LawResult& result) const noexcept;
 
   DeviceModel device_;
   TwinModel twin_;

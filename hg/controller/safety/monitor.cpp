@@ -85,7 +85,7 @@ Monitor::Monitor(const MonitorConfig& config, const DeviceModel& device,
       actuators_(device.actuators),
       is_gantry_slide_(device.is_gantry_slide()),
       end_cartesian_(device.limit_count() - (device.keeps_apart ? 1 : 0)),
-      first_cartesian_(end_cartesian_ - 3 * static_cast<int>(device.cartesian_limits.size())),
+      first_cartesian_(device.first_cartesian()),
       shaking_(dt_, parts.twin_mass) {
   for (int i = 0; i < n_m_; ++i) is_slide_.push_back(device.is_slide(i));
   if (!parts.has_rated_bounds) config_.acceleration_tolerance = kInfinity;

@@ -362,6 +362,41 @@ TEST(Rendering, ACartesianLimitHoldsTheHandWhateverTheGantryDoes) {
   }
 }
 
+TEST(Rendering, ReportsADeviceThatLeavesALimitWhichItsReferenceKeeps) {
+  DeviceModel device = unlimited_device();
+  const double x = handle_pose(device, kGantryAtHome, kPosture).p.x();
+  device.cartesian_limits = {{.name = "hand", .frame = device.handle, .axes = {}, .margin = 0.0}};
+  device.cartesian_limits[0].axes[0] = {-10.0, x + 0.001, 1.5, 5.0};
+  device.joint_limits[5].q_max = kPosture[5] + 0.001;
+  Rendering rendering(device, golden_twin(), without_synchronisation());
+  const auto passing = [&](const VectorM& lag, const VectorM& dq) {
+    RenderingState state = rendering.start(kPosture);
+    RobotState robot = robot_with(kGantryAtHome, kPosture + lag, Vector6::Zero());
+    robot.dq_m = dq;
+    LawResult result;
+    EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    return std::array{result.passing[5], result.passing[6]};
+  };
+  const VectorM still = VectorM::Zero(6);
+  VectorM lag = still;
+  lag[0] = 0.02;  // around the vertical
+  double outside = handle_pose(device, kGantryAtHome, kPosture + lag).p.x() - x;
+  if (outside < 0.0) {
+    lag = -lag;
+    outside = handle_pose(device, kGantryAtHome, kPosture + lag).p.x() - x;
+  }
+  ASSERT_GT(outside, 0.005);
+  EXPECT_EQ(passing(still, still), (std::array{0.0, 0.0}));
+  EXPECT_NEAR(passing(lag, still)[1], outside - 0.001, 0.1 * outside);
+  EXPECT_NEAR(passing(lag, 10.0 * lag)[1], 2.0 * outside - 0.001, 0.1 * outside);  // 0.1 s later
+  EXPECT_NEAR(passing(lag, -10.0 * lag)[1], outside - 0.001, 0.1 * outside);
+  EXPECT_EQ(passing(-lag, 10.0 * lag)[1], 0.0);
+  EXPECT_EQ(passing(lag, 10.0 * lag)[0], 0.0);
+  lag = still;
+  lag[5] = 0.02;
+  EXPECT_NEAR(passing(lag, 10.0 * lag)[0], 0.039, 1e-12);
+}
+
 TEST(Rendering, AVirtualJointIsHeldAtItsEnd) {
   DeviceModel device = unlimited_device();
   const double s = kPosture[3] + kPosture[4];
