@@ -99,7 +99,7 @@ CalmTwin close_loop(const config::SimulatedDeviceConfig& device, const scenario:
   for (const surfaces::Surface& surface : surfaces) {
     double& stiffest = calm.surfaces.emplace_back(kInfinity);
     if (surface.contact == surfaces::Contact::kStop) continue;
-    stiffest = limits.mass < std::ranges::max(calm.mass) ? 0.0 : surfaces::kStiffness.ub / scale;
+    if (limits.mass < std::ranges::max(calm.mass)) stiffest = 0.0;
     const Eigen::Matrix3Xd directions = normals(surface);
     const DriveLoop across(device, q, directions);
     const double damping = limits.damping + damping_of(surface, mass, limits.period) / scale;
@@ -126,6 +126,8 @@ std::string by_axis(const std::array<double, 3>& values, double scale) {
   return text;
 }
 
+double frequency_of(double stiffness, double mass) { return std::sqrt(stiffness / mass) / kTurn; }
+
 std::string frequency_text(const StiffnessLimits& limits) {
   if (!limits.calm) {
     return fmt::format("up to {:.1f} Hz, where T_d is {:g} degrees, which is {} = m (2 pi f)^2",
@@ -136,11 +138,17 @@ std::string frequency_text(const StiffnessLimits& limits) {
         "none along some axis, as in a hand it shakes without one below {} kg; across {} kN/m",
         by_axis(limits.calm->mass, 1.0), by_axis(limits.calm->stiffness, 1e-3));
   }
+  double stiffest = limits.by_frequency();
+  std::string where;
+  const std::vector<double>& each = limits.calm->surfaces;
+  if (!each.empty() && std::isfinite(std::ranges::min(each))) {
+    stiffest = std::min(std::ranges::min(each), surfaces::kStiffness.ub);
+    where = " on the surfaces of the scenario";
+  }
   return fmt::format(
       "up to {:.1f} Hz, where drives and elastic joints take the damping of a hand, which is {}{} "
       "(across {} kN/m; without a surface it shakes below {} kg)",
-      limits.frequency_Hz(), kilo(limits.by_frequency()),
-      limits.calm->surfaces.empty() ? "" : " on the surfaces of the scenario",
+      std::min(frequency_of(stiffest, limits.mass), 0.25 / limits.delay), kilo(stiffest), where,
       by_axis(limits.calm->stiffness, 1e-3), by_axis(limits.calm->mass, 1.0));
 }
 
@@ -148,7 +156,7 @@ std::string swing_text(const StiffnessLimits& limits, std::size_t surface) {
   const double stiffest = limits.by_frequency(surface);
   if (stiffest > 0.0) {
     return fmt::format("the body swings on it up to {:.1f} Hz",
-                       std::sqrt(stiffest / limits.mass) / kTurn);
+                       frequency_of(stiffest, limits.mass));
   }
   return fmt::format("in a hand the body shakes without it below {} kg",
                      by_axis(limits.calm->mass, 1.0));
@@ -242,13 +250,12 @@ void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Co
 
 double StiffnessLimits::frequency_Hz() const noexcept {
   const double by_phase = kPhase_deg / 360.0 / delay;
-  return calm ? std::min(std::sqrt(by_frequency() / mass) / kTurn, 0.25 / delay) : by_phase;
+  return calm ? std::min(frequency_of(by_frequency(), mass), 0.25 / delay) : by_phase;
 }
 
 double StiffnessLimits::by_frequency() const noexcept {
-  if (!calm) return mass * std::pow(kTurn * frequency_Hz(), 2);
-  return calm->surfaces.empty() ? std::ranges::min(calm->stiffness)
-                                : std::ranges::min(calm->surfaces);
+  if (calm) return std::ranges::min(calm->stiffness);
+  return mass * std::pow(kTurn * frequency_Hz(), 2);
 }
 
 double StiffnessLimits::by_frequency(std::size_t surface) const noexcept {

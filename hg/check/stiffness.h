@@ -26,8 +26,8 @@ constexpr bool can_be_pushed(double mass) noexcept { return mass < 1e6; }
 struct CalmTwin {
   std::array<double, 3> stiffness = {};  ///< stiffest wall across x, y, z of B, N/m
   std::array<double, 3> mass = {};       ///< lightest twin without a wall along them, kg
-  /// Stiffest that a file may state for each surface, as felt, across its faces and with its
-  /// damping, N/m; infinite for stops, 0 where the twin shakes without a surface.
+  /// Stiffest for each surface, as felt, across its faces and with its damping, N/m; infinite for
+  /// stops, 0 where the twin shakes without a surface.
   std::vector<double> surfaces;
 };
 
@@ -49,10 +49,9 @@ struct StiffnessLimits {
   /// Measured: 6 kg and 3 kg on surfaces come to rest at 8.2 Hz but not at 11.6 Hz, which with 4 ms
   /// are 12 and 16.7 degrees. With `calm` that of by_frequency(), a quarter of its turn at most.
   double frequency_Hz() const noexcept;
-  /// Stiffness limit by frequency, N/m: m (2 pi f)^2, with `calm` the least of its surfaces, or of
-  /// its axes where it has none.
+  /// Stiffness limit by frequency: m (2 pi f)^2, with `calm` the least of its axes, N/m.
   double by_frequency() const noexcept;
-  /// by_frequency() for one of the surfaces that the limits were made for, N/m.
+  /// The same for one of the surfaces that the limits were made for, N/m.
   double by_frequency(std::size_t surface) const noexcept;
   /// Stiffness limit by passivity: b / (T / 2 + T_d), N/m; passive in any hand, with `extra` Ns/m
   /// of a surface.

@@ -200,7 +200,7 @@ constexpr FaultWords kFaults[] = {
     {.code = FaultCode::kLimitNotHeld,
      .name = "limit not held",
      .text = "the motors cannot stop the device at a limit",
-     .meaning = "The hand moves the device towards a limit faster than its motors can stop it "
+     .meaning = "The hand moves the device towards or past a limit, and its motors cannot stop it "
                 "there, so that the brakes do."},
 };
 

@@ -35,7 +35,8 @@ UNTIL_RUNNING_S, UNTIL_ENDED_S, FAULT_TO_STOP_S, FROZEN_S = 60.0, 30.0, 0.3, 1.0
 WATCHED_AFTER_S = 1.0  # the session
 ENERGY_BOUND_J = 30.0
 UNWRITTEN = 1000  # samples that a recording may lack at its end
-TRIES = 20  # of a run that is to reach its fault: a busy computer may hold it up for more than the 10 ms of rule 120
+TRIES = 20  # of a run that a busy computer ends before its fault, by holding it up for more than the 10 ms of rule 120
+HELD_UP, UNTIL_REPORTED_S = b"fault120", 20.0  # in the name of the file that it then keeps
 
 
 @dataclasses.dataclass(frozen=True)
@@ -73,6 +74,7 @@ class Controller:
              "--priority", "0"], stdin=subprocess.DEVNULL, stdout=self.program_end, stderr=self.program_end)
         os.set_blocking(self.terminal, False)
         self.is_read = True
+        self.said = b""
 
     def has_ended(self):
         return self.process.poll() is not None
@@ -80,8 +82,8 @@ class Controller:
     def read(self):
         """Takes what it has printed, as a terminal does."""
         try:
-            while self.is_read and os.read(self.terminal, 4096):
-                pass
+            while self.is_read and (text := os.read(self.terminal, 4096)):
+                self.said += text
         except BlockingIOError:
             pass
 
@@ -141,6 +143,7 @@ def apply(fault, controller, folder, load):
 class Case:
     fault: Fault
     has_run: bool = False
+    was_held_up: bool = False  # before its fault
     has_ended: bool = False
     exit_code: int = -1  # -1: ended by a signal
     periods: int = 0  # of the device with this controller, until the stop
@@ -216,6 +219,7 @@ def play(program, fault, at_s):
         try:
             case.has_run = advance(time.monotonic() + UNTIL_RUNNING_S, is_due) and not has_failed()
             if not case.has_run:
+                case.was_held_up = advance(time.monotonic() + UNTIL_REPORTED_S, lambda: HELD_UP in controller.said)
                 return case
             device.is_watched = fault.is_stop
             apply(fault, controller, folder, load)
@@ -276,7 +280,7 @@ def play_all(arguments):
                 continue
             for _ in range(TRIES):
                 case = play(arguments.program, fault, at_s)
-                if case.has_run:
+                if not case.was_held_up:
                     break
             cases.append(case)
             print(case.line(), flush=True)

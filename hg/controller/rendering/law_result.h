@@ -39,8 +39,8 @@ struct LawResult : LawReport {
   VectorM ddq_m;  ///< Accelerations of the manipulator joints, rad/s^2 or m/s^2
   VectorA ddq_a;  ///< Accelerations of the twin joints, rad/s^2 or m/s^2
   /// Distance outside its range that each limit of the device will reach within kLookAhead, if it
-  /// could not be met in this cycle or the device has left it ahead of its reference, else 0; rad
-  /// or m, in the order of `limits`.
+  /// could not be met in this cycle, else 0; rad or m, in the order of `limits`. Of frames that of
+  /// the measured device, too.
   std::array<double, kMaxLimits> passing{};
 };
 

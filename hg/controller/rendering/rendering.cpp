@@ -15,11 +15,15 @@
 namespace hg::rendering {
 namespace {
 
-// Distance outside `range` that a device at `q` with `dq` reaches within kLookAhead; 0 inside.
+// Distance outside `range` that a frame at `q` with `dq` reaches within kLookAhead; 0 inside, and
+// on its way back. Infinite where either is not a number.
 double passing(const Interval& range, double q, double dq) noexcept {
+  constexpr double kReturning = 0.02;  // m/s
+  if (!std::isfinite(q + dq)) return kInfinity;
   const double outside = std::max(q - range.ub, range.lb - q);
   const double speed = q > range.ub ? dq : -dq;
-  return outside > 0.0 ? outside + kLookAhead * std::max(speed, 0.0) : 0.0;
+  if (outside <= 0.0 || speed < -kReturning) return 0.0;
+  return outside + kLookAhead * std::max(speed, 0.0);
 }
 
 // slower than this a joint with Coulomb friction stands still, rad/s or m/s
@@ -590,16 +594,11 @@ void Rendering::to_hand(const RenderingState& state, LawResult& result) const no
   result.contact.force.array() /= scale.head<3>().array();
 }
 
-// Where drives lag and motors are overpowered, the device leaves limits that its reference keeps.
+// The rows of the law hold the reference. Where drives lag and motors are overpowered, the device
+// leaves walls that its reference keeps.
 void Rendering::follow_device(const RobotState& robot, const VectorM& q_m,
                               LawResult& result) const noexcept {
-  const auto look = [&](int limit, double q, double lag, double dq) {
-    const Interval& range = tasks_.limit_rows()[limit].range;
-    const Interval room = {std::min(range.lb, q), std::max(range.ub, q)};
-    result.passing[limit] = std::max(result.passing[limit], passing(room, q + lag, dq));
-  };
   const VectorM lag = robot.q_m - q_m;
-  for (int i = 0; i < device_.n_m; ++i) look(i, q_m[i], lag[i], robot.dq_m[i]);
   const VectorPM lags = stacked(VectorP::Zero(device_.n_p), lag);
   const VectorPM dq = stacked(robot.dq_p, robot.dq_m);
   int limit = device_.first_cartesian();
@@ -607,7 +606,9 @@ void Rendering::follow_device(const RobotState& robot, const VectorM& q_m,
     const model::Jacobian& J = device_now_.jacobian(frame.frame);
     const Eigen::Vector3d p = device_now_.pose(frame.frame).p;
     for (int axis = 0; axis < 3; ++axis, ++limit) {
-      look(limit, p[axis], J.row(axis).dot(lags), J.row(axis).dot(dq));
+      const double reached = passing(tasks_.limit_rows()[limit].range,
+                                     p[axis] + J.row(axis).dot(lags), J.row(axis).dot(dq));
+      result.passing[limit] = std::max(result.passing[limit], reached);
     }
   }
 }

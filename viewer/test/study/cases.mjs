@@ -127,8 +127,8 @@ export async function escape_stops({ browser, mock, links, expect }) {
   lead_to(mock, "practice");
   await until(page, () => document.body.dataset.phase === "ready");
   await page.keyboard.press("s");
-  await until(page, () => document.body.dataset.phase === "running" && document.querySelector("iframe"));
-  const frame = page.frames().find((each) => each.url().includes("show=trial"));
+  await until(page, () => document.body.dataset.phase === "running");
+  const frame = await (await page.waitForSelector("iframe", { state: "attached" })).contentFrame();
   await frame.waitForFunction(() => /token=ab&show=trial/.test(document.getElementById("received")?.textContent));
   await press(page, "#do-abort");
   expect(await matches(page, "#why-text"), "who throws a trial away is asked why");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "hg/controller/rendering/test/playing.h"
@@ -362,39 +363,50 @@ TEST(Rendering, ACartesianLimitHoldsTheHandWhateverTheGantryDoes) {
   }
 }
 
-TEST(Rendering, ReportsADeviceThatLeavesALimitWhichItsReferenceKeeps) {
+TEST(Rendering, ReportsADeviceThatLeavesAWallWhichItsReferenceKeeps) {
   DeviceModel device = unlimited_device();
-  const double x = handle_pose(device, kGantryAtHome, kPosture).p.x();
-  device.cartesian_limits = {{.name = "hand", .frame = device.handle, .axes = {}, .margin = 0.0}};
-  device.cartesian_limits[0].axes[0] = {-10.0, x + 0.001, 1.5, 5.0};
-  device.joint_limits[5].q_max = kPosture[5] + 0.001;
-  Rendering rendering(device, golden_twin(), without_synchronisation());
-  const auto passing = [&](const VectorM& lag, const VectorM& dq) {
+  device.virtual_joints = {
+      {.name = "q4+q5", .weights = posture({0, 0, 0, 1, 1, 0}), .limits = {-9, 9, 4, 40}}};
+  device.cartesian_limits = {{.name = "elbow", .frame = device.elbow, .axes = {}, .margin = 0.0},
+                             {.name = "hand", .frame = device.handle, .axes = {}, .margin = 0.0}};
+  const Eigen::Vector3d p = handle_pose(device, kGantryAtHome, kPosture).p;
+  constexpr int kHand = 7 + 3;  // after the joints, their sum and the elbow
+  // what is reported of the hand along `axis` with a wall `room` beyond or, negative, before it
+  const auto passing = [&](int axis, double room, const VectorM& lag, const VectorM& dq,
+                           const VectorP& dq_p) {
+    limits::JointLimits& wall = device.cartesian_limits[1].axes[axis];
+    wall = {room > 0.0 ? -10.0 : p[axis] + room, room > 0.0 ? p[axis] + room : 10.0, 1.5, 5.0};
+    Rendering rendering(device, golden_twin(), without_synchronisation());
+    wall = {};
     RenderingState state = rendering.start(kPosture);
     RobotState robot = robot_with(kGantryAtHome, kPosture + lag, Vector6::Zero());
     robot.dq_m = dq;
+    robot.dq_p = dq_p;
     LawResult result;
     EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
-    return std::array{result.passing[5], result.passing[6]};
+    for (int i = 0; i < kHand + 3; ++i) {
+      EXPECT_TRUE(i == kHand + axis || result.passing[i] == 0.0) << i;
+    }
+    return result.passing[kHand + axis];
   };
   const VectorM still = VectorM::Zero(6);
-  VectorM lag = still;
-  lag[0] = 0.02;  // around the vertical
-  double outside = handle_pose(device, kGantryAtHome, kPosture + lag).p.x() - x;
-  if (outside < 0.0) {
-    lag = -lag;
-    outside = handle_pose(device, kGantryAtHome, kPosture + lag).p.x() - x;
+  const VectorP at_home = VectorP::Zero(2);
+  for (const int axis : {0, 1}) {
+    VectorM lag = still;
+    lag[0] = 0.02;
+    const double moved = handle_pose(device, kGantryAtHome, kPosture + lag).p[axis] - p[axis];
+    ASSERT_GT(std::abs(moved), 0.002);
+    const double room = std::copysign(0.0005, moved), outside = std::abs(moved) - 0.0005;
+    const double close = 0.1 * std::abs(moved);
+    EXPECT_EQ(passing(axis, room, still, still, at_home), 0.0);
+    EXPECT_EQ(passing(axis, room, -lag, 10.0 * lag, at_home), 0.0);
+    EXPECT_NEAR(passing(axis, room, lag, still, at_home), outside, close);
+    EXPECT_NEAR(passing(axis, room, lag, 10.0 * lag, at_home), outside + std::abs(moved), close);
+    EXPECT_EQ(passing(axis, room, lag, -50.0 * lag, at_home), 0.0);  // on its way back
+    VectorP dq_p = at_home;
+    dq_p[axis] = std::copysign(0.1, moved);  // the gantry's axes are x and y
+    EXPECT_NEAR(passing(axis, room, lag, still, dq_p), outside + 0.01, close);
   }
-  ASSERT_GT(outside, 0.005);
-  EXPECT_EQ(passing(still, still), (std::array{0.0, 0.0}));
-  EXPECT_NEAR(passing(lag, still)[1], outside - 0.001, 0.1 * outside);
-  EXPECT_NEAR(passing(lag, 10.0 * lag)[1], 2.0 * outside - 0.001, 0.1 * outside);  // 0.1 s later
-  EXPECT_NEAR(passing(lag, -10.0 * lag)[1], outside - 0.001, 0.1 * outside);
-  EXPECT_EQ(passing(-lag, 10.0 * lag)[1], 0.0);
-  EXPECT_EQ(passing(lag, 10.0 * lag)[0], 0.0);
-  lag = still;
-  lag[5] = 0.02;
-  EXPECT_NEAR(passing(lag, 10.0 * lag)[0], 0.039, 1e-12);
 }
 
 TEST(Rendering, AVirtualJointIsHeldAtItsEnd) {
