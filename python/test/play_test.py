@@ -45,6 +45,8 @@ class Play(unittest.TestCase):
             if report.get("phase") == "running":
                 threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
 
+        # a shell's background job begins with Ctrl-C ignored
+        self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         with self.assertRaises(KeyboardInterrupt) as ended:
             hapticgiant.play("free_space", duration=600, viewer=False, recordings=str(self.folder),
                              despite=[], priority=0, on_event=interrupt)
