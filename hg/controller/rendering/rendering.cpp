@@ -599,15 +599,14 @@ void Rendering::to_hand(const RenderingState& state, LawResult& result) const no
 void Rendering::follow_device(const RobotState& robot, const VectorM& q_m,
                               LawResult& result) const noexcept {
   const VectorM lag = robot.q_m - q_m;
-  const VectorPM lags = stacked(VectorP::Zero(device_.n_p), lag);
   const VectorPM dq = stacked(robot.dq_p, robot.dq_m);
   int limit = device_.first_cartesian();
   for (const CartesianLimit& frame : device_.cartesian_limits) {
     const model::Jacobian& J = device_now_.jacobian(frame.frame);
     const Eigen::Vector3d p = device_now_.pose(frame.frame).p;
     for (int axis = 0; axis < 3; ++axis, ++limit) {
-      const double reached = passing(tasks_.limit_rows()[limit].range,
-                                     p[axis] + J.row(axis).dot(lags), J.row(axis).dot(dq));
+      const double q = p[axis] + J.row(axis).tail(device_.n_m).dot(lag);
+      const double reached = passing(tasks_.limit_rows()[limit].range, q, J.row(axis).dot(dq));
       result.passing[limit] = std::max(result.passing[limit], reached);
     }
   }
