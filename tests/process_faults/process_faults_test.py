@@ -35,7 +35,7 @@ UNTIL_RUNNING_S, UNTIL_ENDED_S, FAULT_TO_STOP_S, FROZEN_S = 60.0, 30.0, 0.3, 1.0
 WATCHED_AFTER_S = 1.0  # the session
 ENERGY_BOUND_J = 30.0
 UNWRITTEN = 1000  # samples that a recording may lack at its end
-TRIES = 20  # of a run that a busy computer ends before its fault, by holding it up for more than the 10 ms of rule 120
+TRIES = 20  # of a run that a busy computer ends before its fault: held up for the 10 ms of rule 120 or the device's 50 ms
 HELD_UP, UNTIL_REPORTED_S = b"fault120", 20.0  # in the name of the file that it then keeps
 
 
@@ -219,7 +219,10 @@ def play(program, fault, at_s):
         try:
             case.has_run = advance(time.monotonic() + UNTIL_RUNNING_S, is_due) and not has_failed()
             if not case.has_run:
-                case.was_held_up = advance(time.monotonic() + UNTIL_REPORTED_S, lambda: HELD_UP in controller.said)
+                case.was_held_up = advance(time.monotonic() + UNTIL_REPORTED_S,
+                                           lambda: device.was_too_late or HELD_UP in controller.said)
+                if not case.was_held_up:
+                    print(controller.said.decode(errors="replace"))
                 return case
             device.is_watched = fault.is_stop
             apply(fault, controller, folder, load)
