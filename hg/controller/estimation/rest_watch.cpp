@@ -16,7 +16,9 @@ constexpr double kForce = 0.5;         // N, change of the wrench that is a touc
 constexpr double kLever = 0.08;        // m, of its torque
 constexpr double kMet = 0.05;          // N, between a zero and the wrench that it has met
 constexpr double kFast = 0.008;        // s, low-pass of what touches
-constexpr double kMean = 0.3;          // s, low-pass of what is steady
+constexpr double kMean = 1.6;          // s, low-pass of what is steady
+constexpr double kFollow = 0.3;        // s, in which the zero follows it
+constexpr double kNoise = 0.2;         // s, low-pass of the noise that is seen
 constexpr double kHertz = 10.0;        // of the band
 constexpr double kQuality = 1.5;       // of each of its two band-passes
 constexpr double kBand = 4.1;          // Hz, of noise in the band without the blocks left out
@@ -83,13 +85,22 @@ bool is_met(const RestState& rest) noexcept {
   return rest.is_known && rest.known_s < rest.braked_s - kAnswer;
 }
 
+// Noise of a force in a sample, N: as stated, or more where a sample differs more from the one
+// before. Tremor changes far less from one to the next.
+double noise_of(double stated, const RestState& rest) noexcept {
+  return std::max(stated, std::sqrt(0.5 * rest.jumps));
+}
+
 // Whether the wrench stays and nothing trembles.
 void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const Eigen::Vector3d f = input.w_S.head<3>() - input.inertia_S;
   const BandPass pass(dt);
-  if (rest.watched_s == 0.0) rest.fast = rest.mean = input.w_S;
+  if (rest.watched_s == 0.0) rest.fast = rest.mean = rest.last = input.w_S;
   const bool is_new = rest.watched_s < 0.5 * kBlock;
   rest.watched_s += dt;
+  const double jump = (input.w_S - rest.last).head<3>().squaredNorm() / 3.0;
+  rest.jumps += std::min(1.0, dt / kNoise) * (jump - rest.jumps);
+  rest.last = input.w_S;
   rest.fast += std::min(1.0, dt / kFast) * (input.w_S - rest.fast);
   rest.mean += std::min(1.0, dt / kMean) * (input.w_S - rest.mean);
   const Eigen::Vector3d x = is_new ? rest.fast.head<3>() - input.inertia_S : f;
@@ -113,7 +124,8 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const bool is_steady = is_within(change, kForce + inertia);
   rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
   if (!is_steady) rest.mean = rest.fast;
-  const bool is_calm = is_braking || rest.tremor < tremor_limit(dt, input.noise, kTremor);
+  const bool is_calm =
+      is_braking || rest.tremor < tremor_limit(dt, noise_of(input.noise, rest), kTremor);
   rest.is_untouched = is_calm && rest.steady * dt >= RestState::kBlocks * kBlock;
 }
 
@@ -127,7 +139,7 @@ bool is_explained(const RestInput& input, const RestState& rest) noexcept {
 
 void follow(double dt, const RestInput& input, RestState& rest) noexcept {
   const Vector6 off = rest.mean - rest.zero;
-  Vector6 step = std::min(1.0, dt / kMean) * off;
+  Vector6 step = std::min(1.0, dt / kFollow) * off;
   if (is_met(rest)) {
     const double most = kFastestStep * dt;
     step.head<3>() = step.head<3>().cwiseMax(-most).cwiseMin(most);
@@ -154,9 +166,10 @@ void advance(double dt, const RestInput& input, RestState& rest) noexcept {
   if (rest.braked_s > kAnswer && !input.is_at_limit) follow(dt, input, rest);
 }
 
-bool trembles(double dt, double noise, const RestState& rest) noexcept {
+bool trembles(double dt, double stated, const RestState& rest) noexcept {
   constexpr int kNewest = 4;
   constexpr double kWhole = 5.2, kCertain = 3.0;  // Hz, of noise in the band; times
+  const double noise = noise_of(stated, rest);
   double sum = 0.0;
   for (int i = 0; i < kNewest; ++i) sum += rest.blocks[i];
   const double hidden = noise_in(kWhole, dt, noise);

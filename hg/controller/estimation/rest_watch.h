@@ -23,7 +23,7 @@ struct RestInput {
   /// Inertia of the payload that is still in w_S, by the measured motion, N.
   Eigen::Vector3d inertia_S = Eigen::Vector3d::Zero();
   Eigen::Vector3d v_H = Eigen::Vector3d::Zero();  ///< Measured velocity of the handle, in B, m/s
-  double noise = 0.08;                            ///< Of a force in a sample, rms, N
+  double noise = 0.08;                            ///< Stated, of a force in a sample, rms, N
   double payload_mass = 0.0;                      ///< kg
   double acceleration = 0.0;  ///< Of the handle, whose force on the payload is in w_S, m/s^2
   /// Springs, weight and surfaces neither move nor hold the twin, or the device stands still.
@@ -47,6 +47,8 @@ struct RestState {
   int steady = 0;                        ///< Samples for which the wrench has been steady
   Eigen::Vector3d v_H = Eigen::Vector3d::Zero();           ///< Of the last sample
   Vector6 fast = Vector6::Zero(), mean = Vector6::Zero();  ///< Wrench by two low-passes
+  Vector6 last = Vector6::Zero();                          ///< Wrench of the last sample
+  double jumps = 0.0;  ///< Mean square of a force's change from sample to sample, N^2
   bool is_untouched = false;
   double braked_s = 0.0;                               ///< How long the twin has been braked
   bool is_known = false;                               ///< The zero has met a steady wrench
@@ -57,16 +59,17 @@ struct RestState {
 
 /// Words of the state hash. Filters, and all while the watch does not act, are left out.
 void hashed(auto& hash, const RestState& state) {
-  const auto& [watched_s, band, blocks, tremor, sum, samples, steady, v_H, fast, mean, is_untouched,
-               braked_s, is_known, known_up, known_s, zero] = state;
+  const auto& [watched_s, band, blocks, tremor, sum, samples, steady, v_H, fast, mean, last, jumps,
+               is_untouched, braked_s, is_known, known_up, known_s, zero] = state;
   if (is_known || braked_s > 0.0) hash.mix(is_untouched, braked_s, known_s, zero);
 }
 
 /// Advances by one period.
 void advance(double dt, const RestInput& input, RestState& rest) noexcept;
 
-/// Whether a hand has trembled in the last 0.4 s, as far as noise of the sensor lets it be seen.
-bool trembles(double dt, double noise, const RestState& rest) noexcept;
+/// Whether a hand has trembled in the last 0.4 s, as far as noise of the sensor lets it be seen;
+/// `stated`: noise of a force in a sample, rms, N.
+bool trembles(double dt, double stated, const RestState& rest) noexcept;
 
 /// Rate at which the twin is braked, 1/s.
 double braking_rate(const RestState& rest) noexcept;

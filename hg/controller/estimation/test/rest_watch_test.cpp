@@ -112,6 +112,29 @@ TEST_P(RestWatchSeeds, ATareSeesAHandThatTrembles) {
   EXPECT_TRUE(trembles(kDt, 0.08, trial.run(GetParam(), 0.0, 0.5)));
 }
 
+// A machine that pushes slowly does not tremble, and stands nearly still where it turns round.
+TEST(RestWatch, ASlowSwingWithoutTremorIsAPush) {
+  for (const double frequency_Hz : {0.1, 0.2}) {
+    Trial swung = {.force = [=](double t) {
+      return 10.0 * std::sin(2.0 * std::numbers::pi * frequency_Hz * t);
+    }};
+    swung.input.acceleration = 1.2;
+    swung.look = [](double t, const RestState& now) { ASSERT_EQ(braking_rate(now), 0.0) << t; };
+    swung.run(1, 0.0, 30.0);
+  }
+}
+
+// A tare is not refused for ever where device.yaml promises a better sensor.
+TEST_P(RestWatchSeeds, NoiseBeyondTheStatedOneIsNoTremor) {
+  Trial noisy = {.noise = 0.2};
+  noisy.look = [](double t, const RestState& now) {
+    if (t > 0.4) {
+      ASSERT_FALSE(trembles(kDt, 0.08, now)) << t;
+    }
+  };
+  noisy.run(GetParam(), 0.0, 10.0);
+}
+
 // A steady push moves a light twin off with a heavy payload's acceleration: no rest for 1.6 s.
 TEST(RestWatch, APushIsSeenAlsoWhereThePayloadIsHeavy) {
   Trial pushed = {.force = [](double t) { return t < 3.0 ? 0.0 : 10.0; }, .noise = 0.0};
