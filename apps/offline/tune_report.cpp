@@ -40,7 +40,7 @@ Json loop_of(const TuneReport& report, const Candidate& candidate, const Proof& 
 }
 
 // Felt over rendered impedance, largest and least over the axes and postures evaluated for feel.
-Json felt_of(const tune::TuningProblem& problem, const tune::TunedDevice& device) {
+Json felt_of(const tune::TuningProblem& problem, const handle_loop::LoopDevice& device) {
   constexpr double kFrom_Hz = 0.5, kTo_Hz = 60.0, kPerDecade = 24.0;
   std::vector<double> frequencies;
   for (double f = kFrom_Hz; f <= kTo_Hz; f *= std::pow(10.0, 1.0 / kPerDecade)) {
@@ -98,7 +98,8 @@ Json tune_json(const TuneReport& report) {
     json["front"].push_back(loop_of(report, result.front[i], result.proofs[i], result.limits[i]));
   }
   if (result.front.empty()) return json;
-  const tune::TunedDevice tuned = tune::with_values(problem.device, result.front.front().values);
+  const handle_loop::LoopDevice tuned =
+      tune::with_values(problem.device, result.front.front().values);
   json["felt_before"] = felt_of(problem, problem.device);
   json["felt"] = felt_of(problem, tuned);
   json["radii_before"] = radii_of(result.everywhere_before);

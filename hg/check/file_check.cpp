@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hg/check/device_inspection.h"
+#include "hg/check/light_twin.h"
 #include "hg/check/machine_inspection.h"
 #include "hg/check/scenario_inspection.h"
 #include "hg/check/stiffness.h"
@@ -199,6 +200,7 @@ void check_twins(Check& check) {
     add(inspect(scenario.twin, scenario.device.model.dt()), check);
     add(inspect(scenario.device, scenario.twin, scenario.surfaces), check);
     add(inspect_surfaces(scenario), check);
+    add(inspect_light_twin(scenario), check);
     add(inspect_spheres(scenario), check);
   }
 }

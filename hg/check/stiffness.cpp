@@ -274,18 +274,25 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
   return acceleration * std::sqrt(mass / stiffness);
 }
 
-StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
-                                 const config::Twin& twin,
-                                 std::span<const surfaces::Surface> surfaces) {
+FeltTwin felt_twin(const config::Twin& twin) {
   const auto [mass, dq] = rendering::felt_mass(twin.model, twin.model.felt_scale.head<3>());
-  StiffnessLimits limits = {.mass = mass.lb,
-                            .period = device.model.dt(),
-                            .delay = std::max(delay_of(device), device.model.dt())};
+  FeltTwin felt = {.mass = mass};
   for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
     const double speed = dq[i];
     const rendering::TwinDof& dof = twin.model.dofs[i];
-    limits.damping += rendering::total_of(&rendering::Element::damping, dof).value * speed * speed;
+    felt.damping += rendering::total_of(&rendering::Element::damping, dof).value * speed * speed;
   }
+  return felt;
+}
+
+StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,
+                                 const config::Twin& twin,
+                                 std::span<const surfaces::Surface> surfaces) {
+  const FeltTwin felt = felt_twin(twin);
+  StiffnessLimits limits = {.mass = felt.mass.lb,
+                            .damping = felt.damping,
+                            .period = device.model.dt(),
+                            .delay = std::max(delay_of(device), device.model.dt())};
   const std::optional<scenario::Start> start = start_of(device, twin);
   if (start) limits.acceleration = braking_of(device.model, *start);
   if (start && has_position_drives(device)) {

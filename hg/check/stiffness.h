@@ -22,6 +22,13 @@ namespace hg::check {
 /// along any direction the mass is infinite, or nearly.
 constexpr bool can_be_pushed(double mass) noexcept { return mass < 1e6; }
 
+/// What a twin feels like at its handle where it is lightest, as TwinModel::felt_scale scales it.
+struct FeltTwin {
+  Interval mass;         ///< along the directions in which it moves, kg
+  double damping = 0.0;  ///< in the direction of the lightest, Ns/m
+};
+FeltTwin felt_twin(const config::Twin& twin);
+
 /// Where hand, twin and drives that follow positions do not swing together.
 struct CalmTwin {
   std::array<double, 3> stiffness = {};  ///< stiffest wall across x, y, z of B, N/m

@@ -5,9 +5,13 @@
 #include <complex>
 #include <vector>
 
-#include "hg/tune/handle_loop.h"
+#include "hg/handle_loop/handle_loop.h"
 
 namespace hg::tune {
+
+using handle_loop::Body;
+using handle_loop::HandleLoop;
+using handle_loop::Resolvent;
 
 /// Felt quality in one posture.
 struct Feel {

@@ -4,15 +4,17 @@
 #include <span>
 #include <string_view>
 
-#include "hg/tune/handle_loop.h"
+#include "hg/handle_loop/handle_loop.h"
 
 namespace hg::tune {
+
+using handle_loop::LoopDevice;
 
 struct Knob {
   std::string_view section, key;   ///< section and key in device.yaml
   double least = 0.0, most = 0.0;  ///< range of the search
-  double (*get)(const TunedDevice&);
-  void (*set)(TunedDevice&, double);
+  double (*get)(const LoopDevice&);
+  void (*set)(LoopDevice&, double);
 };
 
 std::span<const Knob> knobs();
@@ -20,9 +22,9 @@ std::span<const Knob> knobs();
 /// One value per knob.
 using Values = Eigen::VectorXd;
 
-Values values_of(const TunedDevice& device);
+Values values_of(const LoopDevice& device);
 /// The device with these values; values outside the search range are clamped.
-TunedDevice with_values(TunedDevice device, const Values& values);
+LoopDevice with_values(LoopDevice device, const Values& values);
 
 /// Normalised values within the range of each knob, 0 to 1, logarithmic where the range is, and
 /// back.

@@ -106,7 +106,7 @@ const Deviation& Demands::deviation(const Case& one) const {
   return (one.grasp < 0 ? deviations_ : deviations_in_hand_)[one.deviation];
 }
 
-double Demands::radius(const TunedDevice& device, const Case& one) const {
+double Demands::radius(const LoopDevice& device, const Case& one) const {
   const Deviation& real = deviation(one);
   const Eigen::VectorXd& q = postures_[one.posture];
   const tracking::ControlConfig& config = device.loop.config;
@@ -118,14 +118,14 @@ double Demands::radius(const TunedDevice& device, const Case& one) const {
   const Grasp& grasp = grasps_[one.grasp];
   Body body = is_friction(one) ? body_ : grasp.body;
   body.mass *= real.mass;
-  TunedDevice doubted = device;
+  LoopDevice doubted = device;
   if (is_friction(one)) doubted.loop.config.friction_share = real.fed;
   doubted.loop.config.flatness_Hz *= real.follower;
   return std::pow(hg::spectral_radius(linearise(doubted, real.plant, body, grasp.hand, {}, q).A),
                   scale);
 }
 
-double Demands::excess(const TunedDevice& device, const Case& one) const {
+double Demands::excess(const LoopDevice& device, const Case& one) const {
   const double in_hand = is_friction(one) ? kFrictionRadius : kHandRadius;
   return radius(device, one) - (one.grasp < 0 ? kArmRadius : in_hand);
 }

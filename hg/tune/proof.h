@@ -4,9 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "hg/tune/handle_loop.h"
+#include "hg/handle_loop/handle_loop.h"
 
 namespace hg::tune {
+
+using handle_loop::Body;
+using handle_loop::linearise;
+using handle_loop::LoopDevice;
 
 /// A deviation from the controller's model.
 struct Deviation {
@@ -69,9 +73,9 @@ class Demands {
   /// All cases of a posture.
   std::vector<Case> cases(std::size_t posture) const;
   /// Largest modulus of the eigenvalues of `device`, per millisecond.
-  double radius(const TunedDevice& device, const Case& one) const;
+  double radius(const LoopDevice& device, const Case& one) const;
   /// Excess of the radius over its limit; > 0 where motions do not decay in time.
-  double excess(const TunedDevice& device, const Case& one) const;
+  double excess(const LoopDevice& device, const Case& one) const;
   /// Name of a case, e.g. "stiff hand, 0.4 kg, latency x 1.5".
   std::string name(const Case& one) const;
 

@@ -22,7 +22,7 @@ double with_three_digits(double value, double (*rounding)(double)) {
 }
 
 // As they will stand in a file, and within what the device takes.
-Values rounded(const TunedDevice& device, const Values& values) {
+Values rounded(const LoopDevice& device, const Values& values) {
   Values result = values.unaryExpr([](double x) { return with_three_digits(x, std::round); });
   const Values taken = values_of(with_values(device, result));
   for (Eigen::Index i = 0; i < result.size(); ++i) {
@@ -76,7 +76,7 @@ class Search {
   }
 
   // One per posture.
-  std::vector<Proof> proof_everywhere(const TunedDevice& device) {
+  std::vector<Proof> proof_everywhere(const LoopDevice& device) {
     std::vector<Proof> proofs(problem_.postures.size());
     experiments::do_all(
         proofs.size(),
@@ -113,7 +113,7 @@ class Search {
 
   // Cost to minimise: distortion, plus penalties for violated limits.
   double cost(const Values& values, double limit) const {
-    const TunedDevice device = with_values(problem_.device, values);
+    const LoopDevice device = with_values(problem_.device, values);
     const Figures figures = figures_of(problem_, device);
     const double too_much = std::max(0.0, figures.vibration / limit - 1.0);
     double excess = 0.0;
@@ -158,7 +158,7 @@ Demands demands_of(const TuningProblem& problem) {
   return {problem.device.loop, problem.body, problem.postures};
 }
 
-Figures figures_of(const TuningProblem& problem, const TunedDevice& device) {
+Figures figures_of(const TuningProblem& problem, const LoopDevice& device) {
   Figures worst = {.transparency_Hz = kInfinity};
   const std::size_t count = std::min(problem.felt_postures, problem.postures.size());
   for (std::size_t i = 0; i < count; ++i) {

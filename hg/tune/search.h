@@ -13,9 +13,13 @@
 
 namespace hg::tune {
 
+using handle_loop::Body;
+using handle_loop::LoopDevice;
+using handle_loop::Noise;
+
 /// Tuning problem: properties of a device and design goals.
 struct TuningProblem {
-  TunedDevice device;
+  LoopDevice device;
   Noise noise;
   tracking::TruePlant plant;  ///< known plant, for which feel and vibration are computed
   Eigen::VectorXd friction;   ///< unmodelled friction, Nm
@@ -38,7 +42,7 @@ struct Figures {
   double friction_N = 0.0;
   double vibration = 0.0, centroid_Hz = 0.0;
 };
-Figures figures_of(const TuningProblem& problem, const TunedDevice& device);
+Figures figures_of(const TuningProblem& problem, const LoopDevice& device);
 
 struct Candidate {
   Values values;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "hg/config/torque_loop.h"
 #include "hg/core/error.h"
 #include "hg/scenario/assembly.h"
 
@@ -16,7 +15,7 @@ double rounding(double step) { return step / std::sqrt(12.0); }
 
 }  // namespace
 
-TunedDevice device_of(const config::SimulatedDeviceConfig& device) {
+LoopDevice device_of(const config::SimulatedDeviceConfig& device) {
   const auto refuse = [&](const std::string& why) {
     throw SetupError(fmt::format(
         "{}: {}", device.sources.empty() ? device.name : device.sources.front().name, why));
@@ -45,10 +44,7 @@ TunedDevice device_of(const config::SimulatedDeviceConfig& device) {
         "tune weighs what is felt against the noise of the force/torque sensor, and there is "
         "none: give 'simulation:' a file with sensors.wrench_sensor.noise_N_per_sqrt_Hz");
   }
-  return {.loop = config::torque_loop(device),
-          .wrench = {.average_s = sensor.filter.average,
-                     .delay_s = sensor.filter.delay,
-                     .low_pass_Hz = device.estimation.wrench.low_pass_Hz}};
+  return handle_loop::device_of(device);
 }
 
 Noise noise_of(const config::SimulatedDeviceConfig& device) {
@@ -76,14 +72,6 @@ Eigen::VectorXd unexpected_friction(const config::SimulatedDeviceConfig& device)
     friction[i] = kShare * device.model.actuators[i].coulomb_friction;
   }
   return friction;
-}
-
-tracking::TruePlant simulated(const config::SimulatedDeviceConfig& device) {
-  const config::RealityFactors& factors = device.simulation.factors;
-  tracking::TruePlant plant = {device.model.actuators, config::actual(device.control.loop, factors),
-                               factors.mass};
-  for (ActuatorModel& actuator : plant.actuators) actuator = config::actual(actuator, factors);
-  return plant;
 }
 
 }  // namespace hg::tune

@@ -87,7 +87,6 @@ config::Scenario instrument(const config::Scenario& scenario, const ResponseConf
                             const person::Script& script, std::uint64_t seed) {
   config::Scenario result = with_script(scenario, script);
   result.twin.model.q_start.head<3>() = config.position;
-  result.script.hand.tremor_rms = 0.0;
   experiments::set_seed(result, seed);
   return result;
 }

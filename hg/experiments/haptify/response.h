@@ -28,7 +28,8 @@ struct ResponseConfig {
   double watched_s = 0.15;   ///< time observed after the step, s
 };
 
-/// The scenario with the handle in the middle, played by an instrument: a script without tremor.
+/// The scenario with the handle in the middle, played by an instrument that trembles as a hand
+/// does: what does not is no touch (estimation/rest_watch.h).
 config::Scenario instrument(const config::Scenario& scenario, const ResponseConfig& config,
                             const person::Script& script, std::uint64_t seed);
 

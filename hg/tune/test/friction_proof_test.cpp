@@ -17,13 +17,13 @@ config::SimulatedDeviceConfig reference() {
   return config::load_simulated_device("models/haptic_giant/device.yaml");
 }
 
-TunedDevice with_presliding(double presliding) {
-  TunedDevice device = device_of(reference());
+LoopDevice with_presliding(double presliding) {
+  LoopDevice device = device_of(reference());
   for (ActuatorModel& actuator : device.loop.device.actuators) actuator.presliding = presliding;
   return device;
 }
 
-VectorM bristles(const TunedDevice& device, double share) {
+VectorM bristles(const LoopDevice& device, double share) {
   VectorM stiffness(device.loop.device.n_m);
   for (int i = 0; i < device.loop.device.n_m; ++i) {
     stiffness[i] = share * presliding_stiffness(device.loop.device.actuators[i]);
@@ -33,7 +33,7 @@ VectorM bristles(const TunedDevice& device, double share) {
 
 // Largest radius with a body of 6 kg in all hands, bristles `real` times and friction fed forward
 // `fed` times as stiff as nominal.
-double worst(TunedDevice device, double real, double fed, int postures) {
+double worst(LoopDevice device, double real, double fed, int postures) {
   device.loop.config.friction_share = fed;
   const tracking::TruePlant plant = {device.loop.device.actuators, device.loop.config.loop, 1.0,
                                      bristles(device, real)};
@@ -49,7 +49,7 @@ double worst(TunedDevice device, double real, double fed, int postures) {
 
 // docs/concepts/control.md, "Friction"
 TEST(FrictionProof, HoldsWhereAboutAsMuchIsFedForwardAsIsThere) {
-  const TunedDevice device = with_presliding(kPresliding);
+  const LoopDevice device = with_presliding(kPresliding);
   const auto postures = config::random_postures(reference().model, 5, 1);
   const Demands demands(device.loop, {}, postures);
   int cases = 0;
@@ -64,7 +64,7 @@ TEST(FrictionProof, HoldsWhereAboutAsMuchIsFedForwardAsIsThere) {
 }
 
 TEST(FrictionProof, DoesNotHoldFarFromThat) {
-  const TunedDevice device = with_presliding(kPresliding);
+  const LoopDevice device = with_presliding(kPresliding);
   EXPECT_GT(worst(device, 1.0, 0.0, 2), 1.0) << "nothing fed forward against bristles";
   EXPECT_GT(worst(device, 1.0, 2.0, 2), 1.0) << "twice as much as is there";
   EXPECT_GT(worst(device, 0.0, 1.0, 2), 1.0) << "fed forward against nothing";
@@ -72,7 +72,7 @@ TEST(FrictionProof, DoesNotHoldFarFromThat) {
 
 // friction that changes its sign with the speed is a negative damper in small motions
 TEST(FrictionProof, WithoutPreslidingSmallMotionsAreNotStableAlone) {
-  TunedDevice device = device_of(reference());
+  LoopDevice device = device_of(reference());
   const tracking::ControlConfig& config = device.loop.config;
   const tracking::TruePlant plant = {device.loop.device.actuators, config.loop};
   for (ActuatorModel& actuator : device.loop.device.actuators) {
@@ -90,7 +90,7 @@ TEST(FrictionProof, RequiresNothingOfADeviceWithoutPresliding) {
 // what is linearised does not slip, however small its presliding
 TEST(FrictionProof, IsOfTheStiffnessAlone) {
   const double wide = worst(with_presliding(1e-3), 1.0, 1.0, 1);
-  TunedDevice steep = with_presliding(1e-5);
+  LoopDevice steep = with_presliding(1e-5);
   for (ActuatorModel& actuator : steep.loop.device.actuators) actuator.coulomb_friction *= 0.01;
   EXPECT_NEAR(worst(steep, 1.0, 1.0, 1), wide, 1e-6);
 }

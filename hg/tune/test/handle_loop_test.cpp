@@ -1,4 +1,4 @@
-#include "hg/tune/handle_loop.h"
+#include "hg/handle_loop/handle_loop.h"
 
 #include <gtest/gtest.h>
 
@@ -105,9 +105,9 @@ TEST(HandleLoop, IsStableWhereTheSimulationIs) {
 
 TEST(HandleLoop, ALateWrenchIsFeltLaterAndLessClearly) {
   const config::Scenario scenario = walk();
-  TunedDevice late = device_of(scenario.device);
+  LoopDevice late = device_of(scenario.device);
   late.wrench.delay_s += 3e-3;
-  const auto felt = [&](const TunedDevice& device) {
+  const auto felt = [&](const LoopDevice& device) {
     return feel(linearise(device, simulated(scenario.device), {}, person::HandImpedance{},
                           noise_of(scenario.device), posture_of(scenario)),
                 {}, unexpected_friction(scenario.device));

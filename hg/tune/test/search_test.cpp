@@ -35,7 +35,7 @@ Values with(const TuningProblem& problem, std::string_view key, double value) {
 }
 
 TEST(Knobs, GiveBackWhatTheyTook) {
-  const TunedDevice device = problem_of(1).device;
+  const LoopDevice device = problem_of(1).device;
   const Values values = 0.9 * values_of(device);
   EXPECT_LT((values_of(with_values(device, values)) - values).norm(), 1e-12);
 }
@@ -55,18 +55,18 @@ TEST(Search, JudgesThePresentLoopAsItIs) {
 }
 
 TEST(Knobs, TakeALoopThatIsSlowerThanTheirRange) {
-  TunedDevice slow = problem_of(1).device;
+  LoopDevice slow = problem_of(1).device;
   slow.loop.config.loop.latency = 8e-3;
-  const TunedDevice taken = with_values(slow, values_of(slow));
+  const LoopDevice taken = with_values(slow, values_of(slow));
   EXPECT_NEAR(taken.loop.config.poles.w0, 0.265 / 8.5e-3, 1e-9);
 }
 
 TEST(Knobs, TakeNoMoreThanLatencyAndRateAllow) {
   const TuningProblem problem = problem_of(1);
-  const TunedDevice fast =
+  const LoopDevice fast =
       with_values(problem.device, with(problem, "rotor_pole_rad_per_s", 1000.0));
   EXPECT_LT(fast.loop.config.poles.w0, 0.2651 / 1.5e-3);
-  const TunedDevice wild = with_values(problem.device, with(problem, "flatness_Hz", 1e6));
+  const LoopDevice wild = with_values(problem.device, with(problem, "flatness_Hz", 1e6));
   EXPECT_LT(wild.loop.config.flatness_Hz, tracking::largest_flatness_Hz(1000.0));
 }
 
@@ -74,7 +74,7 @@ TEST(Knobs, TakeNoMoreThanLatencyAndRateAllow) {
 TEST(Demands, RefuseTheDampingOfTheNotes) {
   const TuningProblem problem = problem_of(30);
   const Demands demands = demands_of(problem);
-  const auto failures = [&](const TunedDevice& device) {
+  const auto failures = [&](const LoopDevice& device) {
     int count = 0;
     for (std::size_t i = 0; i < problem.postures.size(); ++i) {
       for (const Case& one : demands.cases(i)) {
@@ -92,7 +92,7 @@ TEST(Demands, EveryHandHoldsTheShippedBodyInEveryPosture) {
   const TuningProblem problem = problem_of(20);
   for (const Deviation& deviation : deviations_in_hand(problem.device.loop)) {
     for (const Grasp& grasp : grasps(problem.body)) {
-      TunedDevice device = problem.device;
+      LoopDevice device = problem.device;
       device.loop.config.flatness_Hz *= deviation.follower;
       double worst = 0.0;
       for (const Eigen::VectorXd& q : problem.postures) {

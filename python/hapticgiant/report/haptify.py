@@ -91,15 +91,16 @@ def rows_of(table):
     return [table["columns"], *table["rows"]]
 
 
-def failures(results):
-    return ("".join(f"**Failed: {failure}**\n\n" for failure in results["failures"])
-            + "".join(f"Not possible: {what}.\n\n" for what in results["impossible"]))
+def failures(results, form):
+    failed = [failure.rpartition(": ")[::2] for failure in results["failures"]]
+    table = form([["failed", "why"], *failed], "failures", most=0) + "\n" if failed else ""
+    return table + "".join(f"Not possible: {what}.\n\n" for what in results["impossible"])
 
 
 def markdown(results, form=in_text):
     """Without a title; `form` writes tables."""
     parts = [f"{results.command_line()}\n\n**{results['real_and_simulated']}**\n\n",
-             failures(results), tables.markdown(results.main_rows()),
+             failures(results, form), tables.markdown(results.main_rows()),
              "\nMean and half width of the 95 % confidence interval.\n",
              "\n## Goals that are missed\n\n",
              "".join(f"- {sentence}\n" for sentence in results.missed()) or "None.\n",
@@ -116,7 +117,7 @@ def markdown(results, form=in_text):
 
 
 def goals_markdown(results, form=in_text):
-    return (f"{results.command_line()}\n\n{failures(results)}"
+    return (f"{results.command_line()}\n\n{failures(results, form)}"
             + form(rows_of(results["tables"][0]), "figures"))
 
 

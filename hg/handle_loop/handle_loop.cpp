@@ -1,4 +1,4 @@
-#include "hg/tune/handle_loop.h"
+#include "hg/handle_loop/handle_loop.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -10,11 +10,12 @@
 #include "hg/controller/estimation/low_pass.h"
 #include "hg/controller/rendering/twin_forces.h"
 #include "hg/controller/tracking/sampled_arm.h"
+#include "hg/core/cross.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/model/chain_data.h"
 
-namespace hg::tune {
+namespace hg::handle_loop {
 namespace {
 
 using Eigen::MatrixXd;
@@ -114,7 +115,7 @@ Dampers dampers_of(const Body& body) {
 // Everything that one period needs, column by column.
 class Period {
  public:
-  Period(const TunedDevice& device, const tracking::TruePlant& plant, const Body& body,
+  Period(const LoopDevice& device, const tracking::TruePlant& plant, const Body& body,
          const person::HandImpedance& hand, const VectorXd& q)
       : body_(body),
         dampers_(dampers_of(body)),
@@ -149,6 +150,7 @@ class Period {
       D_[i] = actuator.damping;
     }
     make_plant(plant.link_mass * chain.M().bottomRightCorner(n, n));
+    sensed_ = grip_ - inertia_of(device.wrench.felt) * J_ * plant_rows_;
     wrench_pole_ = estimation::low_pass_pole(device.wrench.low_pass_Hz, dt_);
     start_control(q, chain.c().tail(n));
   }
@@ -272,7 +274,7 @@ class Period {
         const int age = command_delay_.age(group * kGroup + i);
         x.segment(size, n) = commands.segment((at.slots - age) * n, n);
         x = (step_ * x).eval();
-        sum += grip_ * x.head(size);
+        sum += sensed_ * x.head(size);
       }
       means.push_back(sum / kGroup);
     }
@@ -305,6 +307,18 @@ class Period {
     return static_cast<int>(std::lround(seconds / dt_ * kGroups));
   }
 
+  // Wrench at H per acceleration of H (6 x 6) that moves a payload, resolved in B.
+  Eigen::Matrix<double, 6, 6> inertia_of(const Payload& payload) const {
+    const Eigen::Matrix3d R_B_S = R_B_H_ * model_.T_H_S.R;
+    const Eigen::Matrix3d to_com =
+        cross_matrix(R_B_H_ * (model_.T_H_S.p + model_.T_H_S.R * payload.com));
+    Eigen::Matrix<double, 6, 6> inertia;
+    inertia << payload.mass * Eigen::Matrix3d::Identity(), -payload.mass * to_com,
+        payload.mass * to_com,
+        R_B_S * payload.inertia * R_B_S.transpose() - payload.mass * to_com * to_com;
+    return inertia;
+  }
+
   // d/dt (theta, theta', q, q', current, hand, hand') and what one step makes of it with
   // constant inputs
   void make_plant(const MatrixXd& M) {
@@ -335,6 +349,7 @@ class Period {
     A.block(at.dhand, at.hand, 3, 3) -= hand_.mass_inverse * hand_.stiffness;
     A.block(at.dhand, at.dhand, 3, 3) -= hand_.mass_inverse * hand_.damping;
     A.block(at.dhand, size + n, 3, 3) = hand_.mass_inverse;
+    plant_rows_ = A.block(at.dq, 0, n, size);
     step_ = matrix_exponential(A * (dt_ / tracking::kPlantSteps));
   }
 
@@ -374,6 +389,8 @@ class Period {
   Layout layout_;
   tracking::JointControl control_;
   MatrixXd J_, to_joints_, grip_, step_;
+  MatrixXd plant_rows_;  // accelerations of the links of a state of the plant
+  MatrixXd sensed_;      // wrench of such a state on the sensor, but for what is known
   Eigen::Matrix3d R_B_H_;
   HandMatrices hand_;
   VectorXd K_, D_, q_m_, at_rest_;
@@ -384,7 +401,7 @@ class Period {
 
 }  // namespace
 
-HandleLoop linearise(const TunedDevice& device, const tracking::TruePlant& plant, const Body& body,
+HandleLoop linearise(const LoopDevice& device, const tracking::TruePlant& plant, const Body& body,
                      const person::HandImpedance& hand, const Noise& noise, const VectorXd& q) {
   // small against every limit of the controller, large against its rounding
   constexpr double kUnit = 1e-6, kTorque = 1e-3, kTorqueRate = 0.1;
@@ -439,6 +456,22 @@ HandleLoop linearise(const TunedDevice& device, const tracking::TruePlant& plant
   return loop;
 }
 
+double lightest_mass(const LoopDevice& device, const tracking::TruePlant& plant, Body body,
+                     const person::HandImpedance& hand, const VectorXd& q) {
+  constexpr double kLeast = 0.01, kMost = 100.0, kTolerance = 1.03, kGrowing = 1.0 + 1e-6;
+  const auto grows = [&](double mass) {
+    body.mass = mass;
+    return spectral_radius(linearise(device, plant, body, hand, {}, q).A) > kGrowing;
+  };
+  double light = kLeast, heavy = kMost;
+  if (grows(heavy)) return kInfinity;
+  while (heavy > kTolerance * light) {
+    const double between = std::sqrt(light * heavy);
+    (grows(between) ? light : heavy) = between;
+  }
+  return heavy;
+}
+
 Resolvent::Resolvent(const MatrixXd& A) {
   const Eigen::HessenbergDecomposition<MatrixXd> decomposition(A);
   H_ = decomposition.matrixH();
@@ -486,4 +519,4 @@ Eigen::MatrixXcd Resolvent::solve_transposed(const MatrixXd& C) const {
   return (Q_.cast<std::complex<double>>() * X).transpose();
 }
 
-}  // namespace hg::tune
+}  // namespace hg::handle_loop

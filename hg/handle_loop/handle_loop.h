@@ -4,17 +4,18 @@
 /// Unlike tracking/loop_stability.h, which has feedback alone, the hand's force passes through the
 /// force/torque sensor into twin and feedforward here: felt impedance, noise at the handle, and
 /// stability with a given hand follow from one matrix. Small motions about rest in one posture,
-/// without friction, torque limits, tremor, gantry, and payload (whose inertia is compensated by
-/// the sensor's own accelerometer). The controller is not modelled but evaluated: JointControl is
-/// called with unit values of its inputs and of its state. SI units; set-up only.
+/// without friction, torque limits, tremor and gantry. The controller is not modelled but
+/// evaluated: JointControl is called with unit values of its inputs and of its state. SI units;
+/// set-up only.
 #pragma once
 
 #include <Eigen/Core>
 
 #include "hg/controller/tracking/loop_stability.h"
+#include "hg/signals/payload.h"
 #include "hg/simulator/person/hand.h"
 
-namespace hg::tune {
+namespace hg::handle_loop {
 
 /// A free body that is rendered, its centre of mass in the handle.
 struct Body {
@@ -29,6 +30,8 @@ struct WrenchPath {
   double average_s = 1e-3;     ///< averaging time of the sensor
   double delay_s = 1.5e-3;     ///< delay after the averaging
   double low_pass_Hz = 100.0;  ///< low-pass of the estimation; 0 = none
+  /// What is beyond a sensor without accelerometer: its inertia is taken for a force of the hand.
+  Payload felt;
 };
 
 /// Standard deviations of white noise, of one sample unless it says otherwise.
@@ -41,7 +44,7 @@ struct Noise {
 };
 
 /// Properties of the device that do not depend on the posture.
-struct TunedDevice {
+struct LoopDevice {
   tracking::Loop loop;
   WrenchPath wrench;
 };
@@ -65,9 +68,14 @@ struct HandleLoop {
 
 /// Linearises the loop in posture `q` (gantry first) with `hand` on the handle; `plant` holds
 /// deviations unknown to the controller.
-HandleLoop linearise(const TunedDevice& device, const tracking::TruePlant& plant, const Body& body,
+HandleLoop linearise(const LoopDevice& device, const tracking::TruePlant& plant, const Body& body,
                      const person::HandImpedance& hand, const Noise& noise,
                      const Eigen::VectorXd& q);
+
+/// Smallest mass, kg, from which `body` with that mass does not swing ever wider in `hand`, to 3 %:
+/// infinite where none of up to 100 kg is so.
+double lightest_mass(const LoopDevice& device, const tracking::TruePlant& plant, Body body,
+                     const person::HandImpedance& hand, const Eigen::VectorXd& q);
 
 /// Solves (z 1 - A) x = b and its transpose for many z: A is brought to Hessenberg form once.
 class Resolvent {
@@ -86,4 +94,4 @@ class Resolvent {
   std::vector<bool> is_exchanged_;  // whether step i exchanged rows i and i + 1
 };
 
-}  // namespace hg::tune
+}  // namespace hg::handle_loop
