@@ -459,12 +459,15 @@ HandleLoop linearise(const LoopDevice& device, const tracking::TruePlant& plant,
 double lightest_mass(const LoopDevice& device, const tracking::TruePlant& plant, Body body,
                      const person::HandImpedance& hand, const VectorXd& q) {
   constexpr double kLeast = 0.01, kMost = 100.0, kTolerance = 1.03, kGrowing = 1.0 + 1e-6;
+  const double inertia = body.inertia / body.mass;
   const auto grows = [&](double mass) {
     body.mass = mass;
+    body.inertia = inertia * mass;
     return spectral_radius(linearise(device, plant, body, hand, {}, q).A) > kGrowing;
   };
   double light = kLeast, heavy = kMost;
   if (grows(heavy)) return kInfinity;
+  if (!grows(light)) return 0.0;
   while (heavy > kTolerance * light) {
     const double between = std::sqrt(light * heavy);
     (grows(between) ? light : heavy) = between;

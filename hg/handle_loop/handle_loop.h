@@ -72,8 +72,8 @@ HandleLoop linearise(const LoopDevice& device, const tracking::TruePlant& plant,
                      const person::HandImpedance& hand, const Noise& noise,
                      const Eigen::VectorXd& q);
 
-/// Smallest mass, kg, from which `body` with that mass does not swing ever wider in `hand`, to 3 %:
-/// infinite where none of up to 100 kg is so.
+/// Smallest mass, kg, from which `body`, its inertia in proportion to its mass, does not swing ever
+/// wider in `hand`, to 3 %: 0 where none from 0.01 kg on does, infinite where all up to 100 kg do.
 double lightest_mass(const LoopDevice& device, const tracking::TruePlant& plant, Body body,
                      const person::HandImpedance& hand, const Eigen::VectorXd& q);
 

@@ -219,8 +219,9 @@ def play(program, fault, at_s):
         try:
             case.has_run = advance(time.monotonic() + UNTIL_RUNNING_S, is_due) and not has_failed()
             if not case.has_run:
-                case.was_held_up = advance(time.monotonic() + UNTIL_REPORTED_S,
-                                           lambda: device.was_too_late or HELD_UP in controller.said)
+                case.was_held_up = advance(
+                    time.monotonic() + UNTIL_REPORTED_S,
+                    lambda: HELD_UP in controller.said or device.was_too_late and not controller.has_ended())
                 if not case.was_held_up:
                     print(controller.said.decode(errors="replace"))
                 return case

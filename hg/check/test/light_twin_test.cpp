@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,23 @@ TEST(LightTwin, IsWarnedOfInTheHandOfTheScript) {
     EXPECT_EQ(inspect_light_twin(light).at(0).severity, Severity::kNote);
     EXPECT_EQ(inspect_light_twin(tool(arm, 3.0)).at(0).severity, Severity::kNote);
   }
+}
+
+TEST(LightTwin, IsNotAskedOfTwinsThatAreNoFreeBodies) {
+  for (const char* twin : {"open_cupboard", "open_drawer"}) {
+    const std::string file = std::string("models/arms/iiwa14/") + twin + ".yaml";
+    EXPECT_TRUE(inspect_light_twin(config::load_scenario(file)).empty()) << twin;
+  }
+}
+
+// The payload's inertia turns the handle, too.
+TEST(LightTwin, CountsTurning) {
+  const std::vector<person::HandImpedance> hand = {person::hand(person::HandPreset::kNormal)};
+  config::Scenario scenario = tool("fr3", 3.0);
+  const double before = lightest_bodies(scenario.device, scenario.twin, hand).at(0);
+  EXPECT_LT(before, 3.0);
+  scenario.device.estimation.wrench.payload.inertia = 0.02 * Eigen::Matrix3d::Identity();
+  EXPECT_GT(lightest_bodies(scenario.device, scenario.twin, hand).at(0), 2.0 * before);
 }
 
 TEST(LightTwin, IsNotForeseenWithAnAccelerometerInTheHandle) {

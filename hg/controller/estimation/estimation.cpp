@@ -168,6 +168,7 @@ void Estimation::observe_wrench(const SensorFrame& sensors, EstimationState& sta
   chain_.update_poses(stacked(robot.q_p, robot.q_m));
   const Eigen::Matrix3d& R_B_H = chain_.pose(handle_).R;
   const Eigen::Matrix3d R_B_S = R_B_H * T_H_S_.R;
+  see_noise(dt_, sensors.w_S, state.rest);
   if (state.wrench.tare.status == TareStatus::kUnderWay) take_tare(sensors, R_B_S, robot, state);
   estimate(config_.wrench, dt_, sensors, R_B_S, state.wrench);
 

@@ -19,6 +19,7 @@ constexpr double kFast = 0.008;        // s, low-pass of what touches
 constexpr double kMean = 1.6;          // s, low-pass of what is steady
 constexpr double kFollow = 0.3;        // s, in which the zero follows it
 constexpr double kNoise = 0.2;         // s, low-pass of the noise that is seen
+constexpr double kShortest = 1e-3;     // s, between two samples of a sensor
 constexpr double kHertz = 10.0;        // of the band
 constexpr double kQuality = 1.5;       // of each of its two band-passes
 constexpr double kBand = 4.1;          // Hz, of noise in the band without the blocks left out
@@ -70,7 +71,6 @@ double mean_of_blocks(std::array<double, RestState::kBlocks> blocks) noexcept {
 // Square of the sensor's noise in a band of `width`, Hz. Sensors give a new sample at most every
 // millisecond: what a faster loop reads between is no other noise.
 double noise_in(double width, double dt, double noise) noexcept {
-  constexpr double kShortest = 1e-3;  // s
   return 2.0 * width * std::max(dt, kShortest) * noise * noise;
 }
 
@@ -85,22 +85,21 @@ bool is_met(const RestState& rest) noexcept {
   return rest.is_known && rest.known_s < rest.braked_s - kAnswer;
 }
 
-// Noise of a force in a sample, N: as stated, or more where a sample differs more from the one
-// before. Tremor changes far less from one to the next.
-double noise_of(double stated, const RestState& rest) noexcept {
-  return std::max(stated, std::sqrt(0.5 * rest.jumps));
+// Noise of a force, as of samples of that period, N: as stated, or more where a sample differs more
+// from the one before. Tremor changes far less from one to the next.
+double noise_of(double dt, double stated, const RestState& rest) noexcept {
+  const double period = dt / std::max(rest.changing, 0.01);  // of the sensor
+  const double seen = 0.5 * rest.jumps * period / std::max(dt, kShortest);
+  return std::max(stated, std::sqrt(seen));
 }
 
 // Whether the wrench stays and nothing trembles.
 void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const Eigen::Vector3d f = input.w_S.head<3>() - input.inertia_S;
   const BandPass pass(dt);
-  if (rest.watched_s == 0.0) rest.fast = rest.mean = rest.last = input.w_S;
+  if (rest.watched_s == 0.0) rest.fast = rest.mean = input.w_S;
   const bool is_new = rest.watched_s < 0.5 * kBlock;
   rest.watched_s += dt;
-  const double jump = (input.w_S - rest.last).head<3>().squaredNorm() / 3.0;
-  rest.jumps += std::min(1.0, dt / kNoise) * (jump - rest.jumps);
-  rest.last = input.w_S;
   rest.fast += std::min(1.0, dt / kFast) * (input.w_S - rest.fast);
   rest.mean += std::min(1.0, dt / kMean) * (input.w_S - rest.mean);
   const Eigen::Vector3d x = is_new ? rest.fast.head<3>() - input.inertia_S : f;
@@ -125,7 +124,7 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
   rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
   if (!is_steady) rest.mean = rest.fast;
   const bool is_calm =
-      is_braking || rest.tremor < tremor_limit(dt, noise_of(input.noise, rest), kTremor);
+      is_braking || rest.tremor < tremor_limit(dt, noise_of(dt, input.noise, rest), kTremor);
   rest.is_untouched = is_calm && rest.steady * dt >= RestState::kBlocks * kBlock;
 }
 
@@ -154,6 +153,16 @@ void follow(double dt, const RestInput& input, RestState& rest) noexcept {
 
 }  // namespace
 
+void see_noise(double dt, const Vector6& w_S, RestState& rest) noexcept {
+  const double jump = (w_S - rest.last).head<3>().squaredNorm() / 3.0;
+  const bool is_first = rest.last.isZero(0.0);
+  const double share = std::min(1.0, dt / kNoise);
+  rest.last = w_S;
+  if (is_first || !std::isfinite(jump)) return;
+  rest.changing += share * ((jump > 0.0 ? 1.0 : 0.0) - rest.changing);
+  if (jump > 0.0) rest.jumps += share * (jump - rest.jumps);
+}
+
 void advance(double dt, const RestInput& input, RestState& rest) noexcept {
   look(dt, input, rest);
   rest.known_s += dt;
@@ -169,7 +178,7 @@ void advance(double dt, const RestInput& input, RestState& rest) noexcept {
 bool trembles(double dt, double stated, const RestState& rest) noexcept {
   constexpr int kNewest = 4;
   constexpr double kWhole = 5.2, kCertain = 3.0;  // Hz, of noise in the band; times
-  const double noise = noise_of(stated, rest);
+  const double noise = noise_of(dt, stated, rest);
   double sum = 0.0;
   for (int i = 0; i < kNewest; ++i) sum += rest.blocks[i];
   const double hidden = noise_in(kWhole, dt, noise);

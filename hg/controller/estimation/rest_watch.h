@@ -48,7 +48,8 @@ struct RestState {
   Eigen::Vector3d v_H = Eigen::Vector3d::Zero();           ///< Of the last sample
   Vector6 fast = Vector6::Zero(), mean = Vector6::Zero();  ///< Wrench by two low-passes
   Vector6 last = Vector6::Zero();                          ///< Wrench of the last sample
-  double jumps = 0.0;  ///< Mean square of a force's change from sample to sample, N^2
+  double jumps = 0.0;     ///< Mean square of a force's change from sample to sample, N^2
+  double changing = 1.0;  ///< Share of the periods that bring a new sample
   bool is_untouched = false;
   double braked_s = 0.0;                               ///< How long the twin has been braked
   bool is_known = false;                               ///< The zero has met a steady wrench
@@ -60,9 +61,13 @@ struct RestState {
 /// Words of the state hash. Filters, and all while the watch does not act, are left out.
 void hashed(auto& hash, const RestState& state) {
   const auto& [watched_s, band, blocks, tremor, sum, samples, steady, v_H, fast, mean, last, jumps,
-               is_untouched, braked_s, is_known, known_up, known_s, zero] = state;
+               changing, is_untouched, braked_s, is_known, known_up, known_s, zero] = state;
   if (is_known || braked_s > 0.0) hash.mix(is_untouched, braked_s, known_s, zero);
 }
+
+/// Measures the sensor's noise from what its samples differ by; `w_S`: as they are, before any
+/// low-pass. Values that are read again do not count.
+void see_noise(double dt, const Vector6& w_S, RestState& rest) noexcept;
 
 /// Advances by one period.
 void advance(double dt, const RestInput& input, RestState& rest) noexcept;

@@ -92,7 +92,7 @@ def rows_of(table):
 
 
 def failures(results, form):
-    failed = [failure.rpartition(": ")[::2] for failure in results["failures"]]
+    failed = [failure.partition(": ")[::2] for failure in results["failures"]]
     table = form([["failed", "why"], *failed], "failures", most=0) + "\n" if failed else ""
     return table + "".join(f"Not possible: {what}.\n\n" for what in results["impossible"])
 
