@@ -363,6 +363,22 @@ CycleStages::GantryAim CycleStages::preposition(Motion motion, const RobotState&
   return aim;
 }
 
+// Time in which forces fade in a stop, s. The joints of a device with a gantry go on meanwhile:
+// less where one would move too far, which braking takes by another kBraking at its present speed.
+double CycleStages::ramp_out() const noexcept {
+  constexpr double kBraking = 0.2, kLeast = 0.02;  // s
+  const DeviceModel& device = rendering_.device();
+  double time = kRampOut;
+  if (device.n_p == 0) return time;
+  for (int i = 0; i < device.n_m; ++i) {
+    const double way =
+        safety::kUntilBrakes * monitor_.config().stop_distance_of_joint(device.is_slide(i));
+    const double speed = std::abs(state_.rendering.reference.dq_m[i]);
+    if (speed * (time + kBraking) > way) time = way / speed - kBraking;
+  }
+  return std::max(time, kLeast);
+}
+
 // Share of the forces on the twin in this cycle; sets that of the next one. A requested stop ramps
 // forces down if the handle is held; all other stops drop them at once.
 double CycleStages::ramp_forces(Motion motion, bool is_held) noexcept {
@@ -371,7 +387,7 @@ double CycleStages::ramp_forces(Motion motion, bool is_held) noexcept {
   if (!is_stopping(motion)) state_.was_alone = state == safety::SafetyState::kAutonomous;
   const bool is_gentle = is_held && !state_.was_alone && state == safety::SafetyState::kToArmed;
   const double share = is_stopping(motion) && !is_gentle ? 0.0 : state_.force_share;
-  const double step = is_stopping(motion) ? -dt_ / kRampOut : dt_ / kRampIn;
+  const double step = is_stopping(motion) ? -dt_ / ramp_out() : dt_ / kRampIn;
   state_.force_share = std::clamp(share + step, 0.0, 1.0);
   return share;
 }
@@ -402,7 +418,7 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
   rendering_.step({.robot = robot,
                    .braking_rate = is_braked ? kBrakingRate : ramped_rate,
                    .joint_braking_rate = slows_joints ? stop_rate : 0.0,
-                   .kept_acceleration = share / (share + dt_ / kRampOut),  // fades with the force
+                   .kept_acceleration = share / (share + dt_ / ramp_out()),  // fades with the force
                    .force_share = share,
                    .handle_speed_max = speed_max() / std::sqrt(3.0),
                    .most_active_sets = most_active_sets(config_.solver_caps, time_s()),

@@ -108,6 +108,7 @@ class CycleStages {
   Refusal refusal_to_arm() const noexcept;
   void reset_controllers() noexcept;
   double speed_max() const noexcept;
+  double ramp_out() const noexcept;
   double ramp_forces(Motion motion, bool is_held) noexcept;
   Motion accept(Motion motion, const rendering::LawResult& law) noexcept;
   void brake_joints(const RobotState& robot) noexcept;

@@ -28,6 +28,7 @@ struct Stroke {
 
 struct DrawnHand {
   double stiffness = 0.0, damping = 0.0, turning = 0.0, force = 0.0;
+  double stop_s = 0.0;  // of an ordinary stop in the middle of the strokes
   std::vector<Stroke> strokes;
 };
 
@@ -36,7 +37,8 @@ DrawnHand draw(double force, Random& random) {
   DrawnHand hand = {.stiffness = 200.0 * std::pow(5.0, random.next()),
                     .damping = random.between(20.0, 60.0),
                     .turning = random.between(4.0, 10.0),
-                    .force = force * random.between(0.5, 1.0)};
+                    .force = force * random.between(0.5, 1.0),
+                    .stop_s = random.between(0.5 * (kStart + kEnd), kEnd)};
   for (double time = kStart; time < kEnd;) {
     Stroke stroke = {.start_s = time, .duration_s = random.between(0.3, 1.4)};
     for (std::size_t i = 0; i < stroke.by.size(); ++i) {
@@ -59,6 +61,7 @@ DrawnHand varied(DrawnHand hand, Random& random) {
   vary(hand.stiffness);
   vary(hand.damping);
   vary(hand.turning);
+  vary(hand.stop_s);
   for (Stroke& stroke : hand.strokes) {
     vary(stroke.duration_s);
     std::ranges::for_each(stroke.by, vary);
@@ -116,7 +119,7 @@ config::Scenario load_hand(const HandSearch& search, const config::Scenario& bas
       fmt::format("title: {}\ndescription: A hand that pulls far beyond the reach of {}.\n"
                   "device: {}\ntwin: {}\nperson: {}_person.yaml\nduration_s: {:.2f}\n",
                   name, base.device.name, quoted_path(base.device.sources.front().name),
-                  quoted_path(base.twin.sources.front().name), name, duration_of(hand)));
+                  quoted_path(base.twin.sources.front().name), name, hand.stop_s));
   scenario::ScenarioOptions options = search.world;
   options.scenario = scenario_file(search, name).string();
   options.device.clear();

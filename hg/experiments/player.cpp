@@ -23,7 +23,12 @@ Player::Player(const config::Scenario& scenario) : session_(checked(scenario)) {
 
 bool Player::end() {
   session_.write();
-  return !session_.is_over() && !session_.has_played();
+  return !session_.is_over() && (is_stopping_ || !session_.has_played());
+}
+
+void Player::stop() noexcept {
+  is_stopping_ = true;
+  session_.stop();
 }
 
 }  // namespace hg::experiments

@@ -25,9 +25,11 @@ class Player {
   /// One period is begin(), run(), end(); run() is only Cycle::step.
   void begin() { session_.read(); }
   void run() noexcept { session_.step(); }
-  /// Ends the period; false when it was the last one: the plan is over, or a fault stopped the
-  /// device.
+  /// Ends the period; false when it was the last one: the plan is over, a fault stopped the device,
+  /// or it stands still after stop().
   bool end();
+  /// Requests an ordinary stop from the next period on, also after the end of the plan.
+  void stop() noexcept;
 
   const CycleRecord& record() const noexcept { return session_.record(); }
   /// Sample of this period, with the truth; valid between run() and end().
@@ -43,6 +45,7 @@ class Player {
 
  private:
   scenario::Session session_;
+  bool is_stopping_ = false;
 };
 
 }  // namespace hg::experiments

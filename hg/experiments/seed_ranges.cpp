@@ -10,17 +10,28 @@
 namespace hg::experiments {
 namespace {
 
+constexpr double kLongestStop = 3.0;  // s; the monitor ends one that lasts longer
+
 SeededRun play(const Trial& trial, std::uint64_t seed) {
   config::Scenario scenario = trial.scenario;
   set_seed(scenario, seed);
   Player player(scenario);
   analysis::Summary summary = scenario::make_summary(scenario);
   analysis::EventDetector detector(scenario.events, scenario.limits);
-  for (bool has_more = true; has_more; has_more = player.end()) {
+  const auto advance = [&] {
     player.begin();
     player.run();
     summary.add(player.sample());
     (void)detector.observe(player.record());
+    return player.end();
+  };
+  while (advance()) {
+  }
+  if (player.record().fault.code == FaultCode::kNone) {  // it ends with an ordinary stop
+    const double end_s = player.record().time_s + kLongestStop;
+    player.stop();
+    while (player.record().time_s < end_s && advance()) {
+    }
   }
   const analysis::TruthSummary& truth = summary.truth();
   SeededRun run = {.seed = seed,

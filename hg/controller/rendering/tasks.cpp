@@ -176,7 +176,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOp
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
   if (brakes_together(device, options)) {
     holding_.emplace(device);
-    if (device.n_p == 0) stop_path_.emplace(device);
+    stop_path_.emplace(device);
   }
   problem_.clear(problem_.capacity().variables);
   add_levels(device, twin);
@@ -237,13 +237,14 @@ void Tasks::add_device_limits(const DeviceModel& device) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
   }
-  if (stop_path_) problem_.add_level();
-  for (std::size_t i = first_motor_ + n_m_; stop_path_ && i < limit_rows_.size(); ++i) {
+  const bool stops_inside = stop_path_ && device.n_p == 0;
+  if (stops_inside) problem_.add_level();
+  for (std::size_t i = first_motor_ + n_m_; stops_inside && i < limit_rows_.size(); ++i) {
     limit_rows_[i].stop_row = problem_.add_row(coefficients_, {}, weight_of(limit_rows_[i]));
   }
   if (device.keeps_apart) {
     constexpr double kRating = 10.0;  // m/s^2; scales the row
-    if (!stop_path_) problem_.add_level();
+    if (!stops_inside) problem_.add_level();
     add_limit({.q_min = kApartMargin, .ddq_max = kRating}, -1, 0.0);
     limit_rows_.back().range = {};  // what is foreseen is not left
   }
@@ -511,7 +512,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     }
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
-    if (stop_path_) {
+    if (stop_path_ && device.n_p == 0) {
       const double speed = row.head(n_m_).dot(input.reference.dq_m);
       const Interval before = limit.ddq;
       limit.ddq = stoppable(before, lasting_[i], speed);
@@ -585,16 +586,19 @@ void Tasks::keep_holding(const DeviceModel& device, const TaskInput& input) noex
   }
 }
 
-// Keeps the place where the device comes to rest within its walls.
+// Finds how fast the joints can stop, and keeps the place where an arm without gantry comes to rest
+// within its walls.
 void Tasks::stop_inside(const DeviceModel& device, const TaskInput& input) noexcept {
   constexpr double kAround = 0.05;  // m, beside the way: walls that are farther away do not matter
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   bool is_found = false;
-  if (are_torques_known_) {
+  const bool is_stopping = input.joint_braking_rate > 0.0;
+  if (are_torques_known_ && (device.n_p == 0 || is_stopping)) {
     const std::span motors = std::span(limit_rows_).subspan(first_motor_, n_m_);
     stop_path_->update(device, input.device_chain, input.reference, motors, known_torque_);
   }
+  if (device.n_p > 0) return;
   int limit = first_motor_ + n_m_;
   for (const CartesianLimit& frame : device.cartesian_limits) {
     for (int axis = 0; axis < 3; ++axis, ++limit) {

@@ -51,6 +51,18 @@ TEST(PlaySeeds, AFaultAndALimitThatIsLeftHaveNotHeld) {
   EXPECT_FALSE(have_all_held(outside));
 }
 
+// In the middle of a throw, m3 and m6 are at 2.6 and 3.3 rad/s: no axis moves farther than stated.
+TEST(PlaySeeds, ARunEndsWithAnOrdinaryStop) {
+  const Trial thrown = {
+      .name = "throw", .hand = "", .scenario = config::load_scenario("models/stress/throw.yaml")};
+  const std::vector<Trial> trials = {thrown};
+  for (const std::uint64_t seed : {4, 9}) {
+    const std::vector<SeededRun> runs = play_seeds(trials, seed, 1, {});
+    EXPECT_TRUE(have_all_held(runs)) << to_json(trials, runs).dump(2);
+    EXPECT_GT(runs[0].ended_s, thrown.scenario.duration_s + 0.2);
+  }
+}
+
 TEST(PlaySeeds, TheScenariosOfStressBeginWell) {
   std::vector<Trial> trials;
   for (const auto& entry : std::filesystem::directory_iterator("models/stress")) {
