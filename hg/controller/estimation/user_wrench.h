@@ -2,8 +2,8 @@
 /// payload, without the sensor's offset, and filtered. Everything in S.
 ///
 /// [C] 2: the acceleration comes from the accelerometer in the sensor. Without it the mass beyond
-/// the sensor closes a delayed loop, and twins lighter than about twice that mass do not stay
-/// stable ([C] 3). Accelerometer, gyroscope and wrench must have the same delay.
+/// the sensor closes a delayed loop, and light twins shake ([C] 3: below about twice that mass; on
+/// stiff arms more, check/light_twin.h). Accelerometer, gyroscope and wrench must have the same delay.
 #pragma once
 
 #include "hg/controller/estimation/estimation_config.h"
