@@ -26,10 +26,13 @@ bool is_loaded(double most, double held) noexcept {
   return std::abs(held) > kLoad * most;
 }
 
-Interval eased_torque(Interval torque, double most, double held, double led) noexcept {
+Interval eased_torque(Interval torque, double most, double held, double led, double before,
+                      double dt) noexcept {
+  constexpr double kFaster = 4.0;
   if (!is_loaded(most, held)) return torque;
-  if (held > 0.0 && led > held) torque.ub = std::max(torque.ub, std::min(held, most));
-  if (held < 0.0 && led < held) torque.lb = std::min(torque.lb, std::max(held, -most));
+  const Interval fastest = reached_torque({-most, most}, before, kFaster * dt);
+  if (held > 0.0 && led > held) torque.ub = std::max(torque.ub, std::min(held, fastest.ub));
+  if (held < 0.0 && led < held) torque.lb = std::min(torque.lb, std::max(held, fastest.lb));
   return torque;
 }
 
