@@ -3,7 +3,8 @@
 ///
 /// [C] 2: the acceleration comes from the accelerometer in the sensor. Without it the mass beyond
 /// the sensor closes a delayed loop, and light twins shake ([C] 3: below about twice that mass; on
-/// stiff arms more, check/light_twin.h). Accelerometer, gyroscope and wrench must have the same delay.
+/// stiff arms more, check/light_twin.h). Accelerometer, gyroscope and wrench must have the same
+/// delay.
 #pragma once
 
 #include "hg/controller/estimation/estimation_config.h"
