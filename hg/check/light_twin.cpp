@@ -12,7 +12,6 @@
 #include "hg/check/drive_loop.h"
 #include "hg/check/stiffness.h"
 #include "hg/config/twin.h"
-#include "hg/controller/rendering/twin_elements.h"
 #include "hg/core/error.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/stacked.h"
@@ -43,16 +42,10 @@ std::optional<handle_loop::Body> free_body(const config::Twin& twin) {
   const auto turning = symmetric_eigen(Eigen::Matrix3d(mobility.bottomRightCorner<3, 3>()));
   const Eigen::VectorXd dq = moved.rightCols<3>() * turning.vectors.col(2) / turning.values[2];
   const FeltTwin felt = felt_twin(twin);
-  handle_loop::Body body = {.mass = felt.mass.lb,
-                            .damping = felt.damping,
-                            .inertia = model.mass_scale / turning.values[2],
-                            .angular_damping = 0.0};
-  for (std::size_t i = 0; i < model.dofs.size(); ++i) {
-    const double speed = dq[static_cast<Eigen::Index>(i)];
-    body.angular_damping +=
-        rendering::total_of(&rendering::Element::damping, model.dofs[i]).value * speed * speed;
-  }
-  return body;
+  return handle_loop::Body{.mass = felt.mass.lb,
+                           .damping = felt.damping,
+                           .inertia = model.mass_scale / turning.values[2],
+                           .angular_damping = felt_damping(model, dq)};
 }
 
 // In front of drives that follow positions, along the worst axis of the person.

@@ -276,13 +276,17 @@ double StiffnessLimits::meeting_speed(double stiffness) const noexcept {
 
 FeltTwin felt_twin(const config::Twin& twin) {
   const auto [mass, dq] = rendering::felt_mass(twin.model, twin.model.felt_scale.head<3>());
-  FeltTwin felt = {.mass = mass};
-  for (std::size_t i = 0; i < twin.model.dofs.size(); ++i) {
-    const double speed = dq[i];
-    const rendering::TwinDof& dof = twin.model.dofs[i];
-    felt.damping += rendering::total_of(&rendering::Element::damping, dof).value * speed * speed;
+  return {.mass = mass, .damping = felt_damping(twin.model, dq)};
+}
+
+double felt_damping(const rendering::TwinModel& twin, const Eigen::VectorXd& dq) {
+  double damping = 0.0;
+  for (std::size_t i = 0; i < twin.dofs.size(); ++i) {
+    const double speed = dq[static_cast<Eigen::Index>(i)];
+    damping +=
+        rendering::total_of(&rendering::Element::damping, twin.dofs[i]).value * speed * speed;
   }
-  return felt;
+  return damping;
 }
 
 StiffnessLimits stiffness_limits(const config::SimulatedDeviceConfig& device,

@@ -29,6 +29,10 @@ struct FeltTwin {
 };
 FeltTwin felt_twin(const config::Twin& twin);
 
+/// Damping by all elements of a twin while its joints move at `dq` per unit of speed at the handle,
+/// Ns/m, or Nms/rad for a turn.
+double felt_damping(const rendering::TwinModel& twin, const Eigen::VectorXd& dq);
+
 /// Where hand, twin and drives that follow positions do not swing together.
 struct CalmTwin {
   std::array<double, 3> stiffness = {};  ///< stiffest wall across x, y, z of B, N/m
