@@ -6,7 +6,8 @@ The device is served here in real time, and the controller is
 a `hapticgiant run`. The stop is a SIGTERM 0.3 s after the fault; for a controller that is frozen, suspended or killed
 the fault itself. The true motion of the axes is measured from the stop on. A case is bad where an axis moves farther than
 its stopping distance, does not come to rest, or gives the person more than 30 J; where the controller does not end in
-time, does not report what its exit code has to report, or loses more than the last second of its recording.
+time, does not report what its exit code has to report, or loses more than the last second of its recording. A run that
+ends by a named fault before its own is played again: this computer was too busy, which says nothing of what is tested.
 Exit codes: 0 all cases are good, 1 some are not.
 """
 
@@ -35,8 +36,7 @@ UNTIL_RUNNING_S, UNTIL_ENDED_S, FAULT_TO_STOP_S, FROZEN_S = 60.0, 30.0, 0.3, 1.0
 WATCHED_AFTER_S = 1.0  # the session
 ENERGY_BOUND_J = 30.0
 UNWRITTEN = 1000  # samples that a recording may lack at its end
-TRIES = 20  # of a run that a busy computer ends before its fault: held up for the 10 ms of rule 120 or the device's 50 ms
-HELD_UP, UNTIL_REPORTED_S = b"fault120", 20.0  # in the name of the file that it then keeps
+TRIES = 10  # of a run that ends before its fault: a busy computer holds it up, for whatever limit is the first to see it
 
 
 @dataclasses.dataclass(frozen=True)
@@ -143,7 +143,7 @@ def apply(fault, controller, folder, load):
 class Case:
     fault: Fault
     has_run: bool = False
-    was_held_up: bool = False  # before its fault
+    has_crashed: bool = False  # before its fault
     has_ended: bool = False
     exit_code: int = -1  # -1: ended by a signal
     periods: int = 0  # of the device with this controller, until the stop
@@ -219,11 +219,9 @@ def play(program, fault, at_s):
         try:
             case.has_run = advance(time.monotonic() + UNTIL_RUNNING_S, is_due) and not has_failed()
             if not case.has_run:
-                case.was_held_up = advance(
-                    time.monotonic() + UNTIL_REPORTED_S,
-                    lambda: HELD_UP in controller.said or device.was_too_late and not controller.has_ended())
-                if not case.was_held_up:
-                    print(controller.said.decode(errors="replace"))
+                advance(time.monotonic() + UNTIL_ENDED_S, controller.has_ended)
+                case.has_crashed = not controller.has_ended() or controller.process.returncode < 0
+                print(controller.said.decode(errors="replace"))
                 return case
             device.is_watched = fault.is_stop
             apply(fault, controller, folder, load)
@@ -284,7 +282,7 @@ def play_all(arguments):
                 continue
             for _ in range(TRIES):
                 case = play(arguments.program, fault, at_s)
-                if not case.was_held_up:
+                if case.has_run or case.has_crashed:
                     break
             cases.append(case)
             print(case.line(), flush=True)

@@ -67,7 +67,6 @@ class ServedDevice:
         self.state = "waiting"  # then "serving", and "alone" when the session is over
         self.command, self.is_on, self.was_on = hg.CommandFrame(), False, False
         self.periods = 0
-        self.was_too_late = False  # no command came in time
         self.due_s = self.heard_s = 0.0
 
     def advance(self):
@@ -97,7 +96,6 @@ class ServedDevice:
             if kind == GOODBYE:
                 return self._leave()
         if time.monotonic() - self.heard_s > COMMAND_TIMEOUT_S:
-            self.was_too_late = True
             for _ in range(3):
                 self._send(GOODBYE, 3, 0, b"no command came in time: drives off, brakes closed")
             self._leave()
