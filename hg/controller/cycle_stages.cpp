@@ -381,13 +381,13 @@ double CycleStages::ramp_out() const noexcept {
 
 // Share of the forces on the twin in this cycle; sets that of the next one. A requested stop ramps
 // forces down if the handle is held; all other stops drop them at once.
-double CycleStages::ramp_forces(Motion motion, bool is_held) noexcept {
+double CycleStages::ramp_forces(Motion motion, bool is_held, double fade_s) noexcept {
   if (!is_moving(motion)) return state_.force_share = 0.0;
   const safety::SafetyState state = state_.supervisor.state;
   if (!is_stopping(motion)) state_.was_alone = state == safety::SafetyState::kAutonomous;
   const bool is_gentle = is_held && !state_.was_alone && state == safety::SafetyState::kToArmed;
   const double share = is_stopping(motion) && !is_gentle ? 0.0 : state_.force_share;
-  const double step = is_stopping(motion) ? -dt_ / ramp_out() : dt_ / kRampIn;
+  const double step = is_stopping(motion) ? -dt_ / fade_s : dt_ / kRampIn;
   state_.force_share = std::clamp(share + step, 0.0, 1.0);
   return share;
 }
@@ -407,18 +407,23 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
                                                 const RobotState& robot,
                                                 const GantryAim& gantry) noexcept {
   if (motion == Motion::kNone) return law_;
-  const double share = ramp_forces(motion, is_held);
+  const double fade_s = ramp_out();
+  const double share = ramp_forces(motion, is_held, fade_s);
   const bool is_braked = motion == Motion::kHold || state_.touch.is_reported;
   const double stop_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
-  // joints make up for a gantry that brakes until the forces are out
-  const bool may_slow = share == 0.0 || rendering_.device().n_p == 0;
-  const bool slows_joints = may_slow && !state_.touch.is_reported;
+  // joints make up for a gantry that brakes until the forces are out; what accelerates them then
+  // fades, or other joints would have to take it over at once
+  constexpr double kFade = 0.2;  // of the time in which the forces fade
+  const bool has_gantry = rendering_.device().n_p > 0;
+  const bool slows_joints = (share == 0.0 || !has_gantry) && !state_.touch.is_reported;
+  const double kept =
+      has_gantry ? std::max(0.0, 1.0 - dt_ / (kFade * fade_s)) : share / (share + dt_ / fade_s);
   const double ramped_rate =
       is_stopping(motion) ? stop_rate : estimation::braking_rate(state_.estimation.rest);
   rendering_.step({.robot = robot,
                    .braking_rate = is_braked ? kBrakingRate : ramped_rate,
                    .joint_braking_rate = slows_joints ? stop_rate : 0.0,
-                   .kept_acceleration = share / (share + dt_ / ramp_out()),  // fades with the force
+                   .kept_acceleration = kept,
                    .force_share = share,
                    .handle_speed_max = speed_max() / std::sqrt(3.0),
                    .most_active_sets = most_active_sets(config_.solver_caps, time_s()),

@@ -109,7 +109,7 @@ class CycleStages {
   void reset_controllers() noexcept;
   double speed_max() const noexcept;
   double ramp_out() const noexcept;
-  double ramp_forces(Motion motion, bool is_held) noexcept;
+  double ramp_forces(Motion motion, bool is_held, double fade_s) noexcept;
   Motion accept(Motion motion, const rendering::LawResult& law) noexcept;
   void brake_joints(const RobotState& robot) noexcept;
 

@@ -19,7 +19,7 @@ struct LawInput {
   /// Rate at which every joint of the manipulator at least slows down, 1/s, with what its motors
   /// give; in a stop, so that none gets faster while the handle comes to rest.
   double joint_braking_rate = 0.0;
-  double kept_acceleration = 0.0;  ///< In a stop: share of its last one that a joint may keep
+  double kept_acceleration = 0.0;  ///< In a stop: kept share of what makes a joint faster
   /// Share of the user's wrench, the twin's springs, its weight, its reference wrench and the
   /// surfaces around it, 0..1. With it a run against a leaning hand begins and ends without a jump.
   /// 0 with a braking rate: the twin is a body without friction and without the user.

@@ -61,7 +61,7 @@ struct TaskInput {
   /// Largest speed of H along each axis of B, where the device limits H, m/s.
   double handle_speed = kInfinity;
   double joint_braking_rate = 0.0;  ///< Rate at which every joint at least slows down, 1/s
-  double kept_acceleration = 0.0;   ///< In a stop: share of its last one that a joint may keep
+  double kept_acceleration = 0.0;   ///< In a stop: kept share of what makes a joint faster
   bool is_braked = false;           ///< The twin is brought to rest, and so is a joint to spare
   CollisionTask collision = {};     ///< What is kept apart; with infinite distance nothing
 };

@@ -415,8 +415,9 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
       constexpr double kAtRest = 1e-4;  // rad/s or m/s
       const double line = stop_path_ ? stop_path_->time() : 0.0;
       const double speed = std::abs(reference.dq_m[limit]);
+      const double onward = std::copysign(1.0, reference.dq_m[limit]) * reference.ddq_m[limit];
       const double ddq =
-          input.kept_acceleration * std::abs(reference.ddq_m[limit]) -
+          input.kept_acceleration * std::max(0.0, onward) -
           deceleration_in_stop(speed, limits.ddq_max, input.joint_braking_rate, line);
       // speeds below the largest one are approached with the time constant of the onset
       const double onset = std::max(limit_rows_[limit].options.tau_onset, dt_);
