@@ -314,6 +314,12 @@ Interval watched_times(const FaultCase& drawn, const CampaignConfig& config) {
   return times;
 }
 
+// Whether the device is where it should not be. One that did not run held still.
+bool is_elsewhere(const CampaignConfig& config, const FaultCase& result) {
+  return result.has_run && (result.worst_excess > config.harmless_excess ||
+                            result.worst_distance > config.harmless_distance);
+}
+
 // What a fault does to device and person, cycle by cycle from the fault on.
 class Watch {
  public:
@@ -348,6 +354,8 @@ class Watch {
       result_.stopped_s = record.time_s - noticed_at_s_;
     }
   }
+
+  bool has_noticed() const { return !std::isnan(noticed_at_s_); }
 
   FaultCase result() const {
     FaultCase result = result_;
@@ -412,9 +420,11 @@ FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
     const Truth truth = player.truth();
     if (recorder != nullptr) recorder->push_waiting(player.sample());
     player.end();
-    is_running = record.time_s < watched.ub;
     ++cycles;
     if (record.time_s >= watched.lb) watch.add(truth, player.sample());
+    is_running = record.time_s < watched.ub ||
+                 (record.time_s < watched.ub + config.patience_s && !watch.has_noticed() &&
+                  is_elsewhere(config, watch.result()));
   }
   FaultCase result = watch.result();
   if (recorder != nullptr) {
@@ -425,12 +435,9 @@ FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
 }
 
 void judge(const CampaignConfig& config, double clean_force, FaultCase& result) {
-  // a device that did not run held still, however the person pulled
-  const bool is_worse =
-      result.has_run && (result.worst_excess > config.harmless_excess ||
-                         result.peak_force > clean_force + config.harmless_force ||
-                         result.worst_distance > config.harmless_distance);
-  if (result.outcome != Outcome::kNoticed && is_worse) result.outcome = Outcome::kUnnoticed;
+  const bool is_harder = result.has_run && result.peak_force > clean_force + config.harmless_force;
+  const bool is_harmless = !is_harder && !is_elsewhere(config, result);
+  if (result.outcome != Outcome::kNoticed && !is_harmless) result.outcome = Outcome::kUnnoticed;
 }
 
 Campaign run_campaign(const std::vector<config::Scenario>& scenarios, const CampaignConfig& config,

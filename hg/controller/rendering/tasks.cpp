@@ -134,14 +134,6 @@ VectorM free_motion(const DeviceModel& device, const TaskInput& input,
   return J.transpose().lazyProduct(f);
 }
 
-// Deceleration of a joint in a stop: with `rate`, but no more than the motors give, all joints on
-// one line in the time `line` (s), or without such a line, of a stretched arm, a part of the
-// rating.
-double deceleration_in_stop(double speed, double ddq_max, double rate, double line) noexcept {
-  constexpr double kShare = 0.3;  // of the rating
-  return std::min(rate * speed, line > 0.0 ? speed / line : kShare * ddq_max);
-}
-
 }  // namespace
 
 double stop_rating(const DeviceModel& device) {
@@ -176,7 +168,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOp
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
   if (brakes_together(device, options)) {
     holding_.emplace(device);
-    stop_path_.emplace(device);
+    if (device.n_p == 0) stop_path_.emplace(device);
   }
   problem_.clear(problem_.capacity().variables);
   add_levels(device, twin);
@@ -237,14 +229,13 @@ void Tasks::add_device_limits(const DeviceModel& device) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
   }
-  const bool stops_inside = stop_path_ && device.n_p == 0;
-  if (stops_inside) problem_.add_level();
-  for (std::size_t i = first_motor_ + n_m_; stops_inside && i < limit_rows_.size(); ++i) {
+  if (stop_path_) problem_.add_level();
+  for (std::size_t i = first_motor_ + n_m_; stop_path_ && i < limit_rows_.size(); ++i) {
     limit_rows_[i].stop_row = problem_.add_row(coefficients_, {}, weight_of(limit_rows_[i]));
   }
   if (device.keeps_apart) {
     constexpr double kRating = 10.0;  // m/s^2; scales the row
-    if (!stops_inside) problem_.add_level();
+    if (!stop_path_) problem_.add_level();
     add_limit({.q_min = kApartMargin, .ddq_max = kRating}, -1, 0.0);
     limit_rows_.back().range = {};  // what is foreseen is not left
   }
@@ -412,13 +403,17 @@ void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input
     limits::JointLimits limits = limit_rows_[limit].limits;
     limits.dq_max = device.joint_limits[limit].dq_max;
     if (input.joint_braking_rate > 0.0) {
-      constexpr double kAtRest = 1e-4;  // rad/s or m/s
+      constexpr double kAtRest = 1e-4;                 // rad/s or m/s
+      constexpr double kTogether = 0.6, kAlone = 0.3;  // of the rating: it may be stretched
       const double line = stop_path_ ? stop_path_->time() : 0.0;
+      const double rated = (joint_braking_ ? kTogether : kAlone) * limits.ddq_max;
       const double speed = std::abs(reference.dq_m[limit]);
+      // no more than the motors give, all joints on one line
+      const double braking =
+          std::min(input.joint_braking_rate * speed, line > 0.0 ? speed / line : rated);
       const double onward = std::copysign(1.0, reference.dq_m[limit]) * reference.ddq_m[limit];
-      const double ddq =
-          input.kept_acceleration * std::max(0.0, onward) -
-          deceleration_in_stop(speed, limits.ddq_max, input.joint_braking_rate, line);
+      const double kept = line > 0.0 ? onward : onward + braking;  // on a line braking is eased in
+      const double ddq = input.kept_acceleration * std::max(0.0, kept) - braking;
       // speeds below the largest one are approached with the time constant of the onset
       const double onset = std::max(limit_rows_[limit].options.tau_onset, dt_);
       const double most = speed + (ddq > 0.0 ? onset : dt_) * ddq;
@@ -514,7 +509,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     }
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
-    if (stop_path_ && device.n_p == 0) {
+    if (stop_path_) {
       const double speed = row.head(n_m_).dot(input.reference.dq_m);
       const Interval before = limit.ddq;
       limit.ddq = stoppable(before, lasting_[i], speed);
@@ -595,12 +590,10 @@ void Tasks::stop_inside(const DeviceModel& device, const TaskInput& input) noexc
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   bool is_found = false;
-  const bool is_stopping = input.joint_braking_rate > 0.0;
-  if (are_torques_known_ && (device.n_p == 0 || is_stopping)) {
+  if (are_torques_known_) {
     const std::span motors = std::span(limit_rows_).subspan(first_motor_, n_m_);
     stop_path_->update(device, input.device_chain, input.reference, motors, known_torque_);
   }
-  if (device.n_p > 0) return;
   int limit = first_motor_ + n_m_;
   for (const CartesianLimit& frame : device.cartesian_limits) {
     for (int axis = 0; axis < 3; ++axis, ++limit) {
