@@ -411,13 +411,13 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
   const double share = ramp_forces(motion, is_held, fade_s);
   const bool is_braked = motion == Motion::kHold || state_.touch.is_reported;
   const double stop_rate = is_stopping(motion) ? kBrakingRate * (1.0 - share) : 0.0;
-  // joints make up for a gantry that brakes until the forces are out; what accelerates them then
-  // fades, or other joints would have to take it over at once
+  // joints make up for a gantry that brakes until the forces are out, which an emergency stop drops
+  // at once; what makes a joint faster then fades, or others would have to take it over at once
   constexpr double kFade = 0.2;  // of the time in which the forces fade
   const bool has_gantry = rendering_.device().n_p > 0;
   const bool slows_joints = (share == 0.0 || !has_gantry) && !state_.touch.is_reported;
-  const double kept =
-      has_gantry ? std::max(0.0, 1.0 - dt_ / (kFade * fade_s)) : share / (share + dt_ / fade_s);
+  const double fading = has_gantry ? kFade : share;
+  const double kept = fading * fade_s / (fading * fade_s + dt_);
   const double ramped_rate =
       is_stopping(motion) ? stop_rate : estimation::braking_rate(state_.estimation.rest);
   rendering_.step({.robot = robot,

@@ -314,6 +314,15 @@ Interval watched_times(const FaultCase& drawn, const CampaignConfig& config) {
   return times;
 }
 
+// Whether the encoder of a gantry drifts, which nothing but its way shows.
+bool drifts_slowly(const FaultCase& drawn) {
+  const auto is_drift = [](const faults::Injection& injection) {
+    return injection.kind->part == faults::Part::kGantryEncoder &&
+           injection.kind->effect == faults::Effect::kDrift;
+  };
+  return is_drift(drawn.injection) || (drawn.other && is_drift(*drawn.other));
+}
+
 // Whether the device is where it should not be. One that did not run held still.
 bool is_elsewhere(const CampaignConfig& config, const FaultCase& result) {
   return result.has_run && (result.worst_excess > config.harmless_excess ||
@@ -412,6 +421,8 @@ FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
   std::uint64_t cycles = 0;
   const auto recorder =
       recording != nullptr ? std::make_unique<recording::Recorder>(*recording) : nullptr;
+  const double latest = watched.ub + (drifts_slowly(drawn) ? config.patience_s : 0.0);
+  double until = watched.ub;
   bool is_running = true;
   while (is_running) {
     player.begin();
@@ -422,9 +433,11 @@ FaultCase play_fault(const config::Scenario& scenario, const FaultCase& drawn,
     player.end();
     ++cycles;
     if (record.time_s >= watched.lb) watch.add(truth, player.sample());
-    is_running = record.time_s < watched.ub ||
-                 (record.time_s < watched.ub + config.patience_s && !watch.has_noticed() &&
-                  is_elsewhere(config, watch.result()));
+    if (record.time_s >= watched.ub && record.time_s < latest && !watch.has_noticed() &&
+        is_elsewhere(config, watch.result())) {
+      until = record.time_s + config.watched_s;  // to see the stop, too
+    }
+    is_running = record.time_s < until;
   }
   FaultCase result = watch.result();
   if (recorder != nullptr) {

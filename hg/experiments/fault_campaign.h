@@ -22,8 +22,8 @@ struct CampaignConfig {
   int cases = 560;
   std::uint64_t seed = 1;
   double watched_s = 2.0;  ///< time observed after a fault begins, s
-  /// Time observed further while a fault that is not harmless is not noticed, s: a gantry encoder
-  /// that drifts by 10 mm/s passes `monitor.gantry_drift_m` after 6 s, and 0.5 % of the axis' way.
+  /// Time within which the drift of a gantry encoder is to be noticed after that, s: 10 mm/s pass
+  /// `monitor.gantry_drift_m` after 6 s, and 0.5 % of the axis' way.
   double patience_s = 10.0;
   /// Bounds on the true state within which a run without a reaction is harmless.
   double harmless_excess = 0.01;  ///< excess over any limit of the device, rad or m

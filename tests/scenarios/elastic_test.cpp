@@ -108,17 +108,6 @@ TEST(ElasticThrow, LimitsThatBrakeTogetherHoldInCorners) {
   }
 }
 
-// A joint that gets faster when the forces are out may do so a little longer: stopped at once, its
-// share of the motion falls to m1, whose motor cannot take it.
-TEST(ElasticStop, OfAFastHandStaysWithinTheMotors) {
-  ScenarioRun run(
-      scenario::load({.scenario = "tests/scenarios/fast/stop.yaml", .law = "together"}));
-  run.play();
-  EXPECT_EQ(run.summary().fault().code, FaultCode::kNone) << to_string(run.summary().fault().code);
-  EXPECT_EQ(run.quality().allocations, 0u);
-  expect_limits_held_in_truth(run);
-}
-
 // A wrist that turns fast passes near its own forearm all the time. That is no collision ahead, and
 // the law does not let it become one.
 TEST(ElasticFastHand, OfAnArmMeetsNoCollisionAhead) {

@@ -46,6 +46,7 @@ void StopPath::update(const DeviceModel& device, const model::ChainData& now,
   const VectorM momentum = inertia.lazyProduct(dq);
   VectorM of_joint(n), of_motor(n), available(n);
   double sum = 0.0;
+  motor_time_ = 0.0;
   for (int i = 0; i < n; ++i) {
     of_joint[i] = std::abs(dq[i]) / deceleration_[i];
     const Interval& torque = motors[i].torque;
@@ -53,6 +54,7 @@ void StopPath::update(const DeviceModel& device, const model::ChainData& now,
     available[i] = momentum[i] > 0.0 ? std::max(known[i] - torque.lb, least)
                                      : std::max(torque.ub - known[i], least);
     of_motor[i] = std::abs(momentum[i]) / available[i];
+    motor_time_ = std::max(motor_time_, of_motor[i]);
     sum += seventh(of_joint[i]) * of_joint[i] + seventh(of_motor[i]) * of_motor[i];
   }
   time_ = std::sqrt(std::sqrt(std::sqrt(sum)));

@@ -28,6 +28,8 @@ class StopPath {
               const VectorM& known) noexcept;
 
   double time() const noexcept { return time_; }  ///< T, s
+  /// The longest time that a motor needs alone, s.
+  double motor_time() const noexcept { return motor_time_; }
   /// Time r + T / 2 in which a joint at its present speed covers its way to rest, s.
   double reach() const noexcept;
 
@@ -46,7 +48,7 @@ class StopPath {
   VectorM deceleration_;        ///< Largest of each joint, rad/s^2 or m/s^2
   std::vector<Interval> ends_;  ///< Of each joint
   model::ChainData rest_;
-  double time_ = 0.0;
+  double time_ = 0.0, motor_time_ = 0.0;
   VectorM per_speed_;  ///< Change of T with the speed of each joint
 };
 

@@ -134,6 +134,16 @@ VectorM free_motion(const DeviceModel& device, const TaskInput& input,
   return J.transpose().lazyProduct(f);
 }
 
+// Deceleration of a joint in a stop: with `rate`, but no more than lets all joints brake on one
+// line in the time `line` (s), with a gantry no more than a share of its rating, either; without
+// such a line, of a stretched arm, a smaller share.
+double deceleration_in_stop(double speed, double ddq_max, double rate, double line,
+                            int n_p) noexcept {
+  constexpr double kShare = 0.6, kWithoutLine = 0.3;
+  const double most = std::min(rate * speed, line > 0.0 ? speed / line : kWithoutLine * ddq_max);
+  return n_p > 0 ? std::min(most, kShare * ddq_max) : most;
+}
+
 }  // namespace
 
 double stop_rating(const DeviceModel& device) {
@@ -168,7 +178,7 @@ Tasks::Tasks(const DeviceModel& device, const TwinModel& twin, const RenderingOp
   if (options.law == Law::kPaper) paper_.emplace(device, twin);
   if (brakes_together(device, options)) {
     holding_.emplace(device);
-    if (device.n_p == 0) stop_path_.emplace(device);
+    stop_path_.emplace(device);
   }
   problem_.clear(problem_.capacity().variables);
   add_levels(device, twin);
@@ -229,13 +239,14 @@ void Tasks::add_device_limits(const DeviceModel& device) {
     problem_.add_level();
     for (const auto& axis : frame.axes) add_limit(axis, -1, frame.margin);
   }
-  if (stop_path_) problem_.add_level();
-  for (std::size_t i = first_motor_ + n_m_; stop_path_ && i < limit_rows_.size(); ++i) {
+  const bool stops_inside = stop_path_ && device.n_p == 0;
+  if (stops_inside) problem_.add_level();
+  for (std::size_t i = first_motor_ + n_m_; stops_inside && i < limit_rows_.size(); ++i) {
     limit_rows_[i].stop_row = problem_.add_row(coefficients_, {}, weight_of(limit_rows_[i]));
   }
   if (device.keeps_apart) {
     constexpr double kRating = 10.0;  // m/s^2; scales the row
-    if (!stop_path_) problem_.add_level();
+    if (!stops_inside) problem_.add_level();
     add_limit({.q_min = kApartMargin, .ddq_max = kRating}, -1, 0.0);
     limit_rows_.back().range = {};  // what is foreseen is not left
   }
@@ -398,21 +409,20 @@ void Tasks::hold(int limit, double ddq) noexcept {
 
 void Tasks::fill_device_limits(const DeviceModel& device, const TaskInput& input) noexcept {
   const ReferenceState& reference = input.reference;
+  double line = 0.0;
+  if (stop_path_) line = device.n_p > 0 ? stop_path_->motor_time() : stop_path_->time();
   int limit = 0;
   for (; limit < n_m_; ++limit) {
     limits::JointLimits limits = limit_rows_[limit].limits;
     limits.dq_max = device.joint_limits[limit].dq_max;
     if (input.joint_braking_rate > 0.0) {
-      constexpr double kAtRest = 1e-4;                 // rad/s or m/s
-      constexpr double kTogether = 0.6, kAlone = 0.3;  // of the rating: it may be stretched
-      const double line = stop_path_ ? stop_path_->time() : 0.0;
-      const double rated = (joint_braking_ ? kTogether : kAlone) * limits.ddq_max;
+      constexpr double kAtRest = 1e-4;  // rad/s or m/s
       const double speed = std::abs(reference.dq_m[limit]);
-      // no more than the motors give, all joints on one line
       const double braking =
-          std::min(input.joint_braking_rate * speed, line > 0.0 ? speed / line : rated);
+          deceleration_in_stop(speed, limits.ddq_max, input.joint_braking_rate, line, device.n_p);
       const double onward = std::copysign(1.0, reference.dq_m[limit]) * reference.ddq_m[limit];
-      const double kept = line > 0.0 ? onward : onward + braking;  // on a line braking is eased in
+      // an arm without gantry gets a rate that grows as the forces fade
+      const double kept = device.n_p > 0 ? onward + braking : onward;
       const double ddq = input.kept_acceleration * std::max(0.0, kept) - braking;
       // speeds below the largest one are approached with the time constant of the onset
       const double onset = std::max(limit_rows_[limit].options.tau_onset, dt_);
@@ -509,7 +519,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     }
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
-    if (stop_path_) {
+    if (stop_path_ && device.n_p == 0) {
       const double speed = row.head(n_m_).dot(input.reference.dq_m);
       const Interval before = limit.ddq;
       limit.ddq = stoppable(before, lasting_[i], speed);
@@ -590,10 +600,12 @@ void Tasks::stop_inside(const DeviceModel& device, const TaskInput& input) noexc
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
   row.setZero();
   bool is_found = false;
-  if (are_torques_known_) {
+  const bool is_stopping = input.joint_braking_rate > 0.0;
+  if (are_torques_known_ && (device.n_p == 0 || is_stopping)) {
     const std::span motors = std::span(limit_rows_).subspan(first_motor_, n_m_);
     stop_path_->update(device, input.device_chain, input.reference, motors, known_torque_);
   }
+  if (device.n_p > 0) return;
   int limit = first_motor_ + n_m_;
   for (const CartesianLimit& frame : device.cartesian_limits) {
     for (int axis = 0; axis < 3; ++axis, ++limit) {

@@ -153,7 +153,7 @@ class Tasks {
   std::vector<Interval> lasting_, joint_room_;  ///< Of motors once reached; of joints up to walls
   double braking_reserve_ = kMostReserve;
   std::optional<Holding> holding_;     ///< only where limits brake together
-  std::optional<StopPath> stop_path_;  ///< the same, without gantry
+  std::optional<StopPath> stop_path_;  ///< the same; of its walls without gantry only
   std::optional<PaperLaw> paper_;      ///< law paper only
 };
 

@@ -51,6 +51,20 @@ TEST(PlaySeeds, AFaultAndALimitThatIsLeftHaveNotHeld) {
   EXPECT_FALSE(have_all_held(outside));
 }
 
+// Joints that are fast when the forces are out: stopped at once, what one of them adds to the
+// motion falls to m1, whose motor cannot take it; stopped slowly, m3 moves too far.
+TEST(PlaySeeds, AStopOfFastJointsIsNoFault) {
+  for (const char* file : {"stop_m1", "stop_m3"}) {
+    SCOPED_TRACE(file);
+    const std::string path = std::string("tests/scenarios/fast/") + file + ".yaml";
+    const Trial trial = {.name = file, .hand = "", .scenario = config::load_scenario(path)};
+    const std::vector<SeededRun> runs = play_seeds({trial}, 1, 1, {});
+    EXPECT_EQ(runs[0].fault.code, FaultCode::kNone) << to_string(runs[0].fault.code);
+    EXPECT_TRUE(have_all_held(runs));
+    EXPECT_GT(runs[0].ended_s, trial.scenario.duration_s + 0.5) << "the stop was played";
+  }
+}
+
 // In the middle of a throw, m3 and m6 are at 2.6 and 3.3 rad/s: no axis moves farther than stated.
 TEST(PlaySeeds, ARunEndsWithAnOrdinaryStop) {
   const Trial thrown = {
