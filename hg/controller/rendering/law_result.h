@@ -16,8 +16,8 @@ namespace hg::rendering {
 struct LawInput {
   const RobotState& robot;    ///< Measured device and wrench of the user
   double braking_rate = 0.0;  ///< Rate at which the twin is brought to rest, 1/s; 0: not braked
-  /// Rate at which every joint of the manipulator at least slows down in a stop, 1/s, with at most
-  /// a share of its rating, or without a gantry with what its motors give.
+  /// Rate at which every joint of the manipulator at least slows down in a stop, 1/s, with what its
+  /// motors give; with a gantry, with at most a share of its rating.
   double joint_braking_rate = 0.0;
   double kept_acceleration = 0.0;  ///< In a stop: kept share of what makes a joint faster
   /// Share of the user's wrench, the twin's springs, its weight, its reference wrench and the
