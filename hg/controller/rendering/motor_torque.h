@@ -13,15 +13,19 @@ namespace hg::rendering {
 /// Share of the torque that the motor has at its speed.
 inline constexpr double kTorqueShare = 0.75;
 inline constexpr double kTorqueOnset = 20e-3;  ///< Time constant of the approach to the bound, s
+/// Share of the peak torque up to which the approach is that fast, and its time constant beyond, s.
+/// Faster, the motor would have no torque left to twist its spring.
+inline constexpr double kLightShare = 0.5, kHeavyOnset = 0.1;
 
 /// Range of torques, without friction, that the law may demand of `motor` at speed `dq` (rad/s):
 /// accelerating, less with growing speed; braking, all of the share.
 Interval allowed_torque(const ActuatorModel& motor, double dq) noexcept;
 
-/// Range reachable within `dt` (s) from the torque `before` of the last sample: the distance to
-/// either end of `allowed` shrinks with kTorqueOnset, also from beyond, where a limit with priority
-/// over the motors has put it. Never empty.
-Interval reached_torque(Interval allowed, double before, double dt) noexcept;
+/// Range reachable within `dt` (s) from the torque `before` of the last sample, Nm or N. The
+/// distance to either end of `allowed` shrinks with kTorqueOnset, also from beyond, where a limit
+/// with priority over the motors has put it; what lies beyond `light` with kHeavyOnset. Never
+/// empty.
+Interval reached_torque(Interval allowed, double light, double before, double dt) noexcept;
 
 /// Whether a motor of the torque `most` holds so much that eased_torque() may change its range.
 bool is_loaded(double most, double held) noexcept;

@@ -505,7 +505,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
-      torque = reached_torque(torque, input.motor_torque[i], dt_);
+      torque = reached_torque(torque, kLightShare * motor.torque_max, input.motor_torque[i], dt_);
       if (is_loaded(motor.torque_max, known[i]) && !torque.contains(known[i])) {
         if (led.size() == 0) {
           Vector6 coupling;
