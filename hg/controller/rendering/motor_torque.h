@@ -13,8 +13,8 @@ namespace hg::rendering {
 /// Share of the torque that the motor has at its speed.
 inline constexpr double kTorqueShare = 0.75;
 inline constexpr double kTorqueOnset = 20e-3;  ///< Time constant of the approach to the bound, s
-/// Share of the peak torque up to which the approach is that fast, and its time constant beyond, s.
-/// Faster, the motor would have no torque left to twist its spring.
+/// Of a device with a gantry: share of the peak torque up to which the approach is that fast, and
+/// its time constant beyond, s. Faster, the motor has no torque left to twist its spring.
 inline constexpr double kLightShare = 0.5, kHeavyOnset = 0.1;
 
 /// Range of torques, without friction, that the law may demand of `motor` at speed `dq` (rad/s):

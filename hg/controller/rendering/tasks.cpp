@@ -505,7 +505,9 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
-      torque = reached_torque(torque, kLightShare * motor.torque_max, input.motor_torque[i], dt_);
+      // arms without a gantry hold their weight with heavy torques and stop on their line by them
+      const double light = (device.n_p > 0 ? kLightShare : 1.0) * motor.torque_max;
+      torque = reached_torque(torque, light, input.motor_torque[i], dt_);
       if (is_loaded(motor.torque_max, known[i]) && !torque.contains(known[i])) {
         if (led.size() == 0) {
           Vector6 coupling;
