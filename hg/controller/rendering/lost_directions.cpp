@@ -17,13 +17,10 @@ constexpr double kSlow = 0.1;      // rad/s, of a joint, up to which its frictio
 constexpr double kMost = 1e3;      // times the mass in that direction: beyond, nothing moves anyway
 constexpr double kLeast = 1e-9;    // m, as small as a singular value may count
 
-// Whether all squared singular values are larger than `least`: their inverses add up to the trace
-// of the inverse.
+// Whether all eigenvalues are larger than `least`; false for NaN.
 bool are_larger(const Matrix6& A, double least) noexcept {
-  const Eigen::LLT<Matrix6> factor(A);
-  if (factor.info() != Eigen::Success) return false;
-  const Matrix6 inverse_root = factor.matrixL().solve(Matrix6::Identity());
-  return inverse_root.squaredNorm() * least < 1.0;
+  const Eigen::LLT<Matrix6> factor(A - least * Matrix6::Identity());
+  return factor.info() == Eigen::Success && factor.matrixLLT()(5, 5) > 0.0;
 }
 
 }  // namespace

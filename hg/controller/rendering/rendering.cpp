@@ -223,7 +223,7 @@ void Rendering::update_twin(const Vector6& w_H, RenderingState& state) noexcept 
   const TwinState& twin = state.twin;
   const double inertia = state.added.inertia;
   FeltBy felt;
-  if (is_changing(parameters)) {
+  if (is_changing(twin_, parameters)) {
     twin_now_.update(twin.q_a, twin.dq_a, {parameters.now.loads.mass * inertia, 1.0 / inertia});
     felt = {.J_a = twin_now_.jacobian(twin_.end_effector),
             .motion = twin_now_.c() - twin_now_.gravity(),

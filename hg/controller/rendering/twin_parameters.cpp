@@ -145,7 +145,7 @@ ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
   return ChangeStatus::kTaken;
 }
 
-bool is_changing(const TwinParameters& parameters) noexcept {
+bool is_changing(const TwinModel& twin, const TwinParameters& parameters) noexcept {
   const TwinValues& now = parameters.now;
   const TwinValues& target = parameters.target;
   const auto is_there = [](const DofValues& a, const DofValues& b) {
@@ -155,7 +155,8 @@ bool is_changing(const TwinParameters& parameters) noexcept {
   };
   return now.loads.mass != target.loads.mass || now.loads.gravity != target.loads.gravity ||
          now.felt_scale != target.felt_scale ||
-         !std::equal(now.dofs.begin(), now.dofs.end(), target.dofs.begin(), is_there);
+         !std::equal(now.dofs.begin(), now.dofs.begin() + twin.dofs.size(), target.dofs.begin(),
+                     is_there);
 }
 
 void advance_parameters(const TwinModel& twin, const TwinState& state, double dt,
@@ -181,7 +182,7 @@ void advance_parameters(const TwinModel& twin, const TwinState& state, double dt
   }
   const double wrench_share = target.w_ref.isZero(0.0) ? share_of_step(dt, kEnd) : share;
   for (int i = 0; i < 6; ++i) approach(now.w_ref[i], target.w_ref[i], wrench_share);
-  if (is_changing(parameters)) approach_targets(twin, state, dt, felt, parameters);
+  if (is_changing(twin, parameters)) approach_targets(twin, state, dt, felt, parameters);
 }
 
 }  // namespace hg::rendering

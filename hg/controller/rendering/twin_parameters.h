@@ -88,7 +88,7 @@ TwinParameters initial_parameters(const TwinModel& twin) noexcept;
 
 /// Whether values are on their way whose change the user may feel, reference wrench and limits
 /// aside.
-bool is_changing(const TwinParameters& parameters) noexcept;
+bool is_changing(const TwinModel& twin, const TwinParameters& parameters) noexcept;
 
 /// What decides how much of a change of values the user feels.
 struct FeltBy {

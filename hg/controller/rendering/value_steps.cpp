@@ -140,7 +140,7 @@ void approach_targets(const TwinModel& twin, const TwinState& state, double dt, 
     used =
         std::max(used, advance_dof(q, state.dq_a[i], torque[i], goal.dofs[i], pace, now.dofs[i]));
   }
-  parameters.pace = is_changing(parameters) ? used : 0.0;
+  parameters.pace = is_changing(twin, parameters) ? used : 0.0;
 }
 
 }  // namespace hg::rendering

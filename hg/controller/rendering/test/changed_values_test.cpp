@@ -82,7 +82,7 @@ TEST(ChangedValues, ChangeTheForceByABoundedRate) {
     EXPECT_GT(largest, 0.9 * kForceRate * kDt);
     EXPECT_LT(door.run(6.0), 1.1 * kForceRate * kDt);
     EXPECT_GT(std::abs(door.force() - before), 10.0);
-    EXPECT_FALSE(is_changing(door.parameters));
+    EXPECT_FALSE(is_changing(door.twin, door.parameters));
   }
 }
 
