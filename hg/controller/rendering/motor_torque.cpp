@@ -38,11 +38,11 @@ bool is_loaded(double most, double held) noexcept {
   return std::abs(held) > kLoad * most;
 }
 
-Interval eased_torque(Interval torque, double most, double held, double led, double before,
-                      double dt) noexcept {
+Interval eased_torque(Interval torque, double most, double light, double held, double led,
+                      double before, double dt) noexcept {
   constexpr double kFaster = 4.0;
   if (!is_loaded(most, held)) return torque;
-  const Interval fastest = reached_torque({-most, most}, most, before, kFaster * dt);
+  const Interval fastest = reached_torque({-most, most}, light, before, kFaster * dt);
   if (held > 0.0 && led > held) torque.ub = std::max(torque.ub, std::min(held, fastest.ub));
   if (held < 0.0 && led < held) torque.lb = std::min(torque.lb, std::max(held, fastest.lb));
   return torque;

@@ -13,8 +13,9 @@ namespace hg::rendering {
 /// Share of the torque that the motor has at its speed.
 inline constexpr double kTorqueShare = 0.75;
 inline constexpr double kTorqueOnset = 20e-3;  ///< Time constant of the approach to the bound, s
-/// Of a device with a gantry: share of the peak torque up to which the approach is that fast, and
-/// its time constant beyond, s. Faster, the motor has no torque left to twist its spring.
+/// Of a device with a gantry: share of the peak torque that is light, whose bound is approached
+/// with kTorqueOnset, and the time constant beyond it, s. Faster, a motor of HapticGiant has no
+/// torque left to twist its spring.
 inline constexpr double kLightShare = 0.5, kHeavyOnset = 0.1;
 
 /// Range of torques, without friction, that the law may demand of `motor` at speed `dq` (rad/s):
@@ -33,8 +34,8 @@ bool is_loaded(double most, double held) noexcept;
 /// Range that does not ask for a motion against a push. A motor of the torque `most` that needs
 /// more than `torque` to hold its joint at rest, `held`, has what that takes where it takes even
 /// more to yield, `led`: to move as the twin would without limits. From the torque `before` of the
-/// last sample it gets there four times as fast as by reached_torque(). Nm or N.
-Interval eased_torque(Interval torque, double most, double held, double led, double before,
-                      double dt) noexcept;
+/// last sample it gets there four times as fast as by reached_torque() with `light`. Nm or N.
+Interval eased_torque(Interval torque, double most, double light, double held, double led,
+                      double before, double dt) noexcept;
 
 }  // namespace hg::rendering

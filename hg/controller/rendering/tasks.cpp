@@ -515,7 +515,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
           led = free_motion(device, input, coupling);
         }
         const double change = inertia * row.head(n_m_).dot(led);
-        torque = eased_torque(torque, motor.torque_max, known[i], known[i] + change,
+        torque = eased_torque(torque, motor.torque_max, light, known[i], known[i] + change,
                               input.motor_torque[i], dt_);
       }
     }

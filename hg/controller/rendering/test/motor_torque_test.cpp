@@ -185,9 +185,10 @@ TEST(MotorRows, RatingsCapAccelerationsOnlyWithoutMotorModel) {
 TEST(MotorTorque, IsEasedOnlyWhereToYieldTakesMoreThanToStand) {
   const Interval reached = {-1.0, 6.5};
   const auto eased = [&](double held, double led) {
-    return eased_torque(reached, 12.0, held, led, 0.0, 5e-3);
+    return eased_torque(reached, 12.0, 12.0, held, led, 0.0, 5e-3);
   };
-  EXPECT_NEAR(eased_torque(reached, 12.0, 8.0, 10.0, 6.0, 1e-3).ub, 7.2, 1e-9);  // in time
+  EXPECT_NEAR(eased_torque(reached, 12.0, 12.0, 8.0, 10.0, 6.0, 1e-3).ub, 7.2, 1e-9);  // in time
+  EXPECT_NEAR(eased_torque({-1.0, 6.1}, 12.0, 6.0, 8.0, 10.0, 6.0, 1e-3).ub, 6.24, 1e-9);  // heavy
   EXPECT_EQ(eased(8.0, 10.0).ub, 8.0);
   EXPECT_EQ(eased(8.0, 10.0).lb, -1.0);
   EXPECT_EQ(eased(8.0, 7.0).ub, 6.5);     // yields
