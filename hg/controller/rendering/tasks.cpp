@@ -144,6 +144,12 @@ double deceleration_in_stop(double speed, double ddq_max, double rate, double li
   return n_p > 0 ? std::min(most, kShare * ddq_max) : most;
 }
 
+// Torque up to which the torque of `motor` builds up fast, Nm or N. Arms without a gantry hold
+// their weight with heavy torques, and stop on their line by them.
+double light_torque(const DeviceModel& device, const ActuatorModel& motor) noexcept {
+  return (device.n_p > 0 ? kLightShare : 1.0) * motor.torque_max;
+}
+
 }  // namespace
 
 double stop_rating(const DeviceModel& device) {
@@ -505,8 +511,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
-      // arms without a gantry hold their weight with heavy torques and stop on their line by them
-      const double light = (device.n_p > 0 ? kLightShare : 1.0) * motor.torque_max;
+      const double light = light_torque(device, motor);
       torque = reached_torque(torque, light, input.motor_torque[i], dt_);
       if (is_loaded(motor.torque_max, known[i]) && !torque.contains(known[i])) {
         if (led.size() == 0) {
@@ -514,9 +519,9 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
           for (int k = 0; k < 6; ++k) coupling[k] = problem_.bounds(coupling_row_ + k).lb;
           led = free_motion(device, input, coupling);
         }
-        const double change = inertia * row.head(n_m_).dot(led);
-        torque = eased_torque(torque, motor.torque_max, light, known[i], known[i] + change,
-                              input.motor_torque[i], dt_);
+        torque =
+            eased_torque(torque, motor.torque_max, light, known[i],
+                         known[i] + inertia * row.head(n_m_).dot(led), input.motor_torque[i], dt_);
       }
     }
     limit.dq = dq;
