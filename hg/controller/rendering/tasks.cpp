@@ -527,9 +527,8 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     if (stop_path_ && device.n_p == 0) {
-      const double speed = row.head(n_m_).dot(input.reference.dq_m);
       const Interval before = limit.ddq;
-      limit.ddq = stoppable(before, lasting_[i], speed);
+      limit.ddq = stoppable(before, lasting_[i], row.head(n_m_).dot(input.reference.dq_m));
       limit.is_slowed = limit.ddq.lb != before.lb || limit.ddq.ub != before.ub;
     }
     limit.inertia = inertia;
