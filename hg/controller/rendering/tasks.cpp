@@ -144,10 +144,12 @@ double deceleration_in_stop(double speed, double ddq_max, double rate, double li
   return n_p > 0 ? std::min(most, kShare * ddq_max) : most;
 }
 
-// Torque up to which the torque of `motor` builds up fast, Nm or N. Arms without a gantry hold
-// their weight with heavy torques, and stop on their line by them.
-double light_torque(const DeviceModel& device, const ActuatorModel& motor) noexcept {
-  return (device.n_p > 0 ? kLightShare : 1.0) * motor.torque_max;
+// Torque up to which the torque of `motor` builds up fast, Nm or N: all of it where the twin is
+// braked, which are stops and contacts of the arm, and without a gantry, where arms hold their
+// weight and stop on their line by heavy torques.
+double light_torque(const DeviceModel& device, const ActuatorModel& motor,
+                    bool is_braked) noexcept {
+  return (device.n_p > 0 && !is_braked ? kLightShare : 1.0) * motor.torque_max;
 }
 
 }  // namespace
@@ -511,7 +513,7 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
-      const double light = light_torque(device, motor);
+      const double light = light_torque(device, motor, input.is_braked);
       torque = reached_torque(torque, light, input.motor_torque[i], dt_);
       if (is_loaded(motor.torque_max, known[i]) && !torque.contains(known[i])) {
         if (led.size() == 0) {
