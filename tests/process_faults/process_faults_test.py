@@ -36,7 +36,8 @@ UNTIL_RUNNING_S, UNTIL_ENDED_S, FAULT_TO_STOP_S, FROZEN_S = 60.0, 30.0, 0.3, 1.0
 WATCHED_AFTER_S = 1.0  # the session
 ENERGY_BOUND_J = 30.0
 UNWRITTEN = 1000  # samples that a recording may lack at its end
-TRIES = 20  # of a run that ends before its fault: a busy computer holds it up, for whatever limit is the first to see it
+FAULTED = 3  # exit code of a run that a fault of the device has ended
+TRIES = 10  # of a run that ends before its fault: a busy computer holds it up, for whatever limit is the first to see it
 
 
 @dataclasses.dataclass(frozen=True)
@@ -143,7 +144,7 @@ def apply(fault, controller, folder, load):
 class Case:
     fault: Fault
     has_run: bool = False
-    has_crashed: bool = False  # before its fault, or did not end
+    has_crashed: bool = False  # before its fault, or ended otherwise than by a fault or its stop
     has_ended: bool = False
     exit_code: int = -1  # -1: ended by a signal
     periods: int = 0  # of the device with this controller, until the stop
@@ -222,7 +223,7 @@ def play(program, fault, at_s):
                 controller.process.send_signal(signal.SIGTERM)
                 advance(time.monotonic() + UNTIL_ENDED_S, controller.has_ended)
                 controller.read()
-                case.has_crashed = not controller.has_ended() or controller.process.returncode < 0
+                case.has_crashed = controller.process.poll() not in (0, FAULTED)  # 0: the stop found it while it ended
                 print(f"{controller.said.decode(errors='replace')}\nended before {fault.name}: {controller.process.poll()}")
                 return case
             device.is_watched = fault.is_stop

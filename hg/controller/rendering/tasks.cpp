@@ -145,8 +145,8 @@ double deceleration_in_stop(double speed, double ddq_max, double rate, double li
 }
 
 // Torque up to which the torque of `motor` builds up fast, Nm or N: all of it where the twin is
-// braked, which are stops and contacts of the arm, and without a gantry, where arms hold their
-// weight and stop on their line by heavy torques.
+// braked (stops, contacts of the arm, a tool that nothing touches), and without a gantry, where
+// arms hold their weight and stop on their line by heavy torques.
 double light_torque(const DeviceModel& device, const ActuatorModel& motor,
                     bool is_braked) noexcept {
   return (device.n_p > 0 && !is_braked ? kLightShare : 1.0) * motor.torque_max;

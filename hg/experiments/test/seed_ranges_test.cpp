@@ -65,8 +65,8 @@ TEST(PlaySeeds, AStopOfFastJointsIsNoFault) {
   }
 }
 
-// All at once m1 has to change its torque by 150 Nm, and no more than its motor can twist its
-// spring.
+// Where a wall lets go of the elbow, m1 would change its torque by 150 Nm at once; the law asks for
+// no more than its motor can twist its spring for.
 TEST(PlaySeeds, AFastStrokeLeavesNoMotorBehind) {
   const Trial trial = {.name = "stroke",
                        .hand = "",
