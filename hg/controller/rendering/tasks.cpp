@@ -144,14 +144,6 @@ double deceleration_in_stop(double speed, double ddq_max, double rate, double li
   return n_p > 0 ? std::min(most, kShare * ddq_max) : most;
 }
 
-// Torque up to which the torque of `motor` builds up fast, Nm or N: all of it where the twin is
-// braked (stops, contacts of the arm, a tool that nothing touches), and without a gantry, where
-// arms hold their weight and stop on their line by heavy torques.
-double light_torque(const DeviceModel& device, const ActuatorModel& motor,
-                    bool is_braked) noexcept {
-  return (device.n_p > 0 && !is_braked ? kLightShare : 1.0) * motor.torque_max;
-}
-
 }  // namespace
 
 double stop_rating(const DeviceModel& device) {
@@ -513,24 +505,24 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
-      const double light = light_torque(device, motor, input.is_braked);
-      torque = reached_torque(torque, light, input.motor_torque[i], dt_);
+      torque = reached_torque(torque, input.motor_torque[i], dt_);
       if (is_loaded(motor.torque_max, known[i]) && !torque.contains(known[i])) {
         if (led.size() == 0) {
           Vector6 coupling;
           for (int k = 0; k < 6; ++k) coupling[k] = problem_.bounds(coupling_row_ + k).lb;
           led = free_motion(device, input, coupling);
         }
-        torque =
-            eased_torque(torque, motor.torque_max, light, known[i],
-                         known[i] + inertia * row.head(n_m_).dot(led), input.motor_torque[i], dt_);
+        const double change = inertia * row.head(n_m_).dot(led);
+        torque = eased_torque(torque, motor.torque_max, known[i], known[i] + change,
+                              input.motor_torque[i], dt_);
       }
     }
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     if (stop_path_ && device.n_p == 0) {
+      const double speed = row.head(n_m_).dot(input.reference.dq_m);
       const Interval before = limit.ddq;
-      limit.ddq = stoppable(before, lasting_[i], row.head(n_m_).dot(input.reference.dq_m));
+      limit.ddq = stoppable(before, lasting_[i], speed);
       limit.is_slowed = limit.ddq.lb != before.lb || limit.ddq.ub != before.ub;
     }
     limit.inertia = inertia;
