@@ -4,6 +4,18 @@
 #include <cmath>
 
 namespace hg::rendering {
+namespace {
+
+// upper end of reached_torque()
+double reached_end(double end, double light, double before, double dt) noexcept {
+  const double fast = std::min(dt / kTorqueOnset, 1.0);
+  const double slow = std::min(dt / kHeavyOnset, 1.0);
+  if (before >= end) return before + fast * (end - before);
+  const double turn = std::clamp(light, before, end);
+  return before + fast * (turn - before) + slow * (end - turn);
+}
+
+}  // namespace
 
 Interval allowed_torque(const ActuatorModel& motor, double dq) noexcept {
   const double speed = std::abs(dq);
@@ -16,9 +28,9 @@ Interval allowed_torque(const ActuatorModel& motor, double dq) noexcept {
   return dq > 0.0 ? Interval{-braking, onward} : Interval{-onward, braking};
 }
 
-Interval reached_torque(Interval allowed, double before, double dt) noexcept {
-  const double share = std::min(dt / kTorqueOnset, 1.0);
-  return {before + share * (allowed.lb - before), before + share * (allowed.ub - before)};
+Interval reached_torque(Interval allowed, double light, double before, double dt) noexcept {
+  const double most = reached_end(allowed.ub, light, before, dt);
+  return {std::min(-reached_end(-allowed.lb, light, -before, dt), most), most};
 }
 
 bool is_loaded(double most, double held) noexcept {
@@ -26,11 +38,11 @@ bool is_loaded(double most, double held) noexcept {
   return std::abs(held) > kLoad * most;
 }
 
-Interval eased_torque(Interval torque, double most, double held, double led, double before,
-                      double dt) noexcept {
+Interval eased_torque(Interval torque, double most, double light, double held, double led,
+                      double before, double dt) noexcept {
   constexpr double kFaster = 4.0;
   if (!is_loaded(most, held)) return torque;
-  const Interval fastest = reached_torque({-most, most}, before, kFaster * dt);
+  const Interval fastest = reached_torque({-most, most}, light, before, kFaster * dt);
   if (held > 0.0 && led > held) torque.ub = std::max(torque.ub, std::min(held, fastest.ub));
   if (held < 0.0 && led < held) torque.lb = std::min(torque.lb, std::max(held, fastest.lb));
   return torque;

@@ -490,6 +490,7 @@ void Rendering::fill_tasks(const LawInput& input, const VectorA& tau,
                .joint_braking_rate = input.joint_braking_rate,
                .kept_acceleration = input.kept_acceleration,
                .is_braked = input.braking_rate > 0.0,
+               .has_surfaces = !environment_.surfaces().empty(),
                .collision = input.collision});
 }
 

@@ -63,6 +63,7 @@ struct TaskInput {
   double joint_braking_rate = 0.0;  ///< Rate at which every joint at least slows down, 1/s
   double kept_acceleration = 0.0;   ///< In a stop: kept share of what makes a joint faster
   bool is_braked = false;           ///< The twin is brought to rest, and so is a joint to spare
+  bool has_surfaces = false;        ///< There are virtual surfaces, near or far
   CollisionTask collision = {};     ///< What is kept apart; with infinite distance nothing
 };
 

@@ -144,6 +144,16 @@ double deceleration_in_stop(double speed, double ddq_max, double rate, double li
   return n_p > 0 ? std::min(most, kShare * ddq_max) : most;
 }
 
+// Torque up to which the torque of `motor` builds up fast, Nm or N. All of it where the twin is
+// braked (stops, contacts of the arm, a tool that nothing touches), among virtual surfaces, which a
+// light body would enter too far, and without a gantry, where arms hold their weight and stop on
+// their line by heavy torques.
+double light_torque(const DeviceModel& device, const ActuatorModel& motor,
+                    const TaskInput& input) noexcept {
+  const bool is_fast = device.n_p == 0 || input.is_braked || input.has_surfaces;
+  return (is_fast ? 1.0 : kLightShare) * motor.torque_max;
+}
+
 }  // namespace
 
 double stop_rating(const DeviceModel& device) {
@@ -505,24 +515,24 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
     LimitRow& limit = limit_rows_[first_motor_ + i];
     limit.torque = torque;
     if (input.motor_torque.size() > 0) {
-      torque = reached_torque(torque, input.motor_torque[i], dt_);
+      const double light = light_torque(device, motor, input);
+      torque = reached_torque(torque, light, input.motor_torque[i], dt_);
       if (is_loaded(motor.torque_max, known[i]) && !torque.contains(known[i])) {
         if (led.size() == 0) {
           Vector6 coupling;
           for (int k = 0; k < 6; ++k) coupling[k] = problem_.bounds(coupling_row_ + k).lb;
           led = free_motion(device, input, coupling);
         }
-        const double change = inertia * row.head(n_m_).dot(led);
-        torque = eased_torque(torque, motor.torque_max, known[i], known[i] + change,
-                              input.motor_torque[i], dt_);
+        torque =
+            eased_torque(torque, motor.torque_max, light, known[i],
+                         known[i] + inertia * row.head(n_m_).dot(led), input.motor_torque[i], dt_);
       }
     }
     limit.dq = dq;
     limit.ddq = {(torque.lb - known[i]) / inertia, (torque.ub - known[i]) / inertia};
     if (stop_path_ && device.n_p == 0) {
-      const double speed = row.head(n_m_).dot(input.reference.dq_m);
       const Interval before = limit.ddq;
-      limit.ddq = stoppable(before, lasting_[i], speed);
+      limit.ddq = stoppable(before, lasting_[i], row.head(n_m_).dot(input.reference.dq_m));
       limit.is_slowed = limit.ddq.lb != before.lb || limit.ddq.ub != before.ub;
     }
     limit.inertia = inertia;

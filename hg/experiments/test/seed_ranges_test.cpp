@@ -65,6 +65,16 @@ TEST(PlaySeeds, AStopOfFastJointsIsNoFault) {
   }
 }
 
+// Where a wall lets go of the elbow, m1 would change its torque by 150 Nm at once; the law asks for
+// no more than its motor can twist its spring for.
+TEST(PlaySeeds, AFastStrokeLeavesNoMotorBehind) {
+  const Trial trial = {.name = "stroke",
+                       .hand = "",
+                       .scenario = config::load_scenario("tests/scenarios/fast/stroke.yaml")};
+  const std::vector<SeededRun> runs = play_seeds({trial}, 1, 2, {});
+  EXPECT_TRUE(have_all_held(runs)) << to_json({trial}, runs).dump(2);
+}
+
 // In the middle of a throw, m3 and m6 are at 2.6 and 3.3 rad/s: no axis moves farther than stated.
 TEST(PlaySeeds, ARunEndsWithAnOrdinaryStop) {
   const Trial thrown = {

@@ -40,17 +40,40 @@ TEST(AllowedTorque, IsNeverEmptyHoweverFastTheMotorTurns) {
 
 TEST(ReachedTorque, TakesATimeConstantToTheBound) {
   double torque = 0.0;
-  for (int k = 0; k < 20; ++k) torque = reached_torque({-100.0, 100.0}, torque, 1e-3).ub;
+  for (int k = 0; k < 20; ++k) torque = reached_torque({-100.0, 100.0}, 100.0, torque, 1e-3).ub;
   EXPECT_NEAR(torque, 100.0 * (1.0 - std::exp(-1.0)), 2.0);
-  for (int k = 0; k < 200; ++k) torque = reached_torque({-100.0, 100.0}, torque, 1e-3).ub;
+  for (int k = 0; k < 200; ++k) torque = reached_torque({-100.0, 100.0}, 100.0, torque, 1e-3).ub;
   EXPECT_NEAR(torque, 100.0, 0.01);
+}
+
+TEST(ReachedTorque, BeyondALightTorqueItTakesFiveTimesAsLong) {
+  double torque = 0.0, back = 0.0;
+  int light = 0, all = 0;
+  for (int k = 1; k <= 1000; ++k) {
+    torque = reached_torque({-100.0, 100.0}, 50.0, torque, 1e-3).ub;
+    back = reached_torque({-100.0, 100.0}, 50.0, back, 1e-3).lb;
+    ASSERT_DOUBLE_EQ(back, -torque);
+    if (light == 0 && torque > 49.0) light = k;
+    if (all == 0 && torque > 99.0) all = k;
+  }
+  EXPECT_NEAR(light, 34, 1);  // 20 ms ln(60 / 11): both parts at once
+  EXPECT_NEAR(all - light, 390, 4);
+}
+
+TEST(ReachedTorque, IsNeverEmpty) {
+  for (double before = -300.0; before <= 300.0; before += 7.0) {
+    for (const Interval allowed : {Interval{-150.0, -100.0}, {-100.0, 100.0}, {80.0, 100.0}}) {
+      const Interval torque = reached_torque(allowed, 60.0, before, 1e-3);
+      ASSERT_LE(torque.lb, torque.ub) << before;
+    }
+  }
 }
 
 TEST(ReachedTorque, FromBeyondABoundComesBackToIt) {
   Interval torque = {0.0, 150.0};
   for (int k = 0; k < 200; ++k) {
     const double before = torque.ub;
-    torque = reached_torque({-100.0, 100.0}, before, 1e-3);
+    torque = reached_torque({-100.0, 100.0}, 50.0, before, 1e-3);
     ASSERT_LT(torque.lb, torque.ub);
     ASSERT_LT(torque.ub, before);
   }
@@ -162,9 +185,10 @@ TEST(MotorRows, RatingsCapAccelerationsOnlyWithoutMotorModel) {
 TEST(MotorTorque, IsEasedOnlyWhereToYieldTakesMoreThanToStand) {
   const Interval reached = {-1.0, 6.5};
   const auto eased = [&](double held, double led) {
-    return eased_torque(reached, 12.0, held, led, 0.0, 5e-3);
+    return eased_torque(reached, 12.0, 12.0, held, led, 0.0, 5e-3);
   };
-  EXPECT_NEAR(eased_torque(reached, 12.0, 8.0, 10.0, 6.0, 1e-3).ub, 7.2, 1e-9);  // in time
+  EXPECT_NEAR(eased_torque(reached, 12.0, 12.0, 8.0, 10.0, 6.0, 1e-3).ub, 7.2, 1e-9);  // in time
+  EXPECT_NEAR(eased_torque({-1.0, 6.1}, 12.0, 6.0, 8.0, 10.0, 6.0, 1e-3).ub, 6.24, 1e-9);  // heavy
   EXPECT_EQ(eased(8.0, 10.0).ub, 8.0);
   EXPECT_EQ(eased(8.0, 10.0).lb, -1.0);
   EXPECT_EQ(eased(8.0, 7.0).ub, 6.5);     // yields

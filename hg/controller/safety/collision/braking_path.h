@@ -17,7 +17,8 @@ struct Proportion {
   Proportion(const Braking& b, const VectorPM& speed) noexcept : braking(b), dq(speed) {
     double sum = 0.0;
     for (Eigen::Index i = b.separate; i < dq.size(); ++i) {
-      const double fourth = std::pow(std::abs(dq[i]) / b.deceleration[i], 4);
+      const double share = dq[i] / b.deceleration[i];
+      const double fourth = share * share * share * share;
       sum += fourth * fourth;
     }
     duration = std::sqrt(std::sqrt(std::sqrt(sum)));
