@@ -247,6 +247,8 @@ class Benchmark(unittest.TestCase):
         rows = rows_of(found, "impacts")
         self.assertEqual([row[-1] for row in rows], ["rest, energy", "fault 9"])
         self.assertEqual(rows[0][12], "never")
+        first, _ = next(it["points"] for it in found["tables"] if it["id"] == "impacts")
+        self.assertEqual((first["mass"], first["impact_rest"]), (6.0, None))
         self.assertEqual(figures(found)["impact_misses"]["values"], [2.0])
         self.assertIsNone(figures(found)["impact_rest"]["mean"])
         self.assertEqual(figures(found)["impact_rest"]["met"], "no")

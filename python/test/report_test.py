@@ -167,18 +167,20 @@ def results():
                      for k in (1000, 4000, 8000, 16000, 32000, 50000)]),
         "rotation": (["hand", *(f"{0.001 * 3 ** n:.3f}" for n in range(10))],
                      [[hand, *(verdicts * 3)[:10]] for hand in ("relaxed", "normal", "stiff")]),
-        "impacts": (["hand", "kg", "N/m", "m/s", "over allowed", "rebound", "rest s"],
-                    [["normal", kg, "2000", "0.5", "0.9", "0.05", "never"]
-                     for kg in ("0.5", "3", "6", "20")]),
-        "felt_mass": (["N", "x kg", "y kg", "z kg"],
-                      [[str(n), "6 +- 0.1", "6.5", "7"] for n in (10, 20, 40, 60)]),
-        "springs": (["Nm/rad", "let go at mm", "ideal Hz", "Hz", "ideal damping ratio",
-                     "damping ratio"],
-                    [[k, mm, "1.0", "0.9 +- 0.01", "0.1", "-0.05"]
-                     for k in ("50", "500", "2000") for mm in ("2", "20")]),
+        "impacts": (["hand", "kg"], [["normal", kg] for kg in ("0.5", "3", "6", "20")]),
+        "felt_mass": (["N"], [[str(n)] for n in (10, 20, 40, 60)]),
+        "springs": (["Nm/rad", "let go at mm"],
+                    [[k, mm] for k in ("50", "500", "2000") for mm in ("2", "20")]),
         "transparency": (["axis"], []), "force_response": (["axis"], []),
         "vibration_sources": ([""], []),
     }
+    points = {
+        "impacts": [{"mass": kg, "speed": 0.5, "impact_depth": 0.9, "impact_rebound": 0.05,
+                     "impact_rest": None} for kg in (0.5, 3.0, 6.0, 20.0)],
+        "felt_mass": [{"force": n, "x": 6.0, "y": 6.5, "z": 7.0} for n in (10, 20, 40)]
+        + [{"force": 60}],
+        "springs": [{"ideal_Hz": 1.0, "frequency_Hz": 0.9, "ideal_damping": 0.1,
+                     "damping_ratio": -0.05}] * 6}
     transparency = ["ratio", "phase_deg", "following", "following_phase_deg"]
     force = ["rendered", "rendered_phase_deg", "ideal", "ideal_phase_deg"]
     return haptify.Results({
@@ -187,7 +189,8 @@ def results():
         "real_and_simulated": "ours is simulated", "failures": ["one thing"],
         "table": [figure_of("free_space_force", 1.25)],
         "beyond": [figure_of("latency", 3.5, met="-", goal="-")],
-        "tables": [{"id": name, "title": name, "note": "a note", "columns": columns, "rows": rows}
+        "tables": [{"id": name, "title": name, "note": "a note", "columns": columns, "rows": rows,
+                    "points": points.get(name, [])}
                    for name, (columns, rows) in tables.items()],
         "curves": [curve("transparency", axis, transparency) for axis in "xyz"]
         + [curve("force_response", axis, force) for axis in "xyz"]
@@ -205,6 +208,17 @@ class Report(unittest.TestCase):
             self.assertEqual(len(drawn), 11)
             for name, figure in drawn.items():
                 self.assertEqual(overlapping(figure), [], name)
+
+    def test_pictures_show_the_numbers_of_their_tables(self):
+        with matplotlib.rc_context(figures.SETTINGS):
+            drawn = pictures.figures_of(results())
+        lines = {name: drawn[name].axes[0].get_lines()
+                 for name in ("felt_mass", "impacts", "springs")}
+        np.testing.assert_equal(lines["felt_mass"][1].get_xydata(),
+                                [[10, 6.5], [20, 6.5], [40, 6.5], [60, np.nan]])
+        np.testing.assert_allclose(lines["impacts"][1].get_xydata(), [[0.5 * 0.99, 0.9]])
+        self.assertEqual(lines["impacts"][1].get_label(), "3 kg")
+        self.assertEqual(list(lines["springs"][1].get_xdata()), [0.9] * 6)
 
     def test_the_page_is_whole_and_repeats(self):
         page = haptify.html(results())

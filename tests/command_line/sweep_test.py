@@ -357,11 +357,14 @@ class Sweep(TemporaryFolder):
         out, err = process.communicate(timeout=120)
         return subprocess.CompletedProcess(words, process.returncode, out, err)
 
-    def test_a_run_that_was_killed_is_played_again(self):
-        once = f'case "$*" in *0.6*"--seed 2 "*) mkdir {self.folder}/once 2>/dev/null && kill -9 $$;; esac'
+    def test_a_run_that_was_killed_or_interrupted_is_played_again(self):
+        once = (f'case "$*" in *0.6*"--seed 2 "*) mkdir {self.folder}/cut 2>/dev/null && '
+                """{ printf '{"summary": {"a": 0.' >&3; kill -9 $$; };; """
+                f'*0.6*"--seed 1 "*) mkdir {self.folder}/ended 2>/dev/null && '
+                """{ echo '{"summary": {"interrupted": true}}' >&3; exit 0; };; esac""")
         done = self.sweep_with(once, self.file, "--jobs", 2)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertTrue((self.folder / "once").exists())
+        self.assertTrue((self.folder / "cut").exists() and (self.folder / "ended").exists())
         self.sweep(self.file, "--out", self.folder / "whole")
         self.assertEqual(self.table(), self.table(self.folder / "whole"))
 

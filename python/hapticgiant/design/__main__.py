@@ -60,16 +60,19 @@ def search(arguments, out):
         return 2
 
 
-def play(name, words, log):
-    """Runs `hapticgiant WORDS` with its output in a file; whether it went well."""
-    done = subprocess.run([program("hapticgiant"), *words], check=False, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    log.write_text(done.stdout, encoding="utf-8")
-    is_good = done.returncode == 0
-    stopped = done.stdout.count("\nFAILED ")  # runs of haptify
-    what = f"{stopped} runs ended early" if stopped else "failed"
-    print(f"{name:<11} {'passed' if is_good else f'{what}, see {log}'}", flush=True)
-    return is_good
+def play(name, words, log, figures=None):
+    """Runs `hapticgiant WORDS` with its output in a file; whether it went well. figures: the file
+    in which haptify names the runs that ended early."""
+    if figures:
+        figures.unlink(missing_ok=True)
+    with open(log, "wb") as said:
+        code = subprocess.run([program("hapticgiant"), *words], check=False, stdout=said,
+                              stderr=said).returncode
+    is_read = figures and figures.is_file()
+    stopped = json.loads(figures.read_text(encoding="utf-8"))["failures"] if is_read else []
+    what = f"{len(stopped)} runs ended early" if stopped else "failed"
+    print(f"{name:<11} {f'{what}, see {log}' if code else 'passed'}", flush=True)
+    return code == 0
 
 
 def feel(out, with_feel):
@@ -80,7 +83,8 @@ def feel(out, with_feel):
         results["door"] = play("door", ["run", "door", "--device", device, "--fast", "--no-recording",
                                         "--summary", out / DOOR], out / "door.txt")
         results["haptify"] = play("haptify", ["haptify", "--quick", "--device", device, "--out",
-                                              out / FEEL], out / "haptify.txt")
+                                              out / FEEL], out / "haptify.txt",
+                                  out / FEEL / "figures.json")
     return results
 
 
@@ -96,7 +100,7 @@ def main():
     results["feel"] = feel(out, not arguments.no_feel)
     (out / "results.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     report = pathlib.Path(__file__).resolve().parents[1] / "report"
-    document = {"reports": [{"results": results, "folder": str(out.resolve()), "docs": None, "files": {},
+    document = {"version": "", "reports": [{"results": results, "folder": str(out.resolve()), "docs": None, "files": {},
                              "last_line": "", "kept": "", "exit_code": 0}]}
     written = subprocess.run([sys.executable, "-B", report], input=json.dumps(document), text=True,
                              check=False).returncode

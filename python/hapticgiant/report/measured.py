@@ -4,7 +4,7 @@ The program writes results.json (hg/experiments/haptify/benchmark.h): measuremen
 the settings and the results of its runs, in SI units.
 """
 
-from .measures import BEYOND, TABLE_III, figure
+from .measures import BEYOND, TABLE_III, figure, finite
 
 AXES = "xyz"
 REAL_AND_SIMULATED = (
@@ -91,8 +91,10 @@ def groups(runs, *keys):
     return found
 
 
-def table(identifier, title, note, columns, rows):
-    return {"id": identifier, "title": title, "note": note, "columns": columns, "rows": rows}
+def table(identifier, title, note, columns, rows, points=()):
+    """points: numbers by name of each row, for a picture."""
+    return {"id": identifier, "title": title, "note": note, "columns": columns, "rows": rows,
+            "points": [{name: finite(value) for name, value in point.items()} for point in points]}
 
 
 def curve(identifier, name, x, y):

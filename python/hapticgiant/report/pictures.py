@@ -61,12 +61,6 @@ def curves_of(results, name):
     return [curve for curve in results["curves"] if curve["id"] == name]
 
 
-def mean_of(cell):
-    """The number of "6.5 +- 0.1 kg"; NaN where there is none."""
-    match = re.match(r"\s*(-?[\d.]+(?:e[-+]?\d+)?)", cell)
-    return float(match[1]) if match else np.nan
-
-
 def table_of(results, name):
     return next((table for table in results["tables"] if table["id"] == name), None)
 
@@ -74,6 +68,11 @@ def table_of(results, name):
 def column(table, name):
     index = table["columns"].index(name)
     return [row[index] for row in table["rows"]]
+
+
+def numbers_of(table, name):
+    """One per row; NaN where there is none."""
+    return np.array([point.get(name) for point in table["points"]], dtype=float)
 
 
 # single panels: also used on the first page
@@ -174,10 +173,9 @@ def z_width_maps(table):
 
 
 def draw_felt_mass(panel, table):
-    force = [mean_of(cell) for cell in column(table, "N")]
     for axis, colour in zip(AXES, COLOURS):
-        panel.plot(force, [mean_of(cell) for cell in column(table, f"{axis} kg")], "o-",
-                   markersize=3, color=colour, label=f"along {axis}")
+        panel.plot(numbers_of(table, "force"), numbers_of(table, axis), "o-", markersize=3,
+                   color=colour, label=f"along {axis}")
     panel.set(xlabel="steady force in N", ylabel="felt mass in kg", ylim=(0.0, None))
 
 
@@ -277,18 +275,18 @@ def impacts(results):
     table = table_of(results, "impacts")
     if not table or not table["rows"]:
         return None
-    mass, speed = column(table, "kg"), np.array([mean_of(it) for it in column(table, "m/s")])
-    masses = sorted(set(mass), key=float)
-    panels_of = (("over allowed", "depth over allowed", 1.0), ("rebound", "rebound over speed", 0.1),
-                 ("rest s", "at rest after s", 0.5))
+    mass, speed = numbers_of(table, "mass"), numbers_of(table, "speed")
+    panels_of = (("impact_depth", "depth over allowed", 1.0),
+                 ("impact_rebound", "rebound over speed", 0.1),
+                 ("impact_rest", "at rest after s", 0.5))
     figure = new_figure(2.5)
     panels = figure.subplots(1, 3)
     for panel, (name, label, most) in zip(panels, panels_of):
-        values = np.array([mean_of(it) for it in column(table, name)])
-        for number, each in enumerate(masses):
-            chosen = np.array([it == each for it in mass])
+        values = numbers_of(table, name)
+        for number, each in enumerate(np.unique(mass)):
+            chosen = mass == each
             panel.plot(speed[chosen] * (0.97 + 0.02 * number), values[chosen], "o", markersize=2.6,
-                       alpha=0.75, color=COLOURS[number % len(COLOURS)], label=f"{each} kg")
+                       alpha=0.75, color=COLOURS[number % len(COLOURS)], label=f"{each:g} kg")
         panel.axhline(most, color="black", linestyle=":", linewidth=0.9, label="bound")
         panel.set(xlabel="speed in m/s", ylabel=label, ylim=(0.0, None), xlim=(0.0, None))
     legend_of(figure, panels[0])
@@ -316,12 +314,12 @@ def springs(results):
     figure = new_figure(0.9 + 0.24 * len(names))
     frequency, damping = figure.subplots(1, 2, sharey=True)
     for panel, ideal, measured, label in (
-            (frequency, "ideal Hz", "Hz", "frequency in Hz"),
-            (damping, "ideal damping ratio", "damping ratio", "damping ratio")):
-        panel.plot([mean_of(it) for it in column(table, ideal)], places, "o", markersize=5,
-                   fillstyle="none", color="black", label="the hinge alone")
-        panel.plot([mean_of(it) for it in column(table, measured)], places, "o", markersize=3,
-                   color=COLOURS[1], label="handle")
+            (frequency, "ideal_Hz", "frequency_Hz", "frequency in Hz"),
+            (damping, "ideal_damping", "damping_ratio", "damping ratio")):
+        panel.plot(numbers_of(table, ideal), places, "o", markersize=5, fillstyle="none",
+                   color="black", label="the hinge alone")
+        panel.plot(numbers_of(table, measured), places, "o", markersize=3, color=COLOURS[1],
+                   label="handle")
         panel.set(xlabel=label, ylim=(-0.6, len(names) - 0.4))
     damping.axvline(0.0, color="black", linewidth=0.6)
     frequency.set_yticks(places, names)

@@ -88,15 +88,17 @@ def add_felt_mass(it):
     mass = it.settings("felt mass")["mass"]
     it.working("felt mass")
     pushes = groups(it.runs("transparency of hard pushes"), "force")
-    rows = []
+    rows, points = [], []
     for (force,), pulls in groups(it.runs("felt mass"), "force").items():
         has_all = all(map(has_worked, pulls))
-        worst, cells = [], ["failed" if any(map(has_failed, pulls)) else "not possible"] * 4
+        worst, felt = [], []
+        cells = ["failed" if any(map(has_failed, pulls)) else "not possible"] * 4
         if has_all:
             worst = [max(column(axes, "mass")) for axes in groups(pulls, "seed").values()]
             felt = [mean(column(axis, "mass")) for axis in groups(pulls, "axis").values()]
             cells = [f"{value:.2f}" for value in (*felt, mean(worst) / mass)]
         rows.append([f"{force:g}", *cells, transparent_to(pushes[force,])])
+        points.append({"force": force, **dict(zip(AXES, felt))})
         it.extra("felt_mass", worst, f"felt_mass_{force:g}", force=force, mass=mass)
     it.tables.append(table(
         "felt_mass", "Felt mass",
@@ -104,7 +106,7 @@ def add_felt_mass(it):
         "spring of an arm: force over acceleration of the handle, mean of 0.05 to 0.25 s. And up "
         "to which frequency the impedance of pushes so hard to and fro stays within 3 dB of the "
         "body's, along the worst axis.",
-        ["N", "x kg", "y kg", "z kg", "worst over the body's", "transparent to Hz"], rows))
+        ["N", "x kg", "y kg", "z kg", "worst over the body's", "transparent to Hz"], rows, points))
 
 
 def calm_from(runs):
@@ -138,15 +140,16 @@ def add_springs(it):
     runs = [{**run, **run["true_handle"]} for run in it.working("springs")]
     slowest = [min(run["frequency_Hz"] / run["ideal_Hz"] for run in of_seed)
                for of_seed in groups(runs, "seed").values()]
-    rows = []
+    rows, points = [], []
     for (stiffness, deflection), swings in groups(runs, "stiffness", "deflection").items():
-        frequency, ideal = mean(column(swings, "frequency_Hz")), swings[0]
+        point = {key: mean(column(swings, key))
+                 for key in ("ideal_Hz", "frequency_Hz", "ideal_damping", "damping_ratio")}
+        points.append(point)
         first_mm = 1e3 * settings["radius"] * mean(column(swings, "amplitude"))
         rows.append([f"{stiffness:g}", f"{1e3 * deflection:g}", f"{first_mm:.1f}",
-                     f"{ideal['ideal_Hz']:.2f}", f"{frequency:.2f}",
-                     f"{frequency / ideal['ideal_Hz']:.2f}",
-                     f"{ideal['ideal_damping']:.3f}",
-                     f"{mean(column(swings, 'damping_ratio')):.3f}"])
+                     f"{point['ideal_Hz']:.2f}", f"{point['frequency_Hz']:.2f}",
+                     f"{point['frequency_Hz'] / point['ideal_Hz']:.2f}",
+                     f"{point['ideal_damping']:.3f}", f"{point['damping_ratio']:.3f}"])
     has_all = len(runs) == len(it.runs("springs"))
     it.extra("spring_frequency", slowest if has_all else [])
     it.tables.append(table(
@@ -156,4 +159,4 @@ def add_springs(it):
         f"without a hand: the first {settings['swings']} swings of the true handle beside those of "
         "the ideal hinge. A damping ratio below 0 grows.",
         ["Nm/rad", "let go at mm", "first swing mm", "ideal Hz", "Hz", "ratio",
-         "ideal damping ratio", "damping ratio"], rows))
+         "ideal damping ratio", "damping ratio"], rows, points))

@@ -143,7 +143,8 @@ def add_impacts(it):
         "the wall gives back, at most 100 %; and the largest forces of wall and person.",
         ["hand", "kg", "N/m", "m/s", "deepest mm", "a m/s^2", "v^2/(2a) mm", "onset mm",
          "spring mm", "over v^2/(2a)", "over allowed", "rebound", "rest s", "energy back %",
-         "wall N", "person N", "missed"], [impact_row(run) for run in runs]))
+         "wall N", "person N", "missed"], [impact_row(run) for run in runs],
+        [{"mass": run["mass"], "speed": run["speed"], **ratios(run)} for run in runs]))
     has_all = len(runs) == len(it.runs("impacts"))
     for key in ("impact_depth", "impact_rebound", "impact_rest", "impact_energy"):
         values = [ratios(run)[key] for run in runs if key in ratios(run)]

@@ -15,7 +15,7 @@ import numpy as np
 from hapticgiant import samples
 from hapticgiant.study import expressions
 from hapticgiant.study.description import Study
-from hapticgiant.sweep.program import SUMMARY, Outcome, Program
+from hapticgiant.sweep.program import REPORTS, Outcome, Program
 from hapticgiant.sweep.reader import InputError, nearest
 
 RUNNING = 3  # of the column `mode`
@@ -31,8 +31,8 @@ class TrialError(RuntimeError):
 def command(study: Study, program: Program, condition: str, hand: dict[str, str], seed: int,
             folder: pathlib.Path) -> list[str]:
     """`hapticgiant run` with the simulated hand; the recording goes to the folder."""
-    return [*shown_command(study, program, condition, hand, seed), "--recordings", str(folder),
-            "--flight-recorder", "off", *SUMMARY]
+    return [*REPORTS, *shown_command(study, program, condition, hand, seed), "--recordings",
+            str(folder), "--flight-recorder", "off"]
 
 
 def shown_command(study: Study, program: Program, condition: str, hand: dict[str, str], seed: int) -> list[str]:

@@ -15,7 +15,7 @@ import time
 from hapticgiant.sweep import engines
 from hapticgiant.sweep.description import Run, Sweep, load_sweep
 from hapticgiant.sweep.manifest import HEADER, Folder, Manifest, SweepError
-from hapticgiant.sweep.program import (BAD_INPUT, SUMMARY, Outcome, Program, find_program,
+from hapticgiant.sweep.program import (BAD_INPUT, REPORTS, Outcome, Program, find_program,
                                        measures_of)
 from hapticgiant.sweep.progress import Progress
 from hapticgiant.sweep.reader import OPTIONS, InputError, nearest, value_of
@@ -258,7 +258,7 @@ def _files(sweep, program, jobs):
         if "--duration" in arguments:
             at = arguments.index("--duration")
             del arguments[at:at + 2]
-        command = program.run(arguments + TRIAL) + SUMMARY
+        command = REPORTS + program.run(arguments + TRIAL)
         if command not in commands.values():
             commands[len(commands)] = command
     first = dict(engines.Local(1).play({0: commands.pop(0)}))
@@ -361,8 +361,6 @@ def _record(sweep: Sweep, run: Run, program: Program, outcome: Outcome, seconds:
         record["error"] = outcome.why()
         if sweep.command:
             record["results"] = None
-    elif sweep.command and not isinstance(summary.get("results"), dict):
-        record |= {"error": f"{sweep.command[0]}: has no parts that print results", "results": None}
     elif sweep.command:
         results = summary["results"]
         record |= {"state_hash": _digest(json.dumps(results, sort_keys=True)), "results": results}

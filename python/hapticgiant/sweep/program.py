@@ -14,7 +14,8 @@ import sys
 from hapticgiant.sweep.description import Run, Sweep
 
 QUIET = ["--fast", "--no-viewer", "--no-recording", "--flight-recorder", "off"]
-SUMMARY = ["--summary", "/dev/stdout"]
+# before a command of `run`: prints its reports (docs/reference/run_protocol.md) and nothing else
+REPORTS = ["/bin/sh", "-c", 'exec "$@" --report-to 3 3>&1 >/dev/null', "sh"]
 # of a summary: what depends on the computer, what a run is told, and what has a column of its own
 LEFT_OUT = {"version", "scenario", "law", "bounds", "gantry", "braking", "plant", "sensors",
             "rate_Hz", "fast", "wall_time_s", "cycle_time_us", "latency", "overruns",
@@ -45,24 +46,23 @@ class Program:
 
     def measured(self, sweep: Sweep, run: Run) -> list[str]:
         """The same, so that it prints what Outcome.summary() reads."""
-        return self.command(sweep, run) + ([] if sweep.command else SUMMARY)
+        return ([] if sweep.command else REPORTS) + self.command(sweep, run)
 
 
 @dataclasses.dataclass(frozen=True)
 class Outcome:
-    """How a process has ended: exit code, or minus the signal; what it has printed."""
+    """How a process has ended: exit code, or minus the signal; what it has printed: the reports of
+    a run, or the results of a part."""
 
     code: int
     out: str
     err: str
 
     def summary(self) -> dict | None:
-        """What the run has measured; None for one that has not been played to its end."""
-        begin = self.out.rfind("\n{\n")
-        try:
-            summary = json.loads(self.out[begin + 1:]) if begin >= 0 else None
-        except ValueError:
-            return None
+        """What the run has measured, by its last report, or the results of a part; None for one
+        that has not been played to its end."""
+        said = _object_in(self.out) or _object_in(self.out.rstrip("\n").rpartition("\n")[2])
+        summary = said if "results" in said else said.get("summary")
         return None if summary is None or summary.get("interrupted") else summary
 
     def was_ended(self) -> bool:
@@ -75,6 +75,15 @@ class Outcome:
         if said:
             return said
         return f"ended by signal {-self.code}" if self.code < 0 else f"exit code {self.code}"
+
+
+def _object_in(text):
+    """The JSON object of a text; empty where there is none, or a kill has cut it."""
+    try:
+        found = json.loads(text)
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
 
 
 def find_program() -> Program:
