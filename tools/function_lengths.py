@@ -1,7 +1,7 @@
 """Lengths of functions in lines, from the first word of the head to the last brace.
 
-C++ is scanned by its braces, TypeScript by its indents, Python is parsed. A function of C++ counts
-with its lambdas; in TypeScript and Python, a function inside another counts for itself, too.
+C++ and Rust are scanned by their braces, TypeScript by its indents, Python is parsed. A function of C++
+counts with its lambdas; in the others, a function inside another counts for itself, too.
 """
 
 import ast
@@ -15,7 +15,15 @@ CPP_BLANKS = re.compile(r"""
   | (?<![\w'])'(?:[^'\\\n]|\\.)+'
   | ^[ \t]*\#(?:[^\n\\/]|\\\n|\\.|/(?![/*]))*
 """, re.VERBOSE | re.DOTALL | re.MULTILINE)
+RUST_BLANKS = re.compile(r"""
+    //[^\n]* | /\*.*?\*/
+  | b?r(\#*)".*?"\1
+  | b?"(?:[^"\\]|\\.)*"
+  | b?'(?:[^'\\\n]|\\u\{[^}\n]*\}|\\x..|\\.)'
+""", re.VERBOSE | re.DOTALL)
 TOKEN = re.compile(r"[{}();]")
+RUST_TOKEN = re.compile(r"[{}()\[\];]")
+RUST_HEAD = re.compile(r"^[ \t]*(?:(?:pub(?:\([^)]*\))?|const|async|unsafe|extern)\s+)*fn\s+(\w+)", re.MULTILINE)
 BEFORE_HEAD = re.compile(r"\s*(?:(?:public|private|protected)\s*:\s*)?")
 NO_NAMES = re.compile(r"^\s*(?:public|private|protected)\s*:|\btemplate\s*<(?:[^<>]|<[^<>]*>)*>|\[\[.*?\]\]")
 CPP_NAME = re.compile(r"((?:~?\w+(?:<[^()]*?>)?::)*(?:operator\s*(?:\(\)|[^\s\w(]+|[\w: ]+)|~?\w+))\s*\(")
@@ -29,11 +37,6 @@ KEYWORDS = {"if", "for", "while", "switch", "catch", "return", "decltype", "noex
 def _blanks(match):
     text = match[0]
     return re.sub(r"[^\n]", " ", text) if "\n" in text else " " * len(text)
-
-
-def _blanked(text):
-    """The text with spaces in place of comments, literals and directives."""
-    return CPP_BLANKS.sub(_blanks, text)
 
 
 def _line_finder(text):
@@ -59,7 +62,7 @@ def _cpp_name(head):
 
 def cpp_functions(text):
     """(name, first line, lines) of each function of a C++ file."""
-    text = _blanked(text)
+    text = CPP_BLANKS.sub(_blanks, text)  # without comments, literals and directives
     line_of = _line_finder(text)
     found = []
     start = at = 0  # of the head; of the search
@@ -84,6 +87,23 @@ def cpp_functions(text):
                 first = line_of(BEFORE_HEAD.match(text, start).end())
                 found.append((name, first, line_of(at - 1) - first + 1))
         start, head = at, ""
+    return found
+
+
+def rust_functions(text):
+    """(name, first line, lines) of each function of a Rust file that has a body."""
+    text = RUST_BLANKS.sub(_blanks, text)
+    line_of = _line_finder(text)
+    found = []
+    for head in RUST_HEAD.finditer(text):
+        depth = 0
+        for token in RUST_TOKEN.finditer(text, head.end()):
+            if depth == 0 and token[0] in "{;":  # not that of an array
+                if token[0] == "{":
+                    first, end = line_of(head.start()), line_of(_behind(text, token.start()) - 1)
+                    found.append((head[1], first, end - first + 1))
+                break
+            depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(token[0], 0)
     return found
 
 

@@ -2,7 +2,7 @@
 
     house_rules.py [--update]
 
-A function has at most 60 lines, a header 150. No file is empty. Numbers of C++ come from
+A function has at most 60 lines, a header 150, CHANGELOG.md 250. No file is empty. Numbers of C++ come from
 hg/core/random.h, not from <random>, whose distributions differ between standard libraries. Household
 words (WORDS) stand in no comment, message, name or page. cmake/public_headers.txt names at most 80
 headers, which include no others.
@@ -25,6 +25,8 @@ EXCEPTIONS = "tools/house_exceptions.txt"
 PUBLIC_HEADERS = "cmake/public_headers.txt"
 LONGEST_FUNCTION = 60  # lines
 LONGEST_HEADER = 150
+CHANGELOG = "CHANGELOG.md"
+LONGEST_CHANGELOG = 250
 MOST_PUBLIC_HEADERS = 80
 WORDS = ("told", "tell", "tells", "telling", "nobody", "somebody", "someone", "anybody", "everybody",
          "anew", "trouble", "troubles", "goes on", "by itself")
@@ -33,7 +35,7 @@ SKIPPED = ("tests/fuzz/", "viewer/package-lock.json", "LICENSE", "THIRD_PARTY.md
 
 FUNCTIONS = {".h": function_lengths.cpp_functions, ".cpp": function_lengths.cpp_functions,
              ".py": function_lengths.python_functions, ".ts": function_lengths.typescript_functions,
-             ".mjs": function_lengths.typescript_functions}
+             ".mjs": function_lengths.typescript_functions, ".rs": function_lengths.rust_functions}
 RANDOM_HEADER = "hg/core/random.h"
 MAY_BE_EMPTY = ("__init__.py", "py.typed", ".skip")
 RANDOM = re.compile(r"\bstd::(?:mt19937(?:_64)?|default_random_engine|\w+_distribution|shuffle)\b")
@@ -90,6 +92,13 @@ def long_header(name, text):
             f"{name}: has {lines} lines, expected at most {LONGEST_HEADER} in a header"])
 
 
+def long_changelog(name, text):
+    lines = text.count("\n")
+    if name == CHANGELOG and lines > LONGEST_CHANGELOG:
+        yield Finding("changelog", name, lines, [
+            f"{name}: has {lines} lines, expected at most {LONGEST_CHANGELOG}: shorten old releases"])
+
+
 def empty_file(name, text):
     if not text.strip() and not name.endswith(MAY_BE_EMPTY):
         yield Finding("empty", name, 1, [f"{name}: is empty, expected some content or no file"])
@@ -114,7 +123,7 @@ def household_words(name, text):
         yield Finding("words", name, len(lines), lines)
 
 
-FILE_RULES = (long_functions, long_header, empty_file, random_numbers, household_words)
+FILE_RULES = (long_functions, long_header, long_changelog, empty_file, random_numbers, household_words)
 
 
 def listed_headers(text):

@@ -19,6 +19,7 @@ def sizes(rule, name, text):
 class FunctionLength(unittest.TestCase):
     def test_a_function_may_have_60_lines(self):
         for name, head, tail in (("a.cpp", "int f() {\n", "\n}\n"),
+                                 ("a.rs", "pub(crate) fn f<'a>(text: &'a str) -> [u8; 4] {\n", "\n}\n"),
                                  ("a.ts", "export function f(a: string): number {\n", "\n}\n")):
             self.assertEqual(sizes(house_rules.long_functions, name, head + LONG + tail), {f"{name}:f": 61})
             self.assertEqual(sizes(house_rules.long_functions, name, head + LONG[7:] + tail), {})
@@ -82,6 +83,33 @@ const e = (x: number) => {
                          [("constructor", 2, 7), ("c", 11, 5), ("e", 17, 3)])
         self.assertNotIn("if", [name for name, _, _ in found])
 
+    def test_functions_of_rust_are_found_by_their_braces(self):
+        text = """
+trait Part {
+    fn without_body(&self) -> [u8; 2];
+}
+impl<'a> Part for A<'a> {
+    #[inline]
+    pub async unsafe fn f<const N: usize>(
+        &'a self, of: [u8; 3],
+    ) -> Option<[u8; 2]>
+    where
+        Self: Sized,
+    {
+        let t = ("}{", r#"}"}"#, b'}', '\\'', '\\u{7d}'); // }}
+        /* fn no() { */
+        fn inner() {}
+        of.map(|x| { x });
+    }
+}
+extern "C" {
+    fn lseek(file: i32) -> i64;
+}
+pub extern "C" fn g() {
+}
+"""
+        self.assertEqual(function_lengths.rust_functions(text), [("f", 7, 11), ("inner", 15, 1), ("g", 22, 2)])
+
     def test_functions_inside_others_count_for_themselves_in_python(self):
         text = "class A:\n    def f(self):\n        if x:\n            def g():\n                pass\n"
         self.assertEqual(sorted(function_lengths.python_functions(text)), [("f", 2, 4), ("g", 4, 2)])
@@ -92,6 +120,11 @@ class Files(unittest.TestCase):
         self.assertEqual(sizes(house_rules.long_header, "a.h", "\n" * 151), {"a.h": 151})
         self.assertEqual(sizes(house_rules.long_header, "a.h", "\n" * 150), {})
         self.assertEqual(sizes(house_rules.long_header, "a.cpp", "\n" * 151), {})
+
+    def test_the_changelog_may_have_250_lines(self):
+        self.assertEqual(sizes(house_rules.long_changelog, "CHANGELOG.md", "\n" * 251), {"CHANGELOG.md": 251})
+        self.assertEqual(sizes(house_rules.long_changelog, "CHANGELOG.md", "\n" * 250), {})
+        self.assertEqual(sizes(house_rules.long_changelog, "docs/a.md", "\n" * 251), {})
 
     def test_a_file_is_not_empty(self):
         self.assertEqual(sizes(house_rules.empty_file, "a.h", "\n"), {"a.h": 1})

@@ -345,6 +345,62 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
         }
         Ok(())
     }
+    /// Hands out the record at `at`, or names what is damaged there. The place of the next record;
+    /// None: no more follow.
+    fn take_record(&mut self, records: &mut Records, at: u64) -> io::Result<Option<u64>> {
+        let Some(end) = records.end(at)? else { return self.pass_damage(records, at) };
+        let record = records.read(at, (end - at) as usize)?;
+        let (opcode, body) = (record[0], &record[HEAD_BYTES as usize..]);
+        let parsed = sound(opcode, body);
+        let has_next = records.is_chain(end, 1)?;
+        // the others have no CRC: where no record follows, the length may be wrong
+        let next = if has_next { Some(end) } else { records.find(at + 1)? };
+        let is_whole = match parsed {
+            Some(Record::Chunk { .. }) => self.hand_out_chunk(&record),
+            Some(record)
+                if matches!(record, Record::Attachment { .. }) || next.is_none() || has_next =>
+            {
+                self.hand_out(record);
+                true
+            }
+            _ => false,
+        };
+        if is_whole {
+            return Ok(Some(end));
+        }
+        self.report_damage(opcode, body, at, next.unwrap_or(records.size))?;
+        Ok(next)
+    }
+
+    /// The same where there is no head of a record.
+    fn pass_damage(&mut self, records: &mut Records, at: u64) -> io::Result<Option<u64>> {
+        if records.is_end_of_file(at)? {
+            return Ok(None);
+        }
+        let next = records.find(at + 1)?;
+        if next.is_some() || !records.is_cut_off(at)? {
+            self.report_damage(0, &[], at, next.unwrap_or(records.size))?;
+        }
+        Ok(next)
+    }
+
+    /// The place of the first record, behind the magic bytes.
+    fn first_record(&mut self, records: &mut Records) -> Result<u64, Failure> {
+        let at = MAGIC.len() as u64;
+        let magic = if records.size >= at { records.read(0, MAGIC.len())? } else { Vec::new() };
+        if magic == MAGIC {
+            return Ok(at);
+        }
+        // zeros: it was cut off to nothing while it was written
+        let is_hole = !magic.is_empty() && magic.iter().all(|byte| *byte == 0);
+        let begins = if is_hole { records.find(at)? } else { Some(at) };
+        let Some(begin) = begins else { return Err(McapError::BadMagic.into()) };
+        if !(records.size > begin && records.is_chain(begin, CHAIN)?) {
+            return Err(McapError::BadMagic.into());
+        }
+        self.report_damage(0, &[], 0, begin)?;
+        Ok(begin)
+    }
 }
 
 /// Hands out everything in a file that is as it was written. A file that is cut off ends there.
@@ -360,54 +416,8 @@ pub fn read(path: &Path, take: impl FnMut(Item)) -> Result<(), Failure> {
         has_ended: false,
         has_read_index: false,
     };
-    let mut at = MAGIC.len() as u64;
-    let magic = if records.size >= at { records.read(0, MAGIC.len())? } else { Vec::new() };
-    if magic != MAGIC {
-        // zeros: it was cut off to nothing while it was written
-        let is_hole = !magic.is_empty() && magic.iter().all(|byte| *byte == 0);
-        let begins = if is_hole { records.find(at)? } else { Some(at) };
-        let Some(begin) = begins else { return Err(McapError::BadMagic.into()) };
-        if !(records.size > begin && records.is_chain(begin, CHAIN)?) {
-            return Err(McapError::BadMagic.into());
-        }
-        reader.report_damage(0, &[], 0, begin)?;
-        at = begin;
-    }
-    loop {
-        let Some(end) = records.end(at)? else {
-            if records.is_end_of_file(at)? {
-                break;
-            }
-            let next = records.find(at + 1)?;
-            if next.is_some() || !records.is_cut_off(at)? {
-                reader.report_damage(0, &[], at, next.unwrap_or(records.size))?;
-            }
-            let Some(next) = next else { break };
-            at = next;
-            continue;
-        };
-        let record = records.read(at, (end - at) as usize)?;
-        let (opcode, body) = (record[0], &record[HEAD_BYTES as usize..]);
-        let parsed = sound(opcode, body);
-        let has_next = records.is_chain(end, 1)?;
-        // the others have no CRC: where no record follows, the length may be wrong
-        let next = if has_next { Some(end) } else { records.find(at + 1)? };
-        let is_whole = match parsed {
-            Some(Record::Chunk { .. }) => reader.hand_out_chunk(&record),
-            Some(record)
-                if matches!(record, Record::Attachment { .. }) || next.is_none() || has_next =>
-            {
-                reader.hand_out(record);
-                true
-            }
-            _ => false,
-        };
-        if is_whole {
-            at = end;
-            continue;
-        }
-        reader.report_damage(opcode, body, at, next.unwrap_or(records.size))?;
-        let Some(next) = next else { break };
+    let mut at = reader.first_record(&mut records)?;
+    while let Some(next) = reader.take_record(&mut records, at)? {
         at = next;
     }
     if reader.has_ended || records.size > at && records.is_end_of_file(at)? {
