@@ -3,9 +3,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <sstream>
 
-#include "hg/core/error.h"
 #include "hg/core/open_file.h"
 
 namespace hg::udp {
@@ -41,22 +39,6 @@ void Capture::add(std::int64_t time_ns, std::span<const std::byte> datagram) {
                                static_cast<std::uint32_t>(time_ns % 1'000'000'000), size, size};
   write(header.data(), sizeof header);
   write(datagram.data(), size);
-}
-
-std::vector<std::vector<std::byte>> read_capture(const std::string& file) {
-  std::istringstream in(read_file(file));
-  std::array<std::uint32_t, 6> found{};
-  in.read(reinterpret_cast<char*>(found.data()), sizeof found);
-  if (!in || found != kFileHeader) throw SetupError(file + ": is no capture of this program");
-  std::vector<std::vector<std::byte>> datagrams;
-  PacketHeader header{};
-  while (in.read(reinterpret_cast<char*>(header.data()), sizeof header)) {
-    if (header[2] > kLargest) throw SetupError(file + ": a packet is too long");
-    std::vector<std::byte>& datagram = datagrams.emplace_back(header[2]);
-    in.read(reinterpret_cast<char*>(datagram.data()), header[2]);
-    if (!in) throw SetupError(file + ": ends inside a packet");
-  }
-  return datagrams;
 }
 
 }  // namespace hg::udp

@@ -8,7 +8,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace hg::udp {
 
@@ -29,8 +28,5 @@ class Capture {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
   int error_ = 0;  ///< error of the first failed write; 0 = none
 };
-
-/// Reads the datagrams of a capture file. Throws SetupError.
-std::vector<std::vector<std::byte>> read_capture(const std::string& file);
 
 }  // namespace hg::udp

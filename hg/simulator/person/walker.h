@@ -56,11 +56,6 @@ struct Score {
   double path_length = 0.0;      ///< path of the handle, in the plane, until the last checkpoint, m
   double straight_length = 0.0;  ///< length of the same path along straight lines, m
   double mean_force = 0.0;       ///< mean norm of the person's force along the way, N
-
-  /// Path length over straight length: 1 = straight; 0 before the first checkpoint.
-  double path_ratio() const noexcept {
-    return straight_length > 0.0 ? path_length / straight_length : 0.0;
-  }
 };
 
 class Walker {

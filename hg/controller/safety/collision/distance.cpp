@@ -133,9 +133,4 @@ double nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& q,
   return 1.0;
 }
 
-double segment_to_box(const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                      const Eigen::Vector3d& half) noexcept {
-  return outside(p + nearest_on_segment(p, q, half) * (q - p), half).norm();
-}
-
 }  // namespace hg::collision

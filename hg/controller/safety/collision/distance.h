@@ -48,8 +48,4 @@ class Distance {
 double nearest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& q,
                           const Eigen::Vector3d& half) noexcept;
 
-/// Distance from the segment between `p` and `q` to the box |x_i| <= half_i around the origin, m.
-double segment_to_box(const Eigen::Vector3d& p, const Eigen::Vector3d& q,
-                      const Eigen::Vector3d& half) noexcept;
-
 }  // namespace hg::collision

@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
+#include <array>
+#include <cstdint>
 #include <map>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "hg/core/error.h"
+#include "hg/core/open_file.h"
 #include "hg/device/udp/agreement.h"
 #include "hg/device/udp/capture.h"
 #include "hg/device/udp/codec.h"
@@ -15,6 +20,23 @@ namespace hg::udp {
 namespace {
 
 const char* const kSession = "tests/remote/session.pcap";
+
+// the datagrams of a capture
+std::vector<std::vector<std::byte>> read_capture(const std::string& file) {
+  constexpr std::array<std::uint32_t, 6> kHeader = {0xa1b23c4d, 2 | 4U << 16U, 0, 0, 65535, 147};
+  std::istringstream in(read_file(file));
+  std::array<std::uint32_t, 6> found{};
+  in.read(reinterpret_cast<char*>(found.data()), sizeof found);
+  EXPECT_EQ(found, kHeader);
+  std::vector<std::vector<std::byte>> datagrams;
+  std::array<std::uint32_t, 4> packet{};  // s, ns, captured bytes, bytes
+  while (in.read(reinterpret_cast<char*>(packet.data()), sizeof packet)) {
+    std::vector<std::byte>& datagram = datagrams.emplace_back(packet[2]);
+    in.read(reinterpret_cast<char*>(datagram.data()), packet[2]);
+    EXPECT_TRUE(in) << file << ": ends inside a packet";
+  }
+  return datagrams;
+}
 
 // the fields of `bytes`, and that they give the same bytes again
 template <typename Message>
@@ -65,7 +87,7 @@ TEST(Replay, ACapturedSessionIsUnderstood) {
   EXPECT_GE(counts[MessageType::kGoodbye], 1);
 }
 
-TEST(Capture, WhatIsWrittenIsReadAndOtherFilesAreRefused) {
+TEST(Capture, WhatIsWrittenIsRead) {
   const std::string file = testing::TempDir() + "capture_test.pcap";
   std::array<std::byte, 3> bytes = {std::byte{1}, std::byte{2}, std::byte{3}};
   {
@@ -77,8 +99,6 @@ TEST(Capture, WhatIsWrittenIsReadAndOtherFilesAreRefused) {
   ASSERT_EQ(datagrams.size(), 2U);
   EXPECT_TRUE(std::ranges::equal(datagrams[0], bytes));
   EXPECT_EQ(datagrams[1].size(), 1U);
-  EXPECT_THROW(read_capture("docs/reference/device_protocol.md"), SetupError);
-  EXPECT_THROW(read_capture("no_such_file"), SetupError);
   EXPECT_THROW(Capture("no_such_folder/file"), SetupError);
 }
 

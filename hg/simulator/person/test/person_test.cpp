@@ -261,8 +261,6 @@ TEST(Person, WalksFromCheckpointToCheckpointAndKeepsTheScore) {
   EXPECT_GT(score.time_s[0], 1.0 / 0.5 - 0.5);
   EXPECT_NEAR(score.straight_length, 1.6, 1e-9);
   EXPECT_NEAR(score.path_length, path_at_second, 5e-3);
-  EXPECT_NEAR(score.path_ratio(), score.path_length / 1.6, 1e-12);
-  EXPECT_EQ(Score{}.path_ratio(), 0.0);
 }
 
 TEST(Person, WalkingItTurnsTheHandleAndKeepsItsHeight) {
