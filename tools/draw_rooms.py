@@ -3,8 +3,9 @@
     draw_rooms.py FILE.svg [--check]
 
 Rows, rooms and arrows come from the hg_module(...) calls of CMakeLists.txt and the comment above each
-group of them. An arrow goes from a room to one that it uses; arrows that follow from others are left
-out. --check exits with 1 where FILE.svg is not what would be written.
+group of them, arrows of the programs from what their files include. An arrow goes from a room to one
+that it uses; arrows that follow from others are left out. --check exits with 1 where FILE.svg is not
+what would be written.
 """
 
 import argparse
@@ -18,9 +19,23 @@ import check_modules
 
 WIDTH, LEFT, MARGIN, ROW, BOX = 1040, 210, 24, 92, 34
 LETTER = 7.6  # width of a letter, more or less
-PROGRAMS = {"bench": ["experiments"], "python": ["scenario", "scenario/run"],
-            "apps/hapticgiant": ["scenario/run", "check", "new", "commission"],
-            "apps/offline": ["bench", "apps/hapticgiant", "tune", "design", "identify"]}
+PROGRAMS = (("Measurements, the Python package, options", ("bench", "python", "apps/command_line")),
+            ("Programs", ("apps/ros2", "apps/hapticgiant", "apps/offline", "apps/design")))
+
+
+def uses_of_programs(modules):
+    """Program -> rooms and programs that its files include."""
+    names = [name for _, row in PROGRAMS for name in row]
+    uses = {name: set() for name in names}
+    for name in names:
+        for path in (check_modules.ROOT / name).rglob("*"):
+            if path.suffix not in (".h", ".cpp") or "test" in path.parts:
+                continue
+            for target in re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE):
+                parts = pathlib.PurePath(target).parts
+                uses[name].add(check_modules.module_of(modules, parts[1:]) if parts[0] == "hg" else
+                               next((other for other in names if target.startswith(other + "/")), None))
+    return {name: sorted(found - {name, None}) for name, found in uses.items()}
 
 
 def read_rows():
@@ -53,8 +68,8 @@ def direct(uses, name):
 
 def draw():
     modules = check_modules.read_modules()
-    uses = {name: sorted(found) for name, (found, _) in modules.items()} | PROGRAMS
-    rows = read_rows() + [("Programs", list(PROGRAMS))]
+    uses = {name: sorted(found) for name, (found, _) in modules.items()} | uses_of_programs(modules)
+    rows = read_rows() + list(PROGRAMS)
     place, names, shapes = {}, {}, []
     for index, (title, rooms) in enumerate(rows):
         top = MARGIN + index * ROW
@@ -86,20 +101,21 @@ def draw():
                 path = (f"M{start:.0f} {y} C{start:.0f} {y - bend:.0f} {end:.0f} {low + bend:.0f} "
                         f"{end:.0f} {low + 3}")
             arrows.append(f'<path d="{path}" class="uses" marker-end="url(#head)"/>')
+    boxes = []  # above the arrows
     for name, (x, y, width) in place.items():
-        shapes.append(f'<rect x="{x:.0f}" y="{y}" width="{width:.0f}" height="{BOX}" rx="5" class="room"/>')
-        arrows.append(f'<text x="{x + width / 2:.0f}" y="{y + 22}" class="name">{names[name]}</text>')
+        boxes.append(f'<rect x="{x:.0f}" y="{y}" width="{width:.0f}" height="{BOX}" rx="5" class="room"/>')
+        boxes.append(f'<text x="{x + width / 2:.0f}" y="{y + 22}" class="name">{names[name]}</text>')
     height = 2 * MARGIN + ROW * len(rows) - 20
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}">',
         "<style>text{font-family:sans-serif;fill:#223}.title{font-size:13px;fill:#667}"
-        ".name{font-size:14px;text-anchor:middle;paint-order:stroke;stroke:#fff;stroke-width:3px}"
+        ".name{font-size:14px;text-anchor:middle}"
         ".room{fill:#fff;stroke:#456;stroke-width:1.2}"
         ".uses{fill:none;stroke:#369;stroke-opacity:.55;stroke-width:1.3}</style>",
         '<marker id="head" viewBox="0 0 8 8" refX="6" refY="4" markerWidth="6" markerHeight="6" '
         'orient="auto"><path d="M0 0L8 4L0 8z" fill="#369"/></marker>',
         f'<rect width="{WIDTH}" height="{height}" fill="#fff"/>',
-        *shapes, *arrows, "</svg>", ""])
+        *shapes, *arrows, *boxes, "</svg>", ""])
 
 
 def main():
@@ -111,7 +127,7 @@ def main():
     if not arguments.check:
         arguments.file.write_text(drawing)
     elif not arguments.file.exists() or arguments.file.read_text() != drawing:
-        print(f"{arguments.file}: not the rooms of CMakeLists.txt; make docs draws it again")
+        print(f"{arguments.file}: not the rooms of CMakeLists.txt and what programs include; make docs draws it")
         return 1
     return 0
 

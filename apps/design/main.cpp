@@ -4,20 +4,22 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/command_line/command.h"
+#include "apps/command_line/option_checks.h"
+#include "apps/command_line/output.h"
 #include "apps/design/optimiser.h"
 #include "apps/design/results.h"
 #include "hg/core/error.h"
-#include "hg/core/visible.h"
 #include "hg/design/design_problem.h"
 
 namespace {
@@ -241,25 +243,28 @@ void run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app("Searches for a device that serves a person's arm (docs/start/design.md).");
-  app.add_option("problem", arguments.problem, "design problem, a YAML file")->required();
-  app.add_option("-o,--out", arguments.out, "folder of the design")->required();
-  app.add_option("--seed", arguments.seed, "in place of the file's")
-      ->check(CLI::Range(0, 1000000000));
-  app.add_option("--workers", arguments.workers, "threads; the result does not depend on them")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  app.add_flag("--quick", arguments.is_quick, "small populations and few poses: a look");
-  CLI11_PARSE(app, argc, argv);
+  apps::Program program("Searches for a device that serves a person's arm (docs/start/design.md).",
+                        "hapticgiant-design");
+  const apps::Command command = program.command();
+  command.add_option("problem", arguments.problem, "design problem, a YAML file").required();
+  command.add_option("-o,--out", arguments.out, "folder of the design").required();
+  command.add_option("--seed", arguments.seed, "0 to 1000000000, in place of the file's")
+      .check(apps::whole_number(0, 1000000000));
+  command
+      .add_option("--workers", arguments.workers,
+                  "threads, 1 to 256; the result does not depend on them")
+      .check(apps::whole_number(1, 256))
+      .capture_default_str();
+  command.add_flag("--quick", arguments.is_quick, "small populations and few poses: a look");
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
   try {
     run(arguments);
     return 0;
   } catch (const SetupError& error) {
-    std::fputs((hg::visible(error.what()) + "\n").c_str(), stderr);
+    apps::print_error("{}\n", error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    std::fputs((hg::visible(std::string("internal error: ") + error.what()) + "\n").c_str(),
-               stderr);
+    apps::print_error("internal error: {}\n", error.what());
     return kInternalError;
   }
 }

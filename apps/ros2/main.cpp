@@ -3,21 +3,26 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <string>
 
+#include "apps/command_line/command.h"
+#include "apps/command_line/option_checks.h"
+#include "apps/command_line/output.h"
 #include "apps/ros2/bridge.h"
 #include "apps/ros2/robot_device.h"
 #include "hg/core/error.h"
-#include "hg/core/visible.h"
 
 namespace {
+
+using hg::apps::Command;
+using hg::apps::number_within;
+using hg::apps::Option;
 
 constexpr int kInternalError = 1, kBadInput = 2;
 constexpr int kLastDomain = 232;
@@ -32,90 +37,71 @@ bool is_local_by_environment() {
          (range != nullptr && std::string(range) == "LOCALHOST");
 }
 
-// CLI::Range lets NaN pass
-CLI::Validator number_within(double least, double most) {
-  return {[least, most](std::string& text) {
-            double number = 0.0;
-            const bool is_number = CLI::detail::lexical_cast(text, number);
-            if (is_number && number >= least && number <= most) return std::string();
-            return fmt::format("expected a number from {:g} to {:g}, got {}", least, most, text);
-          },
-          fmt::format("NUMBER in [{:g} - {:g}]", least, most)};
-}
-
 // makes /NAME of a name of ROS 2
-CLI::Validator ros_name(const char* example) {
-  return {[example](std::string& text) {
-            const std::string bare = text.starts_with('/') ? text.substr(1) : text;
-            if (!hg::ros2::is_name(bare)) {
-              return fmt::format("'{}' is no name of ROS 2 (letters, digits, _ and /): {}", text,
-                                 example);
-            }
-            text = "/" + bare;
-            return std::string();
-          },
-          ""};
+Option accept_name(Option option, const std::string& example) {
+  return option
+      .transform([](const std::string& text) { return text.starts_with('/') ? text : "/" + text; })
+      .check([example](const std::string& text) -> std::string {
+        if (hg::ros2::is_name(text.substr(1))) return "";
+        return fmt::format("'{}' is no name of ROS 2 (letters, digits, _ and /): {}", text,
+                           example);
+      });
 }
 
 // options of a robot as a device
-CLI::App* add_device(CLI::App& app, hg::ros2::RobotOptions& robot) {
-  CLI::App* device = app.add_subcommand(
+void add_device(Command command, hg::ros2::RobotOptions& robot) {
+  const Command device = command.add_subcommand(
       "device", "A robot of ROS 2 as a device for hapticgiant run --device-address.");
-  device->add_option("--joints", robot.joints, "names of the joints, in the order of the device")
-      ->delimiter(',')
-      ->required();
-  const CLI::Validator is_topic = ros_name("for example /joint_states");
-  device->add_option("--name", robot.name, "name of the device, as in its device.yaml")
-      ->capture_default_str();
-  device->add_option("--rate-hz", robot.rate_Hz, "rate of the loop, Hz")
-      ->check(number_within(1.0, 10000.0))
-      ->capture_default_str();
-  device->add_option("--listen", robot.listen, "HOST:PORT for the controller")
-      ->capture_default_str();
-  device->add_option("--key-file", robot.key_file, "secret that controllers must have, too");
-  device->add_flag("--effort", robot.has_torques, "command efforts instead of velocities");
-  device->add_option("--states", robot.states, "topic of the robot's sensor_msgs/JointState")
-      ->transform(is_topic)
-      ->capture_default_str();
+  const auto add_topic = [device](const std::string& name, std::string& topic,
+                                  const std::string& help) {
+    return accept_name(device.add_option(name, topic, help), "for example /joint_states");
+  };
+  device.add_option("--joints", robot.joints, "names of the joints, in the order of the device")
+      .delimiter(',')
+      .required();
+  device.add_option("--name", robot.name, "name of the device, as in its device.yaml")
+      .capture_default_str();
+  device.add_option("--rate-hz", robot.rate_Hz, "rate of the loop, Hz, 1 to 10000")
+      .check(number_within(1.0, 10000.0))
+      .capture_default_str();
+  device.add_option("--listen", robot.listen, "HOST:PORT for the controller").capture_default_str();
+  device.add_option("--key-file", robot.key_file, "secret that controllers must have, too");
+  device.add_flag("--effort", robot.has_torques, "command efforts instead of velocities");
+  add_topic("--states", robot.states, "topic of the robot's sensor_msgs/JointState")
+      .capture_default_str();
+  add_topic("--wrench", robot.wrench,
+            "topic of the force/torque sensor, geometry_msgs/WrenchStamped: what the user does to "
+            "the handle");
+  add_topic("--commands", robot.commands, "topic of a std_msgs/Float64MultiArray")
+      .capture_default_str();
+  const Option dead_man =
+      add_topic("--dead-man", robot.dead_man,
+                "topic of the switch of the handle, std_msgs/Bool, 10 Hz or more");
+  device.add_flag("--without-dead-man", robot.has_no_dead_man, "the handle has no such switch")
+      .excludes(dead_man);
+  device.add_option("--gain", robot.gain, "1/s, of the position error, for velocities; 0 to 1000")
+      .check(number_within(0.0, 1000.0))
+      .capture_default_str();
   device
-      ->add_option("--wrench", robot.wrench,
-                   "topic of the force/torque sensor, geometry_msgs/WrenchStamped: what the user "
-                   "does to the handle")
-      ->transform(is_topic);
-  device->add_option("--commands", robot.commands, "topic of a std_msgs/Float64MultiArray")
-      ->transform(is_topic)
-      ->capture_default_str();
-  CLI::Option* dead_man =
-      device
-          ->add_option("--dead-man", robot.dead_man,
-                       "topic of the switch of the handle, std_msgs/Bool, 10 Hz or more")
-          ->transform(is_topic);
-  device->add_flag("--without-dead-man", robot.has_no_dead_man, "the handle has no such switch")
-      ->excludes(dead_man);
-  device->add_option("--gain", robot.gain, "1/s, of the position error, for velocities")
-      ->check(number_within(0.0, 1000.0))
-      ->capture_default_str();
-  device
-      ->add_option("--silence", robot.silence_s,
-                   "s; after so long without a state or wrench the run gets a fault")
-      ->check(number_within(0.001, 1.0))
-      ->capture_default_str();
-  device->add_flag("--simulated", robot.is_simulated, "no machine moves: no start test is needed");
-  device->fallthrough();  // for the options of every node
-  device->callback([&robot] {
+      .add_option("--silence", robot.silence_s,
+                  "s, 0.001 to 1; after so long without a state or wrench the run gets a fault")
+      .check(number_within(0.001, 1.0))
+      .capture_default_str();
+  device.add_flag("--simulated", robot.is_simulated, "no machine moves: no start test is needed");
+  device.fallthrough();  // for the options of every node
+  device.callback([&robot] {
     for (auto joint = robot.joints.begin(); joint != robot.joints.end(); ++joint) {
       if (std::find(robot.joints.begin(), joint, *joint) == joint) continue;
-      throw CLI::ValidationError("--joints", "names '" + *joint + "' twice");
+      hg::apps::refuse_option("--joints", "names '" + *joint + "' twice");
     }
     if (robot.dead_man.empty() && !robot.has_no_dead_man) {
-      throw CLI::ValidationError("device", "expected --dead-man TOPIC or --without-dead-man");
+      hg::apps::refuse_option("device", "expected --dead-man TOPIC or --without-dead-man");
     }
   });
-  return device;
 }
 
 int fail(int code, const std::string& why) {
-  std::fputs((hg::visible(why) + "\n").c_str(), stderr);
+  hg::apps::print_error(why + "\n");
   return code;
 }
 
@@ -127,28 +113,30 @@ int main(int argc, char** argv) try {
   }
   std::signal(SIGPIPE, SIG_IGN);
 
-  CLI::App app("Shows a run of HapticGiant to ROS 2, without ROS.", "hapticgiant-ros2");
+  hg::apps::Program program("Shows a run of HapticGiant to ROS 2, without ROS.",
+                            "hapticgiant-ros2");
+  const Command command = program.command();
   hg::ros2::BridgeOptions options;
   options.node.is_local = is_local_by_environment();
-  app.add_option(
+  command.add_option(
       "--live", options.live,
       "address of the live interface of a run; default: the newest run on this computer");
-  app.add_option("--domain", options.node.domain, "domain of ROS 2; default: ROS_DOMAIN_ID, or 0")
-      ->envname("ROS_DOMAIN_ID")
-      ->check(CLI::Range(0, kLastDomain));
-  app.add_option("--namespace", options.node.space, "namespace of all topics, for example left")
-      ->transform(ros_name("for example left"));
-  app.add_flag("--local", options.node.is_local,
-               "this computer only; also ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST");
-  app.add_flag("--view", options.is_view, "topics out of the run only: nothing can change it");
+  command
+      .add_option(
+          "--domain", options.node.domain,
+          fmt::format("domain of ROS 2, 0 to {}; default: ROS_DOMAIN_ID, or 0", kLastDomain))
+      .envname("ROS_DOMAIN_ID")
+      .check(hg::apps::whole_number(0, kLastDomain));
+  accept_name(command.add_option("--namespace", options.node.space,
+                                 "namespace of all topics, for example left"),
+              "for example left");
+  command.add_flag("--local", options.node.is_local,
+                   "this computer only; also ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST");
+  command.add_flag("--view", options.is_view, "topics out of the run only: nothing can change it");
   hg::ros2::RobotOptions robot;
-  const CLI::App* device = add_device(app, robot);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
-  if (device->parsed()) {
+  add_device(command, robot);
+  if (const std::optional<int> code = program.parse(argc, argv)) return *code;
+  if (command.has_subcommand()) {
     if (!options.live.empty() || options.is_view) {
       return fail(kBadInput,
                   "--live, --view: not possible with device, which connects with no run: a run "

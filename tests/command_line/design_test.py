@@ -7,6 +7,7 @@ Jacobian by differences. The device is MuJoCo's, from the URDF; without MuJoCo t
 """
 
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -217,6 +218,23 @@ class Design(unittest.TestCase):
         volumes = [float(text.split("reaches ")[1].split()[0]) for text in out]
         self.assertLess(volumes[0], volumes[1])
 
+    def test_runs_of_haptify_that_ended_early_are_counted(self):
+        folder = self.folder / "bin"
+        folder.mkdir()
+        (folder / "hapticgiant-design").write_text(
+            '#!/bin/sh\nmkdir -p "$3" && echo {} > "$3/results.json"\n')
+        (folder / "hapticgiant").write_text(
+            '#!/bin/sh\n[ "$1" != haptify ] || { mkdir -p "$6"; echo \'{"failures": ["a", "b"]}\' '
+            '> "$6/figures.json"; exit 1; }\n')
+        for file in folder.iterdir():
+            file.chmod(0o755)
+        done = subprocess.run(
+            [sys.executable, "-B", "python/hapticgiant/design", "x.yaml", "--out", folder / "out"],
+            env={**os.environ, "HAPTICGIANT_PROGRAM": str(folder / "hapticgiant")},
+            capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("\ndoor        passed\nhaptify     2 runs ended early, see ", done.stdout)
+
     def test_bad_input_is_one_clear_error(self):
         for arguments, words in (
                 (("arm", "--person", "man"), "expected male or female"),
@@ -228,6 +246,13 @@ class Design(unittest.TestCase):
             code, _, err = design(*arguments)
             self.assertEqual(code, 2, arguments)
             self.assertIn(words, err)
+
+    def test_a_bad_option_of_the_search_is_bad_input(self):
+        if not PROGRAM.with_name("hapticgiant-design").exists():
+            self.skipTest("the search was not built (Debian: libpagmo-dev)")
+        code, _, err = design("none.yaml", "--out", self.folder / "none", "--seed", -3)
+        self.assertEqual(code, 2)
+        self.assertIn("--seed: must be a whole number from 0 to 1000000000, got -3", err)
 
 
 if __name__ == "__main__":

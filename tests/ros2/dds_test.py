@@ -73,9 +73,9 @@ class Alone(unittest.TestCase):
         device = ["device", "--without-dead-man", "--joints"]
         arm = [*device, ros2_test.JOINTS]
         for arguments, message in (
-                ([*arm, "--silence", "nan"], "--silence: expected a number from 0.001 to 1, got nan"),
-                ([*arm, "--rate-hz", "nan"], "--rate-hz: expected a number from 1 to 10000"),
-                ([*arm, "--gain", "nan"], "--gain: expected a number from 0 to 1000"),
+                ([*arm, "--silence", "nan"], "--silence: expected a number, got 'nan'"),
+                ([*arm, "--rate-hz", "0"], "--rate-hz: must be from 1 to 10000, got 0"),
+                ([*arm, "--gain", "1001"], "--gain: must be from 0 to 1000, got 1001"),
                 ([*device, "a,a,b,c,d,e"], "--joints: names 'a' twice"),
                 ([*arm, "--states", "joint states"], "no name of ROS 2"),
                 (["--namespace", "my robot!"], "no name of ROS 2"),
