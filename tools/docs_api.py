@@ -1,16 +1,17 @@
 """Hook of MkDocs: API pages of the site, made from the code when the site is built.
 
-reference/cpp/ROOM.md: the public headers of each room that cmake/install.cmake installs: what the
-comment of a header says, then each struct, class and function with its comment. Private members and
-bodies of functions are left out. reference/python/: the package by mkdocstrings, from
-build/docs_python, where `make docs` installs it with the stubs of its extension.
+reference/cpp/ROOM.md: the headers of a room that cmake/public_headers.txt lists: what the comment of a
+header says, then each struct, class and function with its comment. Private members and bodies of
+functions are left out. reference/python/: the package by mkdocstrings, from build/docs_python, where
+`make docs` installs it with the stubs of its extension.
 """
 
 import os
 import pathlib
 import re
 
-from mkdocs.structure.files import File
+import check_modules
+import house_rules
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PYTHON = {
@@ -32,19 +33,14 @@ LONGEST_VALUE = 12  # lines of a constant's initialiser
 
 
 def rooms():
-    """Room -> its folders, of those that the C++ package has."""
-    lists = (ROOT / "CMakeLists.txt").read_text()
-    package = re.search(r"set\(HG_PACKAGE\s+([^)]*)\)", (ROOT / "cmake/install.cmake").read_text())
-    for path, rest in re.findall(r"^hg_module\(([\w/]+)([^)]*)\)", lists, re.MULTILINE):
-        if path.split("/")[-1] in package[1].split():
-            folders = re.search(r"FOLDERS ([a-z_ ]+)", rest)
-            yield path, [path] + [f"{path}/{f}" for f in (folders[1].split() if folders else [])]
-
-
-def headers(folder):
-    private = re.findall(r'"(/[^"\n]*\[\.\]h\$)"', (ROOT / "cmake/install.cmake").read_text())
-    return [path for path in sorted((ROOT / "hg" / folder).glob("*.h"))
-            if not any(re.search(pattern, str(path)) for pattern in private)]
+    """Room -> its public headers, of the rooms that have some."""
+    modules = check_modules.read_modules()
+    listed = house_rules.listed_headers((ROOT / house_rules.PUBLIC_HEADERS).read_text())
+    for room in modules:
+        headers = [name for name in listed
+                   if check_modules.module_of(modules, pathlib.PurePath(name).parts[1:]) == room]
+        if headers:
+            yield room, headers
 
 
 def matching(code, at):
@@ -156,8 +152,17 @@ def header_page(path):
     return "\n".join(page)
 
 
+def cpp_pages():
+    """Room -> (name of its page, text)."""
+    return {room: (f"reference/cpp/{room.replace('/', '_')}.md",
+                   f"# {room}\n\nLibrary `hapticgiant::{room.split('/')[-1]}`, written when this site is built "
+                   "from the comments of its headers.\n\n"
+                   + "\n".join(header_page(ROOT / header) for header in headers))
+            for room, headers in rooms()}
+
+
 def on_config(config):
-    pages = [{path.split("/")[-1]: f"reference/cpp/{path.replace('/', '_')}.md"} for path, _ in rooms()]
+    pages = [{room.split("/")[-1]: name} for room, (name, _) in cpp_pages().items()]
     python = [{name: f"reference/python/{name}.md"} for name in PYTHON]
     for section in config["nav"]:
         if "Reference" in section:
@@ -166,11 +171,10 @@ def on_config(config):
 
 
 def on_files(files, config):
+    from mkdocs.structure.files import File  # only where the site is built: tests have no MkDocs
+
     for name, text in PYTHON.items():
         files.append(File.generated(config, f"reference/python/{name}.md", content=f"# {name}\n\n{text}"))
-    for path, folders in rooms():
-        page = (f"# {path}\n\nLibrary `hapticgiant::{path.split('/')[-1]}`, written when this site is built "
-                "from the comments of its headers.\n\n")
-        page += "\n".join(header_page(header) for folder in folders for header in headers(folder))
-        files.append(File.generated(config, f"reference/cpp/{path.replace('/', '_')}.md", content=page))
+    for name, text in cpp_pages().values():
+        files.append(File.generated(config, name, content=text))
     return files

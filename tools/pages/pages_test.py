@@ -4,6 +4,7 @@ Usage: pages_test.py   (from anywhere)
 """
 
 import pathlib
+import re
 import sys
 import tempfile
 import types
@@ -11,7 +12,9 @@ import unittest
 
 import pages
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import docs_api  # noqa: E402
 import docs_files  # noqa: E402
 
 RULE = {"number": 107, "name": "jump", "meaning": "It jumped.", "threshold": "monitor.jump_factor, 3 in a row",
@@ -68,6 +71,12 @@ class Site(unittest.TestCase):
             text = docs_files.on_page_markdown("See [it](t.csv).\n\n[Table: t.csv](t.csv)\n", page)
         self.assertEqual(text, "See [it](t.csv).\n\n[Table: t.csv](t.csv)\n\n"
                                "| a | b |\n| --- | --- |\n| 1 | x \\| y, z |\n\n")
+
+    def test_headers_of_the_api_pages_are_those_that_are_installed(self):
+        shown = [header for _, text in docs_api.cpp_pages().values()
+                 for header in re.findall(r"^## (\S+)$", text, re.MULTILINE)]
+        installed = (ROOT / "cmake" / "public_headers.txt").read_text()
+        self.assertEqual(sorted(shown), sorted(re.findall(r"^hg/.*", installed, re.MULTILINE)))
 
 
 if __name__ == "__main__":
