@@ -28,8 +28,8 @@ struct Report {
 void check_report_program();
 
 /// Becomes the program that makes these reports and ends with the worst of their exit codes: 0, 1
-/// not as expected, 3 a fault, kNotWritten. Where it cannot be started: prints why and what has the
-/// data, and returns kNotWritten, or throws SetupError if nothing has.
+/// not as expected, 2 not usable, 3 a fault, kNotWritten. Where it cannot be started: prints why
+/// and what has the data, and returns kNotWritten, or throws SetupError if nothing has.
 int become_reports(const std::vector<Report>& reports);
 
 /// Folder of a package that the interpreter has; empty = it has none.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,7 +9,6 @@
 #include "apps/command_line/command.h"
 #include "apps/command_line/option_checks.h"
 #include "apps/command_line/output.h"
-#include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
@@ -81,8 +79,10 @@ int faults(FaultsArguments arguments) {
   check_writable(arguments.json, kJson);
   check_writable(arguments.markdown, kMarkdown);
   const bool is_part = !arguments.played.part.empty();
-  if (arguments.json.empty() && !is_part) check_report_program();  // before minutes of runs
-  if (!is_part) check_sweep_program(arguments.played);
+  if (!is_part) {  // before minutes of runs
+    check_sweep_program(arguments.played);
+    check_report_program();
+  }
   const ScratchFolder scratch;
   std::vector<recording::RecordingInfo> recordings;
   if (recording::recording_available()) {
@@ -100,12 +100,9 @@ int faults(FaultsArguments arguments) {
   };
   const std::size_t parts = 1 + (arguments.campaign.cases - 1) / kCasesOfAPart;
   if (play_campaign({command_of(arguments), parts, scenarios, play}, arguments.played)) return 0;
-  const nlohmann::ordered_json results = to_json(campaign);
-  write_json(arguments.json, results);
   return become_reports(
-      {{.results = results,
-        .files = {{"report.md", arguments.markdown}},
-        .kept = arguments.json.empty() ? "" : arguments.json + " has the results\n"}});
+      {{.results = to_json(campaign),
+        .files = {{"faults.json", arguments.json}, {"report.md", arguments.markdown}}}});
 }
 
 void add_faults(Command app, int& exit_code) {

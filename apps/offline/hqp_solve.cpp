@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "apps/command_line/command.h"
 #include "apps/command_line/option_checks.h"
 #include "apps/command_line/output.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/offline/subcommand.h"
 #include "hg/core/error.h"
 #include "hg/hqp/printing.h"
@@ -92,43 +93,32 @@ bool print_solutions(const Problems& problems, std::size_t first,
   return are_settled;
 }
 
-// Fastest of kRuns, in microseconds; player.active receives the final active set.
-double time_of(const hqp::RecordedProblem& recorded, Player& player) {
+// Fastest of kRuns, in ns; player.active receives the final active set.
+std::int64_t time_of(const hqp::RecordedProblem& recorded, Player& player) {
   using Clock = std::chrono::steady_clock;
   const hqp::ActiveSet guess = player.active;
-  double fastest = INFINITY;
+  std::chrono::nanoseconds fastest = std::chrono::nanoseconds::max();
   for (int run = 0; run < kRuns; ++run) {
     player.active = guess;
     const Clock::time_point begin = Clock::now();
     player.solver.solve(recorded.problem, recorded.options, player.active, player.solution);
-    const std::chrono::duration<double, std::micro> time = Clock::now() - begin;
-    fastest = std::min(fastest, time.count());
+    fastest = std::min(fastest, std::chrono::nanoseconds(Clock::now() - begin));
   }
-  return fastest;
+  return fastest.count();
 }
 
-bool print_times(const Problems& problems, std::size_t first, bool is_warm) {
+// Of each problem, in ns. `are_settled` becomes false where one is not solved.
+std::vector<std::int64_t> times_of(const Problems& problems, std::size_t first, bool is_warm,
+                                   bool& are_settled) {
   Player player(problems);
-  std::vector<double> times;
-  double sum = 0.0;
-  bool are_settled = true;
+  std::vector<std::int64_t> times;
   for (std::size_t i = 0; i < problems.size(); ++i) {
     if (!is_warm) player.active = hqp::ActiveSet{};
     if (is_warm && problems[i].guess) player.active = *problems[i].guess;
     times.push_back(time_of(problems[i], player));
-    sum += times.back();
     are_settled &= report(first + i, problems[i].problem, player.solution);
   }
-
-  std::sort(times.begin(), times.end());
-  const auto count = static_cast<double>(times.size());
-  const auto rank = [&](double share) {
-    const auto index = static_cast<std::size_t>(std::ceil(share * count)) - 1;
-    return times[std::min(index, times.size() - 1)];
-  };
-  print_out("{:5} {:9.2f} {:9.2f} {:9.2f} {:9.2f}\n", is_warm ? "warm" : "cold", rank(0.5),
-            sum / count, rank(0.999), times.back());
-  return are_settled;
+  return times;
 }
 
 // The selected problems; `first` becomes the index of the first one.
@@ -156,12 +146,12 @@ int run_hqp_solve(const HqpSolveArguments& arguments) {
   const Problems problems = read(arguments, first);
   if (!arguments.has_timing) return print_solutions(problems, first, arguments) ? 0 : 1;
 
-  print_out("{} problem{}, microseconds per problem\n", problems.size(),
-            problems.size() == 1 ? "" : "s");
-  print_out("{:5} {:>9} {:>9} {:>9} {:>9}\n", "start", "median", "mean", "99.9 %", "max");
-  const bool is_cold_settled = print_times(problems, first, false);
-  const bool is_warm_settled = print_times(problems, first, true);
-  return is_cold_settled && is_warm_settled ? 0 : 1;
+  check_report_program();
+  nlohmann::ordered_json results = {{"kind", "hqp"}};
+  bool are_settled = true;
+  results["cold"] = times_of(problems, first, false, are_settled);
+  results["warm"] = times_of(problems, first, true, are_settled);
+  return become_reports({{.results = results, .exit_code = are_settled ? 0 : 1}});
 }
 
 void add_hqp(Command app, int& exit_code) {

@@ -1,11 +1,12 @@
 #include "apps/offline/identify_command.h"
 
-#include <fmt/format.h>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "apps/command_line/command.h"
 #include "apps/command_line/option_checks.h"
-#include "apps/command_line/output.h"
+#include "apps/hapticgiant/output_file.h"
+#include "apps/hapticgiant/report.h"
 #include "apps/offline/subcommand.h"
 #include "hg/config/device.h"
 #include "hg/config/shipped_files.h"
@@ -19,6 +20,12 @@ namespace {
 
 using identify::PayloadEstimate;
 using identify::StaticPose;
+
+struct IdentifyArguments {
+  std::vector<std::string> files;                          ///< CSV files; empty = simulate
+  std::string device = "models/haptic_giant/device.yaml";  ///< device to simulate and compare with
+  int poses = 12;  ///< number of poses taken on the simulated device
+};
 
 std::vector<StaticPose> simulated_poses(const config::SimulatedDeviceConfig& device, int count) {
   std::vector<StaticPose> poses;
@@ -38,36 +45,57 @@ std::vector<StaticPose> poses_of(const std::vector<std::string>& files) {
   return poses;
 }
 
-std::string row(const Eigen::Vector3d& v, int digits) {
-  return fmt::format("{:.{}f}, {:.{}f}, {:.{}f}", v.x(), digits, v.y(), digits, v.z(), digits);
+std::vector<double> numbers(const auto& v) { return {v.begin(), v.end()}; }
+
+nlohmann::ordered_json to_json(const PayloadEstimate& found, const Payload& expected) {
+  nlohmann::ordered_json json = {{"kind", "identify"},
+                                 {"identified", "payload"},
+                                 {"mass_kg", found.mass},
+                                 {"mass_deviation_kg", found.mass_deviation},
+                                 {"com_m", numbers(found.com)},
+                                 {"com_deviation_m", found.com_deviation},
+                                 {"offset", numbers(found.offset)},
+                                 {"residual_N", found.force_residual},
+                                 {"residual_Nm", found.torque_residual},
+                                 {"condition", found.condition},
+                                 {"doubts", identify::payload_doubts(found, expected)},
+                                 {"missing", found.missing}};
+  if (expected.mass > 0.0) {
+    json["device_file"] = {{"mass_kg", expected.mass}, {"com_m", numbers(expected.com)}};
+  }
+  return json;
 }
 
-void print_estimate(const PayloadEstimate& found) {
-  print_out("mass            {:.4f} kg, +-{:.4f}\n", found.mass, found.mass_deviation);
-  print_out("centre of mass  {} m in S, +-{:.4f}\n", row(found.com, 4), found.com_deviation);
-  print_out("sensor offset   {} N; {} Nm\n", row(found.offset.head<3>(), 2),
-            row(found.offset.tail<3>(), 4));
-  print_out("residuals       {:.3f} N, {:.4f} Nm rms\n", found.force_residual,
-            found.torque_residual);
-  print_out("condition       {:.1f}  (1 = every direction shows alike)\n", found.condition);
+int identify_payload(const IdentifyArguments& arguments) {
+  const config::SimulatedDeviceConfig device =
+      config::load_simulated_device(config::find_device(arguments.device, {}));
+  check_report_program();
+  const bool is_simulated = arguments.files.empty();
+  const std::vector<StaticPose> poses =
+      is_simulated ? simulated_poses(device, arguments.poses) : poses_of(arguments.files);
+  nlohmann::ordered_json results =
+      to_json(identify::identify_payload(poses), device.estimation.wrench.payload);
+  results["poses"] = poses.size();
+  results["files"] = arguments.files;
+  results["device"] = device.name;
+  return become_reports({{.results = results}});
 }
 
-void print_comparison(const PayloadEstimate& found, const Payload& expected) {
-  if (!(expected.mass > 0.0)) return;
-  print_out("device.yaml     mass {:+.2f} %, centre of mass {:.1f} mm from its values\n",
-            100.0 * (found.mass / expected.mass - 1.0), 1e3 * (found.com - expected.com).norm());
-}
+using Identify = nlohmann::ordered_json (*)(const IdentifyRecordingArguments& arguments);
 
-void print_yaml(const PayloadEstimate& found) {
-  print_out(
-      "\nfor device.yaml:\npayload:\n  mass_kg: {:.4f}\n  centre_of_mass_m: [{}]\n"
-      "  # inertia_kg_m2 does not show at rest: from the drawing\n",
-      found.mass, row(found.com, 4));
+int identify_recorded(Identify identify, const IdentifyRecordingArguments& arguments) {
+  check_writable(arguments.json, kJson);
+  if (arguments.json.empty()) check_report_program();
+  nlohmann::ordered_json results = identify(arguments);
+  results["file"] = arguments.file;
+  write_json(arguments.json, results);
+  return become_reports(
+      {{.results = results,
+        .kept = arguments.json.empty() ? "" : arguments.json + " has the results\n"}});
 }
 
 // Adds a subcommand that identifies something from a recording.
-void add_recorded(Command identify, int& exit_code,
-                  int (*run)(const IdentifyRecordingArguments& arguments), const char* name,
+void add_recorded(Command identify, int& exit_code, Identify run, const char* name,
                   const char* what, const char* examples) {
   const auto arguments = std::make_shared<IdentifyRecordingArguments>();
   const Command command = identify.add_subcommand(name, what);
@@ -78,7 +106,8 @@ void add_recorded(Command identify, int& exit_code,
   command.add_option("--device", arguments->device,
                      "device.yaml to compare with instead of that of the recording");
   command.add_option("--json", arguments->json, "write all figures as JSON to this file");
-  command.callback([arguments, run, &exit_code] { exit_code = run(*arguments); });
+  command.callback(
+      [arguments, run, &exit_code] { exit_code = identify_recorded(run, *arguments); });
 }
 
 }  // namespace
@@ -89,28 +118,15 @@ std::optional<config::SimulatedDeviceConfig> given_device(
   return config::load_simulated_device(config::find_device(arguments.device, {}));
 }
 
-int identify_payload(const IdentifyArguments& arguments) {
-  const config::SimulatedDeviceConfig device =
-      config::load_simulated_device(config::find_device(arguments.device, {}));
-  const bool is_simulated = arguments.files.empty();
-  const std::vector<StaticPose> poses =
-      is_simulated ? simulated_poses(device, arguments.poses) : poses_of(arguments.files);
-  print_out("{} poses {}\n\n", poses.size(),
-            is_simulated ? "of the simulated " + device.name + ", handle not held"
-                         : "from " + fmt::format("{}", fmt::join(arguments.files, ", ")));
-  const PayloadEstimate found = identify::identify_payload(poses);
-  print_estimate(found);
-  print_comparison(found, device.estimation.wrench.payload);
-  for (const std::string& doubt :
-       identify::payload_doubts(found, device.estimation.wrench.payload)) {
-    print_error("WARNING {}\n", doubt);
+nlohmann::ordered_json figure_json(const identify::Figure& figure, const char* file_key,
+                                   double in_file) {
+  nlohmann::ordered_json json = {{"is_found", figure.is_found}};
+  if (figure.is_found) {
+    json["value"] = figure.value;
+    json["deviation"] = figure.deviation;
   }
-  if (!found.missing.empty()) {
-    print_error("not usable: {}\n", found.missing);
-    return 2;
-  }
-  print_yaml(found);
-  return 0;
+  json[file_key] = in_file;
+  return json;
 }
 
 void add_identify(Command app, int& exit_code) {

@@ -5,21 +5,18 @@
 /// identify inertia RECORDING`: inertial parameters of the links.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "hg/config/simulation/simulation.h"
+#include "hg/identify/figure.h"
+#include "hg/recording/recording_reader.h"
 
 namespace hg::apps {
 
 class Command;
-
-struct IdentifyArguments {
-  std::vector<std::string> files;                          ///< CSV files; empty = simulate
-  std::string device = "models/haptic_giant/device.yaml";  ///< device to simulate and compare with
-  int poses = 12;  ///< number of poses taken on the simulated device
-};
 
 struct IdentifyRecordingArguments {
   std::string file;    ///< recording file
@@ -27,24 +24,29 @@ struct IdentifyRecordingArguments {
   std::string json;    ///< file for all figures; empty = none
 };
 
-/// Identifies the payload and prints to stdout. Returns the exit code: 0, or 2 when the poses do
-/// not suffice.
-int identify_payload(const IdentifyArguments& arguments);
-/// Identifies friction and prints to stdout. Returns the exit code: 0, or 2 when no joint moved
-/// enough.
-int identify_friction(const IdentifyRecordingArguments& arguments);
-
 /// The device that --device names; nothing without it. Throws SetupError.
 std::optional<config::SimulatedDeviceConfig> given_device(
     const IdentifyRecordingArguments& arguments);
 
-/// Identifies stiffness, damping and delay and prints to stdout. Returns the exit code: 0, or 2
-/// when no joint moved enough.
-int identify_joints(const IdentifyRecordingArguments& arguments);
+/// What was identified from a recording, for --json and python/hapticgiant/report/identify.py.
+/// Throws SetupError.
+nlohmann::ordered_json identify_friction(const IdentifyRecordingArguments& arguments);
+nlohmann::ordered_json identify_joints(const IdentifyRecordingArguments& arguments);
+nlohmann::ordered_json identify_inertia(const IdentifyRecordingArguments& arguments);
 
-/// Identifies inertial parameters of the links and prints to stdout. Returns the exit code: 0, or 2
-/// when the motion does not show enough of them.
-int identify_inertia(const IdentifyRecordingArguments& arguments);
+/// A number, if it was found, beside that of the files, which has the name `file_key`.
+nlohmann::ordered_json figure_json(const identify::Figure& figure, const char* file_key,
+                                   double in_file);
+
+/// The beginning of all of them.
+template <typename Recorded>
+nlohmann::ordered_json recorded_json(const char* identified, const Recorded& recorded) {
+  return {{"kind", "identify"},
+          {"identified", identified},
+          {"losses", recording::to_text(recorded.losses)},
+          {"used_s", recorded.used_s},
+          {"joints", nlohmann::ordered_json::array()}};
+}
 
 /// Adds the subcommands to the program; running it sets `exit_code`.
 void add_identify(Command app, int& exit_code);

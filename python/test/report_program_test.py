@@ -4,6 +4,7 @@ Usage: report_program_test.py   (from anywhere; needs scipy, matplotlib and jinj
 """
 
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -37,9 +38,9 @@ class Program(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         self.folder = pathlib.Path(scratch.name)
 
-    def make(self, *reports, stdout=subprocess.PIPE):
-        done = subprocess.run([sys.executable, "-B", PROGRAM], input=json.dumps({"reports": reports}),
-                              stdout=stdout, stderr=subprocess.PIPE, text=True, check=False, cwd="/")
+    def make(self, *reports, stdout=subprocess.PIPE, stderr=subprocess.PIPE):
+        done = subprocess.run([sys.executable, "-B", PROGRAM], input=json.dumps({"version": "1.2.3", "reports": reports}),
+                              stdout=stdout, stderr=stderr, text=True, check=False, cwd="/")
         return done.returncode, done.stdout, done.stderr
 
     def compare(self, *hashes, **more):
@@ -63,6 +64,16 @@ class Program(unittest.TestCase):
         self.assertIn("different from cycle 1 (0.001 s) on", out)
         self.assertIn("the same in every cycle", out)
         self.assertEqual(self.make(self.compare([1], [1], exit_code=3))[0], 3)
+
+    def test_what_is_wrong_is_an_exit_code_and_comes_after_the_tables(self):
+        recorded = {"kind": "identify", "identified": "friction", "file": "a\x1b.mcap", "losses": "", "used_s": 4.0,
+                    "joints": []}
+        self.assertEqual(self.make(report(recorded), stderr=subprocess.STDOUT), (2, (
+            "a\\x1b.mcap: 0 joints, drives on for 4.0 s\nnot usable: no joint moved enough for its friction\n"), None))
+        recorded |= {"identified": "inertia", "missing": "link\x1b"}
+        self.assertEqual(self.make(report(recorded))[2], "not usable: link\\x1b\n")
+        with open(os.devnull) as unwritable:
+            self.assertEqual(self.make(report(recorded), stderr=unwritable)[0], 2)
 
     def test_a_terminal_obeys_no_text_of_a_recording(self):
         name = "a\x1b[2J\u202e"

@@ -3,11 +3,14 @@
     offline_test.py PROGRAM
 """
 
+import json
+import os
 import pathlib
 import re
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 
 from program import PROGRAM, install_program
 
@@ -53,6 +56,25 @@ class Offline(unittest.TestCase):
                 out, err = run(alone, *words, code=2)
                 self.assertEqual((out, err.count("\n")), ("", 1))
                 self.assertIn("make build", err)
+
+    def test_what_was_identified_is_printed_and_without_python_kept(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run(PROGRAM, "run", "free_space", "--fast", "--no-viewer", "--duration", "2", "--recordings", folder,
+                code=1)  # too short for its events
+            words = (PROGRAM, "identify", "friction", f"{folder}/latest.mcap")
+            out, err = run(*words, code=2)
+            self.assertRegex(out, r"latest\.mcap: 6 joints, drives on for 1\.\d s\n\nm1  slid 0 s forward")
+            self.assertEqual(err, "not usable: no joint moved enough for its friction\n")
+            kept = pathlib.Path(folder, "friction.json")
+            with unittest.mock.patch.dict(os.environ, HAPTICGIANT_PYTHON="/bin/false-no-such-python"):
+                for needing in (words, (PROGRAM, "identify", "payload")):
+                    out, err = run(*needing, code=2)
+                    self.assertEqual(out, "")
+                    self.assertIn("needs scipy, matplotlib and jinja2; tools/setup.sh build", err)
+                _, err = run(*words, "--json", kept, code=4)
+            self.assertTrue(err.endswith(f"{kept} has the results\n"), err)
+            self.assertEqual([joint["name"] for joint in json.loads(kept.read_text())["joints"]],
+                             ["m1", "m2", "m3", "m4", "m5", "m6"])
 
     def test_options_of_earlier_versions_name_what_to_use(self):
         for option, instead in (("--bounds", "--law paper_bounds"), ("--braking", "--law gauss")):

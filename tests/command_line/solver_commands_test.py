@@ -240,7 +240,12 @@ class HqpSolve(TemporaryFolder):
     def test_times(self):
         code, out, _ = run("hqp", "solve", self.file, "--problem", 0, "--timing")
         self.assertEqual(code, 0)
-        self.assertRegex(out, r"1 problem, .*\nstart .*\ncold .*\nwarm ")
+        us = r"( +\d+\.\d\d){2}         - +\d+\.\d\d\n"  # no tail of so few
+        self.assertRegex(out, r"^1 problem, microseconds per problem\n"
+                         rf"start    median      mean    99\.9 %       max\ncold {us}warm {us}$")
+        code, out, err = run("hqp", "solve", self.file, "--timing")
+        self.assertEqual((code, out.split("\n")[0]), (1, "2 problems, microseconds per problem"))
+        self.assertEqual(err.count("problem 1: bad row"), 2)
 
     def test_times_and_explanations_exclude_each_other(self):
         for words in (["--explain"], ["--level", 1]):

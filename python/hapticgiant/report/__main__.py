@@ -1,6 +1,6 @@
 """Program of the reports, which the commands of `hapticgiant` become once they have measured.
 
-Standard input has one JSON document, {"reports": [REPORT...]}. A REPORT has
+Standard input has one JSON document, {"version": of the program, "reports": [REPORT...]}. A REPORT has
   results    what was measured; its "kind" names the writer of the report
   folder     of all files of the report; null: none is kept
   docs       folder of documentation whose page of this report is refreshed; null: none
@@ -8,8 +8,8 @@ Standard input has one JSON document, {"reports": [REPORT...]}. A REPORT has
   last_line  what is printed at the end
   kept       what has the data, in a line; printed where the report cannot be written
   exit_code  of the measurements
-Exit codes: the worst of these and of the reports (0 as expected, 1 not, 3 a fault), 4 a file or standard
-output could not be written; with --check 69: a library is missing.
+Exit codes: the worst of these and of the reports (0 as expected, 1 not, 2 not usable, 3 a fault), 4 a file or
+standard output could not be written; with --check 69: a library is missing.
 """
 
 import argparse
@@ -92,9 +92,12 @@ def make(report, output):
     docs = report["docs"] and pathlib.Path(report["docs"])
     with contextlib.ExitStack() as stack:
         folder = pathlib.Path(report["folder"] or stack.enter_context(tempfile.TemporaryDirectory()))
-        with contextlib.redirect_stdout(io.StringIO()) as text:
+        with (contextlib.redirect_stdout(io.StringIO()) as text,
+              contextlib.redirect_stderr(io.StringIO()) as complaints):
             verdict = module.write(results, folder, docs=docs) or 0
         output.show(text.getvalue() + report["last_line"])
+        with contextlib.suppress(OSError):
+            print(visible(complaints.getvalue()), end="", file=sys.stderr)
         for name, file in report["files"].items():
             output.write_file(file, (folder / name).read_text(encoding="utf-8"))
     return max(verdict, report["exit_code"])
@@ -103,6 +106,8 @@ def make(report, output):
 def make_all(document):
     """Writes and prints all reports; returns the worst of their exit codes."""
     output, code = Output(), 0
+    pages = importlib.import_module("hapticgiant.report.pages")
+    pages.version = document["version"]
     for report in document["reports"]:
         try:
             code = max(code, make(report, output))

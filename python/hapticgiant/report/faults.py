@@ -1,6 +1,7 @@
-"""Tables of `hapticgiant faults`: what the machine did about every kind of injected fault."""
+"""Verdicts and tables of `hapticgiant faults`: what the machine did about injected faults."""
 
 import collections
+import json
 import statistics
 
 from . import pages, tables
@@ -12,6 +13,38 @@ LEGEND = (
     "were noticed;\nN: largest force of the person; outside: furthest true position outside a "
     "limit of the device, rad or m;\nway: longest motion of an axis without a command, of the "
     "stopping distance; J: largest energy\ngiven to the person in a stop\n")
+
+
+def in_words(fault, units):
+    return (f"{fault['fault']} of {fault['index']} by {fault['magnitude']:.4g} "
+            f"{units[fault['fault']]} at {fault['at_s']:.3f} s")
+
+
+def has_fallen(case):
+    """Once the power is off, no software holds an axis whose brake fails: it has to be reported."""
+    is_weak = any(it.get("fault") == "brake_weak" for it in (case, case.get("and", {})))
+    return is_weak and case.get("brake_slips", False) and case["travel_share"] > 1.0
+
+
+def has_passed(results, case):
+    if (case["outcome"] == "unnoticed" or not case["recording_complete"]
+            or case["peak_force_N"] > results["force_bound_N"]):
+        return False
+    return case["has_fallen"] or (
+        case["worst_excess"] <= results["excess_bound"] and case["travel_share"] <= 1.0
+        and case["energy_J"] <= results["energy_bound_J"])
+
+
+def judge(results):
+    """Adds the verdicts."""
+    units = {kind["name"]: kind["unit"] for kind in results["kinds"]}
+    for case in results["cases"]:
+        case["has_fallen"] = has_fallen(case)
+        case["passed"] = has_passed(results, case)
+        case["in_words"] = in_words(case, units)
+        if "and" in case:
+            case["and"] = in_words(case["and"], units)
+    results["passed"] = all(case["passed"] for case in results["cases"])
 
 
 def range_text(seconds):
@@ -124,10 +157,13 @@ def page(results, form=pages.in_text):
 
 
 def write(results, folder, docs=None):
-    """Writes report.md, and docs/reports/fault_campaign.md with its tables."""
+    """Writes report.md and faults.json, and docs/reports/fault_campaign.md with its tables."""
+    judge(results)
     print(text(results), end="")
+    pages.save(folder / "faults.json",
+               json.dumps(results | {"version": pages.version}, indent=2) + "\n")
     (folder / "report.md").write_text(page(results), encoding="utf-8")
     if docs:
         file = docs / "fault_campaign.md"
         pages.save(file, page(results, pages.PageTables(file)))
-    return 0 if all(case["passed"] for case in results["cases"]) else 1
+    return 0 if results["passed"] else 1
