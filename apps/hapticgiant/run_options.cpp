@@ -29,7 +29,7 @@ void add_machine_address(Command command, scenario::MachineAddress& machine) {
       .needs("--device-address");
   command
       .add_flag("--move-to-start", machine.moves_to_start,
-                "the device first moves by itself, slowly, to where the twin starts: with nobody "
+                "the device first moves, slowly, to where the twin starts: with no hand "
                 "at the handle and the override key on; keep its way clear")
       .needs("--device-address");
   command

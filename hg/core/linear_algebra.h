@@ -1,4 +1,4 @@
-/// Dense linear algebra on matrices of any size, for set-up, checks and studies.
+/// Dense linear algebra on matrices of any size, for set-up, checks and experiments.
 ///
 /// Decompositions are compiled here once instead of in every file that needs one. They allocate:
 /// the control cycle uses fixed-capacity types instead.

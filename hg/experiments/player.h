@@ -1,5 +1,5 @@
 /// Plays a scenario on the simulated device as fast as it can, without page and recording: a
-/// session in three parts, so that a study can look at and change what passes between them.
+/// session in three parts, so that an experiment can look at and change what passes between them.
 ///
 /// Deterministic: cycle k is the same in every play of the same scenario. One player serves one
 /// thread; several may play the same scenario at once.

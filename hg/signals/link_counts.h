@@ -33,7 +33,7 @@ struct LinkCount {
   std::uint64_t LinkCounts::*value;
 };
 
-/// All counters of LinkCounts that indicate trouble, with their names in texts and files.
+/// All counters of LinkCounts that count faults, with their names in texts and files.
 inline constexpr std::array<LinkCount, 15> kLinkTroubles = {{
     {"lost", &LinkCounts::lost},
     {"reordered", &LinkCounts::reordered},

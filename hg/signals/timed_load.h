@@ -1,5 +1,4 @@
-/// Faults of the computer that runs the cycle, at given times: late cycles and a solver cut short.
-/// For tests and studies of the controller.
+/// A fault of the computer, at given times: late cycles. For tests and experiments.
 #pragma once
 
 #include <cstddef>

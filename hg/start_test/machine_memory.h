@@ -28,7 +28,7 @@ std::string sha256_of(const config::DeviceConfig& device);
 std::string start_test_file(const std::string& folder, const config::DeviceConfig& device,
                             const std::string& address);
 
-/// The same of the result of its commissioning.
+/// The same for the result of its first motions (`commission`).
 std::string commission_file(const std::string& folder, const config::DeviceConfig& device,
                             const std::string& address);
 

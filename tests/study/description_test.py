@@ -264,14 +264,14 @@ class Faults(unittest.TestCase):
                 study(text)
 
     def test_markers_are_named_where_they_are_kept(self):
-        for names, is_told in (("[Eyes]", True), ("[]", False)):
+        for names, is_listed in (("[Eyes]", True), ("[]", False)):
             study = load(STUDY + f"lab_streaming: {{markers: {names}}}\n")
             with tempfile.TemporaryDirectory() as path:
                 (there := folder.Folder(study, path)).tabulate()
                 self.assertEqual("streams of other instruments, with their times: Eyes."
-                                 in (there.path / "WHAT_IS_STORED.md").read_text(), is_told)
+                                 in (there.path / "WHAT_IS_STORED.md").read_text(), is_listed)
                 for column in markers.COLUMNS:
-                    self.assertEqual(f"sub-*/*_markers,{column}," in (there.path / "data_dictionary.csv").read_text(), is_told)
+                    self.assertEqual(f"sub-*/*_markers,{column}," in (there.path / "data_dictionary.csv").read_text(), is_listed)
 
     def test_markers_become_files_of_their_trial_and_none_is_written_twice(self):
         study = load(STUDY)
@@ -321,7 +321,7 @@ class Faults(unittest.TestCase):
         there._lock.close()
         return file
 
-    def test_bids_is_told_of_every_file_that_it_does_not_know(self):
+    def test_bids_ignores_every_file_that_it_does_not_know(self):
         with tempfile.TemporaryDirectory() as path:
             out = self.answered(path).with_suffix(".study")
             for name in ("sub-P01/sub-P01_task-light_run-1_recording.mcap", "sub-P01/sub-P01_task-light_run-1_trial.json",
@@ -555,7 +555,7 @@ class Faults(unittest.TestCase):
             self.assertEqual(list((pathlib.Path(path) / "study.study").iterdir()), [])
 
     @unittest.skipUnless(importlib.util.find_spec("jinja2") and importlib.util.find_spec("matplotlib"), "needs jinja2")
-    def test_a_report_has_nobody_who_was_forgotten_while_it_was_made(self):
+    def test_a_report_has_no_person_who_was_forgotten_while_it_was_made(self):
         from hapticgiant.study import report
 
         with tempfile.TemporaryDirectory() as path:
@@ -603,7 +603,7 @@ class Faults(unittest.TestCase):
             there.tabulate()
             self.assertNotIn("P01,", (there.path / "answers.csv").read_text())
 
-    def test_carry_over_is_told_as_a_count(self):
+    def test_carry_over_is_reported_as_a_count(self):
         text = STUDY.replace("  heavy:", "  middle: {twin.mass_scale: 1.5}\n  heavy:").replace("order: williams", "order: latin_square")
         text = text.replace("{light: 10,", "{light: 10, middle: 10,").replace("participants: 16", "participants: 3")
         self.assertRegex(planning.notes_of(load(text))[0], "^one condition follows another 2 times more often than it follows a third")

@@ -259,7 +259,7 @@ class StudyRun(unittest.IsolatedAsyncioTestCase):
             await asyncio.wait_for(running.process.wait(), PATIENCE_S)
         self.assertEqual(self.table("trials"), [])
 
-    async def test_a_page_that_reads_nothing_holds_nobody_up(self):
+    async def test_a_page_that_reads_nothing_delays_no_other(self):
         text = "x" * 300_000
         self.file.write_text(STUDY.replace("en: Hello", f"en: {text}"))
         async with Running(self.file) as running:

@@ -136,7 +136,7 @@ class FewPeople(unittest.TestCase):
                 wanted = min(1.0, 2 * min(np.mean(sums <= at), np.mean(sums >= at)))
                 self.assertAlmostEqual(inference.mann_whitney(a, b).p, wanted, 12)
 
-    def test_the_least_p_of_ranks_is_told(self):
+    def test_the_least_p_of_ranks_is_reported(self):
         """wilcox.test(1:3, 4:6)$p.value is 0.1; of four differences above 0 it is 0.125"""
         found = inference.run("mann_whitney", [1, 2, 3, 4, 5, 6], list("aaabbb"), range(6))
         self.assertAlmostEqual(found.p, 0.1, 12)
@@ -233,7 +233,7 @@ class ByName(unittest.TestCase):
         self.assertAlmostEqual(found.value, 4.0621277, 6)
         self.assertIn("a person's trials of a condition are averaged", found.notes)
 
-    def test_a_person_without_a_condition_is_left_out_and_told(self):
+    def test_a_person_without_a_condition_is_left_out_and_reported(self):
         values, conditions = np.concatenate([*SLEEP, [9.0]]), ["a"] * 10 + ["b"] * 11
         found = inference.run("paired_t", values, conditions, [*range(10), *range(10), 10])
         self.assertAlmostEqual(found.value, 4.0621277, 6)
