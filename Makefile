@@ -11,15 +11,16 @@
 #   make test-packages
 #                that, the same with the Debian package in a bare Debian (as root, with mmdebstrap), and
 #                pip install from a clean copy; minutes
-#   make bench   measures solver, cycle and laws beside the paper's solver into $(RESULTS); minutes;
-#                ARGS="door --quick" for a first look
+#   make bench   measures solver, cycle and laws beside the paper's solver into build/bench, and refreshes
+#                docs/reports/benchmarks.md; minutes
 #   make experiments
 #                runs the paper's experiments with both laws and its Table III (haptify) into
-#                build/experiments and refreshes the pages of docs/experiments; minutes
+#                build/experiments and refreshes the pages of docs/experiments and
+#                docs/reports/fault_campaign.md; minutes
 #   make arms    measures the arms of models/arms (Haptify, cupboard, drawer, tool) into build/arms and
 #                refreshes docs/reports/arms.md; minutes
 #   make bench-instructions
-#                counts their instructions (callgrind), into the same folder
+#                counts their instructions (callgrind), into a table of the same page
 #   make sanitize
 #                builds and runs the tests that pay off under sanitizers: address and undefined
 #                behaviour for the control cycle and what it calls, threads for what has threads.
@@ -66,11 +67,10 @@
 ARGS ?=
 JOBS ?= $(shell nproc)
 export CMAKE_BUILD_PARALLEL_LEVEL := $(JOBS)
-export CTEST_PARALLEL_LEVEL := $(JOBS)
+# tests wait for each other, for browsers and for time: half as many again
+export CTEST_PARALLEL_LEVEL := $(shell expr $(JOBS) \* 3 / 2)
 PRESET ?= release
 BUILD := build/$(PRESET)
-RESULTS ?= bench/results/$(shell date -u +%F)-$(shell sed -n 's/^model name.*: //p' /proc/cpuinfo | \
-  head -1 | tr -cs 'A-Za-z0-9\n' - | tr A-Z a-z)
 ASAN_TESTS := $(addsuffix _test, core limits hqp estimation rendering surfaces prepositioning tracking safety \
   collision passivity controller person simulator faults udp franka identify analysis doctor messages \
   recording live lab_streaming fuzz_replay)
@@ -152,7 +152,7 @@ bench:
 	@tools/configure.sh $(PRESET) build
 	@cmake --log-level=ERROR $(BUILD) >/dev/null  # finds what set-up has just fetched
 	@cmake --build $(BUILD) --target programs
-	@$(BUILD)/hapticgiant bench --out $(RESULTS) $(ARGS)
+	@$(BUILD)/hapticgiant bench --out build/bench --docs docs/reports
 
 experiments: build  # each one refreshes its page, also after one that is not as expected
 	@failed=; run() { $(BUILD)/hapticgiant "$$@" --docs docs/experiments || failed="$$failed; $$*"; }; \
@@ -161,6 +161,7 @@ experiments: build  # each one refreshes its page, also after one that is not as
 	run haptify --out build/experiments/haptify; \
 	run haptify --goals --repetitions 16 --out build/experiments/goals; \
 	run experiment contact; \
+	$(BUILD)/hapticgiant faults --cases 300 --docs docs/reports || failed="$$failed; faults"; \
 	[ -z "$$failed" ] || { echo "make experiments: not as expected$$failed" >&2; exit 1; }
 
 arms: build
@@ -198,8 +199,7 @@ bench-instructions:
 	@tools/setup.sh count
 	@tools/configure.sh $(PRESET) build
 	@cmake --build $(BUILD) --target bench_instructions
-	@mkdir -p $(RESULTS)
-	@.venv/bin/python tools/count_instructions.py $(BUILD)/bench_instructions $(RESULTS)/instructions.csv
+	@.venv/bin/python tools/count_instructions.py $(BUILD)/bench_instructions docs/reports/benchmarks_instructions.csv
 
 sanitizer-set-up:
 	@tools/setup.sh test

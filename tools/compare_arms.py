@@ -4,6 +4,7 @@
 Usage: compare_arms.py PROGRAM PAGE [FOLDER]   (minutes; refreshes the tables of PAGE and the CSV files beside it; the results stay in FOLDER, build/arms)
 """
 
+import datetime
 import json
 import pathlib
 import subprocess
@@ -81,7 +82,9 @@ def refresh(page, figures, runs):
     files = {"haptify": haptify_rows(figures, FIGURES), "failures": failure_rows(figures), "scenarios": scenarios}
     for name, rows in files.items():
         page.with_name(f"{page.stem}_{name}.csv").write_text(as_csv(rows))
-    page.write_text(replace_marked(page.read_text(), "haptify", markdown(haptify_rows(figures, SHOWN))))
+    version = next(iter(runs.values()))[SCENARIOS[0]]["version"]
+    short = f"{markdown(haptify_rows(figures, SHOWN))}\nVersion {version}, {datetime.date.today()}.\n"
+    page.write_text(replace_marked(page.read_text(), "haptify", short))
 
 
 def main():

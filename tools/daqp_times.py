@@ -2,7 +2,7 @@
 
     daqp_times.py FILE.hqp.gz ...     in a Python with numpy and daqp (pip install daqp==0.11.0)
 
-Per file: microseconds as DAQP measures itself (set-up and solution, cold, the fastest of five), how
+CSV. Per file: microseconds as DAQP measures itself (set-up and solution, cold, the fastest of five), how
 often it failed, and how often it was wrong: the slack norm of a level differs from that in FILE.sol.gz
 by more than 1e-6 of 1 + norm, the tolerance of our tests.
 """
@@ -69,7 +69,7 @@ def norms_of(file):
 def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
-    print(f"{'set':<22} {'problems':>8} {'median':>8} {'max':>8} {'failed':>7} {'wrong':>6}")
+    print("set,problems,median_us,max_us,failed,wrong")
     for file in map(pathlib.Path, sys.argv[1:]):
         norms = norms_of(file)
         times, failed, wrong = [], 0, 0
@@ -83,8 +83,8 @@ def main():
             differences = np.abs(slack_norms(levels, runs[0][0]) - expected)
             wrong += bool((differences > TOLERANCE * (1.0 + expected)).any())
         name = file.name.removesuffix(".hqp.gz")
-        print(f"{name:<22} {len(times):>8} {np.median(times):>8.1f} {max(times):>8.1f} {failed:>7} "
-              f"{'-' if norms is None else wrong:>6}", flush=True)
+        print(f"{name},{len(times)},{np.median(times):.1f},{max(times):.1f},{failed},"
+              f"{'' if norms is None else wrong}", flush=True)
 
 
 if __name__ == "__main__":

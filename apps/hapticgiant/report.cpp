@@ -10,6 +10,7 @@
 
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/python_program.h"
+#include "apps/hapticgiant/version.h"
 #include "hg/core/error.h"
 
 namespace hg::apps {
@@ -59,7 +60,7 @@ void check_report_program() {
 }
 
 int become_reports(const std::vector<Report>& reports) {
-  nlohmann::ordered_json document;
+  nlohmann::ordered_json document = {{"version", kVersion}};
   std::string kept;
   for (const Report& report : reports) {
     document["reports"].push_back(json_of(report));

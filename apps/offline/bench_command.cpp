@@ -152,6 +152,7 @@ int bench(const BenchArguments& arguments) {
     reference.emplace_back(file, effort.problems);
   }
   check_writable(arguments.json, kJson);
+  if (!arguments.docs.empty()) check_writable(arguments.docs + "/benchmarks.md", kMarkdown);
   check_report_program();  // before minutes of measurements
   const std::string file =
       arguments.out.empty() ? "" : (std::filesystem::path(arguments.out) / "results.json").string();
@@ -179,6 +180,7 @@ int bench(const BenchArguments& arguments) {
                  measured.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   return become_reports({{.results = measured,
                           .folder = arguments.out,
+                          .docs = arguments.docs,
                           .files = {{"bench.json", arguments.json}},
                           .kept = file.empty() ? "" : file + " has the results\n",
                           .exit_code = is_right && is_solved && is_well ? 0 : 1}});
@@ -198,6 +200,8 @@ void add_bench(Command app, int& exit_code) {
   command.add_option("--json", arguments->json, "write all tables as JSON to this file");
   command.add_option("-o,--out", arguments->out,
                      "write tables (CSV) and figures (SVG) to this folder");
+  command.add_option("--docs", arguments->docs,
+                     "refresh the page benchmarks.md of this folder (make bench)");
   command.callback([arguments, &exit_code] { exit_code = bench(*arguments); });
 }
 

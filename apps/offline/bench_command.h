@@ -14,6 +14,7 @@ struct BenchArguments {
   bool is_quick = false;  ///< fewer problems and passes: for a first look
   std::string json;       ///< JSON file; empty = none
   std::string out;        ///< folder of tables and figures; empty = none
+  std::string docs;       ///< folder of documentation to refresh; empty = none
 };
 
 /// Prints four tables: our solver and the paper's cascade on the problems of the scenarios and of

@@ -78,11 +78,10 @@ int faults(FaultsArguments arguments) {
   }
   check_writable(arguments.json, kJson);
   check_writable(arguments.markdown, kMarkdown);
+  if (!arguments.docs.empty()) check_writable(arguments.docs + "/fault_campaign.md", kMarkdown);
   const bool is_part = !arguments.played.part.empty();
-  if (!is_part) {  // before minutes of runs
-    check_sweep_program(arguments.played);
-    check_report_program();
-  }
+  if (arguments.json.empty() && !is_part) check_report_program();  // before minutes of runs
+  if (!is_part) check_sweep_program(arguments.played);
   const ScratchFolder scratch;
   std::vector<recording::RecordingInfo> recordings;
   if (recording::recording_available()) {
@@ -100,9 +99,13 @@ int faults(FaultsArguments arguments) {
   };
   const std::size_t parts = 1 + (arguments.campaign.cases - 1) / kCasesOfAPart;
   if (play_campaign({command_of(arguments), parts, scenarios, play}, arguments.played)) return 0;
+  const nlohmann::ordered_json results = to_json(campaign);
+  write_json(arguments.json, results);  // which the report replaces by the one with verdicts
   return become_reports(
-      {{.results = to_json(campaign),
-        .files = {{"faults.json", arguments.json}, {"report.md", arguments.markdown}}}});
+      {{.results = results,
+        .docs = arguments.docs,
+        .files = {{"faults.json", arguments.json}, {"report.md", arguments.markdown}},
+        .kept = arguments.json.empty() ? "" : arguments.json + " has the results\n"}});
 }
 
 void add_faults(Command app, int& exit_code) {
@@ -128,6 +131,8 @@ void add_faults(Command app, int& exit_code) {
   add_campaign_options(command, arguments->played);
   command.add_option("--json", arguments->json, "write all cases as JSON to this file");
   command.add_option("--markdown", arguments->markdown, "write the table as a page to this file");
+  command.add_option("--docs", arguments->docs,
+                     "refresh the page fault_campaign.md of this folder (make experiments)");
   command.callback([arguments, &exit_code] { exit_code = faults(*arguments); });
 }
 

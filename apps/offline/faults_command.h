@@ -20,6 +20,7 @@ struct FaultsArguments {
   CampaignOptions played;
   std::string json;      ///< file for all cases; empty = none
   std::string markdown;  ///< file for the table as a page; empty = none
+  std::string docs;      ///< folder of documentation to refresh; empty = none
 };
 
 /// Prints a table. Returns the exit code: 1 when a fault was unnoticed or went beyond the bounds;

@@ -1,4 +1,4 @@
-/// A fault of the computer, at given times: late cycles. For tests and experiments.
+/// Faults of the computer, at given times: late cycles, a solver cut short. For tests.
 #pragma once
 
 #include <cstddef>

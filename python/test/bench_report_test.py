@@ -16,7 +16,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from hapticgiant.figures import SETTINGS
-from hapticgiant.report import bench
+from hapticgiant.report import bench, pages
 from report_test import overlapping, said
 
 STAGES = ["supervision", "estimation", "prepositioning", "rendering set-up", "solver", "reactions"]
@@ -45,7 +45,8 @@ def law_run(law, **more):
 def results(**more):
     """A benchmark with everything, and long names."""
     return {"kind": "bench",
-            "machine": {"date": "2026-11-25", "cpu": "a < b & c", "version": "1"}, "passes": 2,
+            "machine": {"date": "2026-11-25", "cpu": "a < b & c", "cores": 2, "compiler": "GNU 12",
+                        "version": "1"}, "passes": 2,
             "most_problems": 500, "most_cycles": None, "remarks": ["cascade: not built"],
             "solver": [solver_set("free_space, gauss, recoverable"), solver_set("door, paper, paper"),
                        solver_set("say \"c\"", ("cold",))],
@@ -110,6 +111,24 @@ class Report(unittest.TestCase):
         colours = [[patch.get_edgecolor() for patch in panel.patches] for panel in panels[:3]]
         self.assertEqual([len(it) for it in colours], [3, 3, 1])
         self.assertEqual(colours[2], colours[0][1:2])
+
+    def test_a_page_of_the_documentation_is_refreshed(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            page = folder / "benchmarks.md"
+            page.write_text(f"before\n\n{pages.BEGIN}stale\n{pages.END}\nafter\n")
+            said(bench.write, results(), folder, docs=folder)
+            text = page.read_text()
+            with open(folder / "benchmarks_solver.csv", newline="") as file:
+                rows = list(csv.DictReader(file, strict=True))
+        self.assertTrue(text.startswith("before\n") and text.endswith("\nafter\n"), text)
+        self.assertNotIn("stale", text)
+        for words in ("`make bench`, a < b & c, 2 shared cores, GNU 12.\n", "\nVersion ",
+                      "## Solver\n", "[Table: benchmarks_solver.csv](benchmarks_solver.csv)\n",
+                      "[Table: benchmarks_cycle.csv](benchmarks_cycle.csv)\n",
+                      "missing: locked", "- cascade: not built\n"):
+            self.assertIn(words, text)
+        self.assertEqual(rows[1]["cascade"], "1.5 x")
 
     def test_all_files_are_written_and_repeat(self):
         texts = []

@@ -101,6 +101,14 @@ class Faults(unittest.TestCase):
         self.assertFalse(found["passed"])
         self.assertTrue(judged(*good[:2])["passed"])
 
+    def test_a_value_that_is_not_finite_fails_and_stays_null(self):
+        for key in ("peak_force_N", "worst_excess", "travel_share", "energy_J"):
+            with tempfile.TemporaryDirectory() as name:
+                folder = pathlib.Path(name)
+                self.assertEqual(said(faults.write, results(case(**{key: None})), folder)[0], 1, key)
+                kept = json.loads((folder / "faults.json").read_text())["cases"][0]
+                self.assertEqual((kept["passed"], kept[key]), (False, None))
+
     def test_the_page_lists_all_kinds(self):
         page = faults.page(judged(case()))
         self.assertIn("# Results of 1 cases", page)

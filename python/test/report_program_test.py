@@ -39,8 +39,9 @@ class Program(unittest.TestCase):
         self.folder = pathlib.Path(scratch.name)
 
     def make(self, *reports, stdout=subprocess.PIPE, stderr=subprocess.PIPE):
-        done = subprocess.run([sys.executable, "-B", PROGRAM], input=json.dumps({"version": "1.2.3", "reports": reports}),
-                              stdout=stdout, stderr=stderr, text=True, check=False, cwd="/")
+        document = json.dumps({"version": "1.2.3", "reports": reports})
+        done = subprocess.run([sys.executable, "-B", PROGRAM], input=document, stdout=stdout,
+                              stderr=stderr, text=True, check=False, cwd="/")
         return done.returncode, done.stdout, done.stderr
 
     def compare(self, *hashes, **more):

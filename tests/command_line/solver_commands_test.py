@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import unittest
 import unittest.mock
@@ -41,12 +42,18 @@ class Bench(TemporaryFolder):
     def test_a_quick_run_of_the_door_fills_every_table_and_figure(self):
         self.out = self.folder / "new" / "results"
         reported = self.folder / "bench.json"
-        code, out, err = run("bench", "door", "--quick", "--json", reported, "--out", self.out)
+        docs = self.folder / "docs"
+        docs.mkdir()
+        shutil.copy("docs/reports/benchmarks.md", docs)
+        code, out, err = run("bench", "door", "--quick", "--json", reported, "--out", self.out,
+                             "--docs", docs)
         self.assertEqual((code, err), (0, ""), out)
         self.assertIn("--quick: only the first 500 problems of each set", out)
         self.assertIn("--quick: only the first 2000 cycles", out)
         reported = json.loads(reported.read_text())
         self.assertEqual(out, (self.out / "README.md").read_text())
+        self.assertIn("--quick: only the first 500", (docs / "benchmarks.md").read_text())
+        self.assertTrue((docs / "benchmarks_laws.csv").read_text().startswith("scenario,law,"))
 
         # both laws play the scenario to its end
         self.assertEqual([(r["law"], r["bounds"]) for r in reported["runs"]],

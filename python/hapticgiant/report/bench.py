@@ -6,7 +6,7 @@ import matplotlib
 import numpy as np
 
 from ..figures import COLOURS, SETTINGS
-from . import pictures, tables
+from . import pages, pictures, tables
 
 ENOUGH_FOR_TAIL = 1000  # times: with fewer, the 99.9th percentile would be the largest
 BINS_PER_DECADE = 20
@@ -235,7 +235,7 @@ def number(value, digits):
     return "-" if value is None else f"{value:.{digits}f}"
 
 
-def solver_table(rows):
+def solver_cells(rows):
     table = [["set", "n", "levels", "problems", "solver", "median", "99.9 %", "max", "tried",
               "failed", "wrong", "cascade"]]
     previous = None
@@ -250,10 +250,10 @@ def solver_table(rows):
             number(row["max_us"], 2), number(row["active_sets_tried"], 2), str(row["failed"]),
             "-" if row["wrong"] is None else str(row["wrong"]),
             "" if factor is None else f"{factor:.{1 if factor < 10 else 0}f} x"])
-    return tables.aligned_markdown(table, left=(0, 4))
+    return table
 
 
-def cycle_table(rows):
+def cycle_cells(rows):
     table = [["scenario", "stage", "median", "99.9 %", "max", "mean", "share"]]
     for row in rows:
         is_total = row["stage"] == "total"
@@ -265,16 +265,19 @@ def cycle_table(rows):
                       *(number(row[key], 2)
                         for key in ("median_us", "p99_9_us", "max_us", "mean_us")),
                       f"{100.0 * row['mean_us'] / whole if whole else 0.0:.0f} %"])
-    return tables.aligned_markdown(table, left=(0, 1))
+    return table
 
 
-def growth_table(rows, exponents):
+def growth_cells(rows):
     head = ["n", "levels", "rows"] + [f"{start} {what}" for start in ("cold", "warm")
                                       for what in ("median", "max", "tried")] + ["failed"]
-    table = [head] + [[value if isinstance(value, str) else
-                       str(value) if isinstance(value, int) else number(value, 1)
-                       for value in row.values()] for row in rows]
-    return tables.aligned_markdown(table, left=()) + "".join(
+    return [head] + [[value if isinstance(value, str) else
+                      str(value) if isinstance(value, int) else number(value, 1)
+                      for value in row.values()] for row in rows]
+
+
+def exponent_lines(exponents):
+    return "".join(
         f"\nmedian ~ {it['with']}^k at {it['at']}: k = {it['cold']:.2f} cold, {it['warm']:.2f} warm\n"
         for it in exponents)
 
@@ -285,10 +288,9 @@ def violation(worst):
     return f"{1e3 * worst['value']:.2f} m{worst['unit']} {worst['limit']}"
 
 
-def law_table(rows, results):
+def law_cells(rows, results):
     table = [["scenario", "law", "bounds", "events", "changes/s", "cycles changed", "mean m/s^2",
               "max m/s^2", "worst violation", "solver us", "cycle us"]]
-    problems = []
     for row, run in zip(rows, results["laws"]):
         change = row["acceleration_change_per_cycle"]
         table.append([
@@ -298,46 +300,74 @@ def law_table(rows, results):
             number(change["max"], 1), violation(row["worst_violation"]),
             *(f"{it['median']:.1f} / {number(it['p99_9'], 1)} / {it['max']:.0f}"
               for it in (row["solver_us"], row["cycle_us"]))])
+    return table
+
+
+def law_problems(results):
+    problems = []
+    for run in results["laws"]:
         found = ["missing: " + ", ".join(run["missing_events"])] if run["missing_events"] else []
         found += [f"fault: {run['fault']}"] if run["fault"] != "no fault" else []
         found += [f"{run['unsolved']} cycles not solved"] if run["unsolved"] else []
-        problems += [f"\n**{row['scenario']}, {row['law']}, {row['bounds']}: {it}**\n"
+        problems += [f"\n**{run['scenario']}, {run['law']}, {run['bounds']}: {it}**\n"
                      for it in found]
-    return tables.aligned_markdown(table, left=(0, 1, 2, 8)) + "".join(problems)
+    return "".join(problems)
 
 
 def only_first(most, what):
     return "" if most is None else f"\n--quick: only the first {most} {what}\n"
 
 
+def sections(results, rows, solver, cycle, growth, laws):
+    """What was measured and how, around four tables."""
+    passes = results["passes"]
+    return "".join([
+        f"## Solver\n\nus per problem: the fastest of {passes} passes for each problem\n",
+        only_first(results["most_problems"], "problems of each set; in those of a scenario "
+                   "usually nothing touches yet"),
+        "\n", solver,
+        f"\n## Cycle\n\nus, law gauss, bounds recoverable: the fastest of {passes} plays for "
+        f"each cycle; stages are\nmeasured in {passes} plays of their own and contain a look "
+        "at the clock each\n",
+        only_first(results["most_cycles"], "cycles that render; usually nothing touches yet"),
+        "\n", cycle,
+        "\n## Growth\n\nus, random well-posed problems (bench/growth.h, seeds 1 to 5): the "
+        f"fastest of {passes} passes\n\n", growth, exponent_lines(rows["growth_exponents"]),
+        "\n## Laws and bounds\n\nEach cycle measured once; us: median / 99.9 % / max; change "
+        "of acceleration: of the hand per cycle\n\n", laws, law_problems(results),
+        *(["\n## Not measured\n\n"] if results["remarks"] else []),
+        *(f"- {remark}\n" for remark in results["remarks"])])
+
+
 def readme(results, rows):
     """The page of the results; the program prints it, too."""
-    passes = results["passes"]
+    aligned = tables.aligned_markdown
     parts = ["# Benchmark\n\n", *(f"- {key}: {value}\n" for key, value
                                   in results["machine"].items()),
-             "\nFigures: solver_histogram.svg, cycle_histogram.svg, growth.svg\n",
-             f"\n## Solver\n\nus per problem: the fastest of {passes} passes for each problem\n",
-             only_first(results["most_problems"], "problems of each set; in those of a scenario "
-                        "usually nothing touches yet"),
-             "\n", solver_table(rows["solver"]),
-             f"\n## Cycle\n\nus, law gauss, bounds recoverable: the fastest of {passes} plays for "
-             f"each cycle; stages are\nmeasured in {passes} plays of their own and contain a look "
-             "at the clock each\n",
-             only_first(results["most_cycles"], "cycles that render; usually nothing touches yet"),
-             "\n", cycle_table(rows["cycle"]),
-             "\n## Growth\n\nus, random well-posed problems (bench/growth.h, seeds 1 to 5): the "
-             f"fastest of {passes} passes\n\n", growth_table(rows["growth"],
-                                                            rows["growth_exponents"]),
-             "\n## Laws and bounds\n\nEach cycle measured once; us: median / 99.9 % / max; change "
-             "of acceleration: of the hand per cycle\n\n", law_table(rows["runs"], results)]
-    if results["remarks"]:
-        parts += ["\n## Not measured\n\n", *(f"- {remark}\n" for remark in results["remarks"])]
+             "\nFigures: solver_histogram.svg, cycle_histogram.svg, growth.svg\n\n",
+             sections(results, rows, aligned(solver_cells(rows["solver"]), left=(0, 4)),
+                      aligned(cycle_cells(rows["cycle"]), left=(0, 1)),
+                      aligned(growth_cells(rows["growth"]), left=()),
+                      aligned(law_cells(rows["runs"], results), left=(0, 1, 2, 8)))]
     return "".join(parts)
 
 
+def refresh_docs(results, rows, page):
+    """Writes tables and machine into the page of the documentation, the tables beside it."""
+    def table(cells, name):
+        return pages.PageTables(page)(cells, name, most=0)
+
+    machine = results["machine"]
+    text = sections(results, rows, table(solver_cells(rows["solver"]), "solver"),
+                    table(cycle_cells(rows["cycle"]), "cycle"),
+                    table(growth_cells(rows["growth"]), "growth"),
+                    table(law_cells(rows["runs"], results), "laws"))
+    pages.refresh(page, f"`make bench`, {machine['cpu']}, {machine['cores']} shared cores, "
+                  f"{machine['compiler']}.\n\n{text}")
+
+
 def write(results, folder, docs=None):
-    """Writes the report into `folder`."""
-    del docs
+    """Writes the report into `folder`, and its figures into benchmarks.md of `docs`."""
     growth = growth_rows(results)
     rows = {"solver": solver_rows(results), "cycle": cycle_rows(results), "growth": growth,
             "growth_exponents": exponent_rows(growth), "runs": law_rows(results)}
@@ -358,3 +388,5 @@ def write(results, folder, docs=None):
     with matplotlib.rc_context(SETTINGS):
         for name, figure in figures_of(results).items():
             figure.savefig(folder / f"{name}.svg", metadata={"Date": None, "Creator": None})
+    if docs:
+        refresh_docs(results, rows, docs / "benchmarks.md")

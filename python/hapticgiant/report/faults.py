@@ -23,12 +23,12 @@ def in_words(fault, units):
 def has_fallen(case):
     """Once the power is off, no software holds an axis whose brake fails: it has to be reported."""
     is_weak = any(it.get("fault") == "brake_weak" for it in (case, case.get("and", {})))
-    return is_weak and case.get("brake_slips", False) and case["travel_share"] > 1.0
+    return is_weak and case.get("brake_slips", False) and not case["travel_share"] <= 1.0
 
 
 def has_passed(results, case):
     if (case["outcome"] == "unnoticed" or not case["recording_complete"]
-            or case["peak_force_N"] > results["force_bound_N"]):
+            or not case["peak_force_N"] <= results["force_bound_N"]):  # NaN has not passed
         return False
     return case["has_fallen"] or (
         case["worst_excess"] <= results["excess_bound"] and case["travel_share"] <= 1.0
@@ -158,12 +158,13 @@ def page(results, form=pages.in_text):
 
 def write(results, folder, docs=None):
     """Writes report.md and faults.json, and docs/reports/fault_campaign.md with its tables."""
+    results = pages.with_numbers(results)
     judge(results)
     print(text(results), end="")
-    pages.save(folder / "faults.json",
-               json.dumps(results | {"version": pages.version}, indent=2) + "\n")
+    as_nulls = json.loads(json.dumps(results | {"version": pages.version}), parse_constant=lambda _: None)
+    pages.save(folder / "faults.json", json.dumps(as_nulls, indent=2) + "\n")
     (folder / "report.md").write_text(page(results), encoding="utf-8")
     if docs:
         file = docs / "fault_campaign.md"
-        pages.save(file, page(results, pages.PageTables(file)))
+        pages.save(file, f"{page(results, pages.PageTables(file)).rstrip()}\n\n{pages.stamp()}\n")
     return 0 if results["passed"] else 1

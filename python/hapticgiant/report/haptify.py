@@ -1,10 +1,9 @@
 """The report of `hapticgiant haptify` and of `hapticgiant haptify --goals`."""
 
 import json
-import math
 
 from . import benchmark, goals, pictures, tables
-from .pages import PageTables, in_text, refresh, render, save
+from .pages import PageTables, in_text, refresh, render, save, stamp, with_numbers
 
 METHOD = (
     "Instruments: Haptify has a force plate, motion capture and an instrumented handle; here the "
@@ -45,7 +44,7 @@ class Results:
         return self.facts[name]
 
     def command_line(self):
-        line = f"`{self['command']}`, version {self['version']}, simulated {self['device']}."
+        line = f"`{self['command']}`, simulated {self['device']}."
         return f"{line} {self.place()}".rstrip()
 
     def place(self):
@@ -193,13 +192,6 @@ def haptify_text(results):
     return "".join(lines) + failures_text(results)
 
 
-def with_numbers(entry):
-    """`entry` with NaN for the null that stands for infinite and undefined results."""
-    if isinstance(entry, dict):
-        return {key: math.nan if value is None else with_numbers(value) for key, value in entry.items()}
-    return [with_numbers(value) for value in entry] if isinstance(entry, list) else entry
-
-
 def write(results, folder, docs=None):
     """Writes the report into `folder` and into the pages of `docs`; returns 1 where a run has failed."""
     measured = with_numbers(results)
@@ -209,13 +201,13 @@ def write(results, folder, docs=None):
     if name == "goals":
         text = goals_markdown(results)
         shown = goals_text(results)
-        save(folder / "goals.md", f"# Goals: {results['device']}\n\n{text}")
+        save(folder / "goals.md", f"# Goals: {results['device']}\n\n{text}\n{stamp()}\n")
         save(folder / "goals_runs.csv", repetitions_csv(results))
     else:
         text = markdown(results)
         shown = haptify_text(results)
         save(folder / "report.html", html(results))
-        save(folder / "report.md", f"# Haptify: {results['device']}\n\n{text}")
+        save(folder / "report.md", f"# Haptify: {results['device']}\n\n{text}\n{stamp()}\n")
         save(folder / "table.tex", latex(results))
         save(folder / "haptify.csv", figures_csv(results))
         save(folder / "repetitions.csv", repetitions_csv(results))

@@ -1,5 +1,7 @@
 """Files of a report: pages from templates, and pages of the documentation that hold figures."""
 
+import datetime
+import math
 import pathlib
 
 import jinja2
@@ -8,7 +10,15 @@ from .. import figures
 from . import tables
 
 HERE = pathlib.Path(__file__).resolve().parent
+version = ""  # of the program whose figures these are
 BEGIN, END = "<!-- figures: begin -->\n", "<!-- figures: end -->"
+
+
+def with_numbers(entry):
+    """`entry` with NaN for the null that stands for infinite and undefined results."""
+    if isinstance(entry, dict):
+        return {key: math.nan if value is None else with_numbers(value) for key, value in entry.items()}
+    return [with_numbers(value) for value in entry] if isinstance(entry, list) else entry
 
 
 def save(file, text):
@@ -51,13 +61,19 @@ def in_text(rows, _name, most=8):
     return tables.markdown(rows)
 
 
+def stamp():
+    """Version of the program and date of figures."""
+    return f"Version {version}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%d}."
+
+
 def refresh(page, text, svg=None):
-    """Replaces what stands between the two marks of a page, and the picture of the same name."""
+    """Replaces what stands between the two marks of a page, and the picture of the same name. The
+    stamp is added."""
     content = page.read_text(encoding="utf-8")
     before, begin, rest = content.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not begin or not end:
         raise SystemExit(f"{page}: must have the lines '{BEGIN.strip()}' and '{END}'")
-    save(page, f"{before}{begin}\n{text}\n{end}{after}")
+    save(page, f"{before}{begin}\n{text.rstrip()}\n\n{stamp()}\n\n{end}{after}")
     if svg:
         save(page.with_suffix(".svg"), svg)

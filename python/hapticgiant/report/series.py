@@ -377,9 +377,9 @@ def stability_map(folder, results, docs):
     return 0
 
 
-STUDIES = {"contact": contact, "free-space": free_space, "impedance": impedance, "inertial": inertial,
-           "seeds": seeds, "stability-map": stability_map}
+SERIES = {"contact": contact, "free-space": free_space, "impedance": impedance, "inertial": inertial,
+          "seeds": seeds, "stability-map": stability_map}
 
 
 def write(results, folder, docs=None):
-    return STUDIES[results["kind"]](folder, results, docs)
+    return SERIES[results["kind"]](folder, results, docs)

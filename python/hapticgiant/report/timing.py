@@ -75,7 +75,7 @@ def write(results, folder, docs=None):
     if docs:
         cut = "" if results["duration_s"] is None else f" --duration {results['duration_s']:g}"
         page = docs / "timing.md"
-        pages.refresh(page, f"`hapticgiant experiment timing{cut}`, {machine['date']}, "
-                      f"{machine['cpu']}. {HOW}\n\n{pages.PageTables(page)(rows, 'times')}",
+        pages.refresh(page, f"`hapticgiant experiment timing{cut}`, {machine['cpu']}. {HOW}\n\n"
+                      f"{pages.PageTables(page)(rows, 'times')}",
                       (folder / "figure.svg").read_text(encoding="utf-8"))
     return 0

@@ -66,8 +66,10 @@ class Outcome:
         return None if summary is None or summary.get("interrupted") else summary
 
     def was_ended(self) -> bool:
-        """Whether somebody else has ended it, or a signal did, so that it is worth another try."""
-        return self.code < RETURN_CODE_OF_A_SIGNAL or self.code == 0 and self.summary() is None
+        """Whether a signal has ended it, or it could not be started (126, 127: of the shell), so that
+        it is worth another try."""
+        return (self.code < RETURN_CODE_OF_A_SIGNAL or self.code in (126, 127)
+                or self.code == 0 and self.summary() is None)
 
     def why(self) -> str:
         """Why there is no summary."""
