@@ -30,6 +30,12 @@ class Bench(TemporaryFolder):
         """How many were timed: a first one has nothing to start from."""
         return int(row["problems"]) - (row["solver"] == "warm")
 
+    def copied_page(self):
+        docs = self.folder / "docs"
+        docs.mkdir()
+        shutil.copy("docs/reports/benchmarks.md", docs)
+        return docs
+
     def check_histograms(self, solver):
         """Histograms count every problem and cycle."""
         counted = {}
@@ -42,9 +48,7 @@ class Bench(TemporaryFolder):
     def test_a_quick_run_of_the_door_fills_every_table_and_figure(self):
         self.out = self.folder / "new" / "results"
         reported = self.folder / "bench.json"
-        docs = self.folder / "docs"
-        docs.mkdir()
-        shutil.copy("docs/reports/benchmarks.md", docs)
+        docs = self.copied_page()
         code, out, err = run("bench", "door", "--quick", "--json", reported, "--out", self.out,
                              "--docs", docs)
         self.assertEqual((code, err), (0, ""), out)
