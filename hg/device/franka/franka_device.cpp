@@ -272,6 +272,7 @@ void FrankaDevice::take_answers() noexcept {
     const bool is_stopped = state_.robot_mode == RobotMode::kUserStopped;
     if (status == MoveStatus::kEmergencyAborted || is_stopped) {
       phase_ = Phase::kIdle;  // the user stop is an input of safety, no fault of the drives
+      stopped_at_ = state_.message_id;
       continue;
     }
     move_status_ = status;
@@ -353,7 +354,9 @@ void FrankaDevice::write(const CommandFrame& command) noexcept {
     was_not_finite_ = true;
     return finish_motion();
   }
-  const bool is_stopped = state_.robot_mode == RobotMode::kUserStopped;
+  // an answer by TCP may overtake the states that show the user stop
+  const bool is_stopped = state_.robot_mode == RobotMode::kUserStopped ||
+                          (stopped_at_ > 0 && state_.message_id <= stopped_at_ + kOvertaken);
   if (phase_ == Phase::kIdle && !was_not_finite_ && !is_stopped) start_motion();
   if (phase_ != Phase::kMoving) return;
   if (command.sequence != state_.message_id) {

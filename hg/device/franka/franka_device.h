@@ -128,6 +128,7 @@ class FrankaDevice final : public device::ConnectedDevice {
   std::uint32_t ended_id_ = 0;      ///< number of the last Move that this driver has ended
   std::uint32_t recovery_id_ = 0;   ///< number of the recovery that was asked for, 0 = none
   std::uint64_t recovered_at_ = 0;  ///< message_id of the newest state when it had recovered
+  std::uint64_t stopped_at_ = 0;    ///< the same when its answer said that it was stopped
   bool was_reset_ = false;          ///< reset button in the last command
   bool is_closed_ = false;
   bool has_checked_signs_ = false;
