@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <thread>
 
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
@@ -296,6 +298,22 @@ TEST(FrankaDevice, TheUserStopIsAnEmergencyStop) {
   ASSERT_TRUE(bench.cycle_until([&] { return !bench.sensors.safety.emergency_stop; }));
   EXPECT_TRUE(bench.has(FaultCode::kNone));
   EXPECT_TRUE(bench.start());
+}
+
+TEST(FrankaDevice, AStopWhoseAnswerOvertakesTheStatesAsksForNoMotion) {
+  Bench bench;
+  ASSERT_TRUE(bench.start());
+  const int newest = bench.robot.newest, motions = bench.robot.motions;
+  bench.robot.send_one();  // still shows the motion
+  while (bench.robot.newest == newest) std::this_thread::yield();
+  bench.robot.press_user_stop(true);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // until the answer is there
+  bench.device->read(bench.sensors);
+  EXPECT_FALSE(bench.sensors.safety.emergency_stop);
+  bench.command.sequence = bench.sensors.sequence;
+  bench.device->write(bench.command);
+  EXPECT_TRUE(bench.cycle_until([&] { return bench.sensors.safety.emergency_stop; }));
+  EXPECT_EQ(bench.robot.motions, motions);
 }
 
 TEST(FrankaDevice, ACommandThatIsNotFiniteIsNotSent) {
