@@ -51,6 +51,12 @@ CollisionRequest request_of(const CollisionThresholds& thresholds) {
           .upper_force = thresholds.force};
 }
 
+// Whether a state may be older than the last answer by TCP, which overtakes states by UDP. It came
+// when `answered_at` was the newest state; 0: none came.
+bool may_be_older(std::uint64_t state, std::uint64_t answered_at) noexcept {
+  return answered_at > 0 && state <= answered_at + kOvertaken;
+}
+
 bool is_finite(const CommandFrame& command) noexcept {
   const Eigen::Index n = kJoints;
   return command.q_m.size() == n && command.dq_m.size() == n && command.ddq_m.size() == n &&
@@ -290,8 +296,7 @@ void FrankaDevice::follow(const RobotState& state) noexcept {
     return;
   }
   if (state.robot_mode == RobotMode::kReflex) {
-    // an answer by TCP may overtake a state
-    if (recovered_at_ == 0 || id > recovered_at_ + kOvertaken) abort(state);
+    if (!may_be_older(id, recovered_at_)) abort(state);
     return;
   }
   switch (phase_) {
@@ -354,9 +359,8 @@ void FrankaDevice::write(const CommandFrame& command) noexcept {
     was_not_finite_ = true;
     return finish_motion();
   }
-  // an answer by TCP may overtake the states that show the user stop
-  const bool is_stopped = state_.robot_mode == RobotMode::kUserStopped ||
-                          (stopped_at_ > 0 && state_.message_id <= stopped_at_ + kOvertaken);
+  const bool is_stopped =
+      state_.robot_mode == RobotMode::kUserStopped || may_be_older(state_.message_id, stopped_at_);
   if (phase_ == Phase::kIdle && !was_not_finite_ && !is_stopped) start_motion();
   if (phase_ != Phase::kMoving) return;
   if (command.sequence != state_.message_id) {

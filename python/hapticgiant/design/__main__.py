@@ -100,8 +100,9 @@ def main():
     results["feel"] = feel(out, not arguments.no_feel)
     (out / "results.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     report = pathlib.Path(__file__).resolve().parents[1] / "report"
-    document = {"version": results["version"], "reports": [{"results": results, "folder": str(out.resolve()), "docs": None, "files": {},
-                             "last_line": "", "kept": "", "exit_code": 0}]}
+    made = {"results": results, "folder": str(out.resolve()), "docs": None, "files": {}, "last_line": "",
+            "kept": "", "exit_code": 0}
+    document = {"version": results["version"], "reports": [made]}
     written = subprocess.run([sys.executable, "-B", report], input=json.dumps(document), text=True,
                              check=False).returncode
     if written:
