@@ -8,6 +8,23 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 namespace hg {
+namespace {
+
+// Whether some x > 0 with |A| x < x is found, which proves a spectral radius below 1 (Collatz,
+// Wielandt). Powers of |A| come near to such an x.
+bool shrinks(const Eigen::MatrixXd& A) {
+  constexpr int kPowers = 8;
+  const Eigen::MatrixXd magnitudes = A.cwiseAbs();
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(A.cols());
+  for (int i = 0; i < kPowers; ++i) {
+    const Eigen::VectorXd next = magnitudes * x;
+    if ((next.array() < x.array()).all()) return true;
+    x = next / next.maxCoeff() + Eigen::VectorXd::Constant(A.cols(), 1e-9);
+  }
+  return false;
+}
+
+}  // namespace
 
 struct LeastSquares::Decomposition {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> of;
@@ -46,6 +63,17 @@ double spectral_radius(const Eigen::MatrixXd& A) {
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(A, false);
   if (solver.info() != Eigen::Success) return kInfinite;
   return solver.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+bool has_decaying_powers(const Eigen::MatrixXd& A) {
+  constexpr int kSquarings = 9;  // cheaper than the eigenvalues
+  Eigen::MatrixXd power = A, square(A.rows(), A.cols());
+  for (int i = 0; i <= kSquarings && power.allFinite(); ++i) {
+    if (shrinks(power)) return true;
+    square.noalias() = power * power;
+    power.swap(square);
+  }
+  return spectral_radius(A) < 1.0;
 }
 
 Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& A) { return A.exp(); }

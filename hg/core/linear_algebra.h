@@ -48,6 +48,10 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& A);
 /// Largest magnitude of an eigenvalue of a square matrix; infinity if the matrix is not finite.
 double spectral_radius(const Eigen::MatrixXd& A);
 
+/// Whether the powers of a square matrix vanish: spectral_radius(A) < 1, several times faster where
+/// the radius is far below 1.
+bool has_decaying_powers(const Eigen::MatrixXd& A);
+
 /// Matrix exponential e^A.
 Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& A);
 

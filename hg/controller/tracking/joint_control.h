@@ -56,6 +56,10 @@ class JointControl {
   /// Fills `command` while the drives are off and resets the control for the next step().
   void rest(const ReferenceState& reference, ControlState& state,
             CommandFrame& command) const noexcept;
+  /// Prepares `state` for the first step() after start(), restart() or rest(), which otherwise does
+  /// so itself.
+  void begin(const ReferenceState& reference, const RobotState& robot,
+             ControlState& state) noexcept;
   /// Fills the manipulator part of `command`: `now` is the reference at the time of the sample,
   /// `next` where the drives should be a period later.
   void step(const ReferenceState& now, const ReferenceState& next, const RobotState& robot,
@@ -91,8 +95,6 @@ class JointControl {
   VectorM of_stiff_modes(const VectorM& tau, const VectorM& shares,
                          const ControlState& state) const noexcept;
   VectorM timely(const VectorM& tau, const RobotState& robot, ControlState& state) const noexcept;
-  void begin(const ReferenceState& reference, const RobotState& robot,
-             ControlState& state) noexcept;
   Feedforward feedforward(const ReferenceState& reference, const RobotState& robot,
                           ControlState& state) noexcept;
   void integrate(const VectorM& error, ControlState& state) const noexcept;

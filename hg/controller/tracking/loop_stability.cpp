@@ -28,10 +28,11 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const Vecto
   constexpr double kError = 1e-7;  // small against every limit of the controller
   const int n = loop.device.n_m;
   JointControl control(loop.config, loop.device);
-  ControlState at_start = control.start();
-  at_start.latency = latency / loop.device.dt();
   const RobotState robot = standing(loop.device.actuators, q, weight);
   const ReferenceState reference = standing_reference(robot);
+  ControlState at_start = control.start();
+  at_start.latency = latency / loop.device.dt();
+  control.begin(reference, robot, at_start);
   const auto torque = [&](const RobotState& seen) -> Eigen::VectorXd {
     ControlState state = at_start;
     CommandFrame command;
@@ -53,68 +54,66 @@ Eigen::MatrixXd feedback(const Loop& loop, const Eigen::VectorXd& q, const Vecto
   return answers;
 }
 
-// One period of the loop as a matrix, column by column.
-class SampledLoop {
- public:
-  SampledLoop(const Loop& loop, const Eigen::VectorXd& q, double latency, const TruePlant& plant)
-      : actuators_(plant.actuators),
-        delay_(plant.loop.latency, loop.device.dt()),
-        layout_{loop.device.n_m, delay_.slots()},
-        observers_(loop.filters, loop.device.dt()) {
-    model::ChainData chain(loop.device.chain);
-    chain.update(q, Eigen::VectorXd::Zero(q.size()));
-    const MatrixM M =
-        plant.link_mass * chain.M().bottomRightCorner(loop.device.n_m, loop.device.n_m);
-    step_ = matrix_exponential(plant_with_input(plant, M) * (loop.device.dt() / kPlantSteps));
-    feedback_ = feedback(loop, q, chain.c().tail(loop.device.n_m), latency);
-  }
-
-  Eigen::MatrixXd period() const {
-    Eigen::MatrixXd matrix(layout_.size(), layout_.size());
-    for (int i = 0; i < layout_.size(); ++i) {
-      matrix.col(i) = advance(Eigen::VectorXd::Unit(layout_.size(), i));
-    }
-    return matrix;
-  }
-
- private:
-  Eigen::VectorXd advance(const Eigen::VectorXd& now) const {
-    const Layout& at = layout_;
-    const int n = at.n;
-    const Eigen::VectorXd theta = now.segment(0, n), dtheta = now.segment(n, n),
-                          q = now.segment(2 * n, n), dq = now.segment(3 * n, n);
-    Eigen::VectorXd next = now;
-    observers_.advance(theta, q, Eigen::VectorXd::Zero(n), next.segment(at.observers(), 4 * n));
-
-    Eigen::VectorXd seen(5 * n);  // theta, theta', q, q', joint torque
-    seen << theta, next.segment(at.observers() + n, 3 * n), Eigen::VectorXd::Zero(n);
-    for (int i = 0; i < n; ++i) {
-      const ActuatorModel& actuator = actuators_[i];
-      seen[4 * n + i] =
-          actuator.stiffness * (theta[i] - q[i]) + actuator.damping * (dtheta[i] - dq[i]);
-    }
-
-    // the plant under the commands that arrive during this period, the oldest first
-    Eigen::VectorXd commands((at.slots + 1) * n);
-    commands << now.tail(at.slots * n), feedback_ * seen;
-    Eigen::VectorXd x(6 * n);
-    x.head(5 * n) = now.head(5 * n);
-    for (int i = 0; i < kPlantSteps; ++i) {
-      x.tail(n) = commands.segment((at.slots - delay_.age(i)) * n, n);
-      x = (step_ * x).eval();
-    }
-    next.head(5 * n) = x.head(5 * n);
-    next.tail(at.slots * n) = commands.tail(at.slots * n);
-    return next;
-  }
-
-  std::vector<ActuatorModel> actuators_;  // as they really are
-  DiscreteDelay delay_;
-  Layout layout_;
-  LinearObservers observers_;
-  Eigen::MatrixXd step_;
-  Eigen::MatrixXd feedback_;  // torques from theta, theta', q, q', tau_J
+// The arm in one posture.
+struct Arm {
+  Eigen::VectorXd q;
+  VectorM weight;        // of the links, as the controller knows it
+  Eigen::MatrixXd step;  // of the plant: e^(A dt / kPlantSteps), see plant_with_input()
 };
+
+Arm arm_at(const Eigen::VectorXd& q, const Loop& loop, const TruePlant& plant) {
+  const int n = loop.device.n_m;
+  model::ChainData chain(loop.device.chain);
+  chain.update(q, Eigen::VectorXd::Zero(q.size()));
+  const MatrixM M = plant.link_mass * chain.M().bottomRightCorner(n, n);
+  return {q, chain.c().tail(n),
+          matrix_exponential(plant_with_input(plant, M) * (loop.device.dt() / kPlantSteps))};
+}
+
+// One period of the loop with the gains for `latency` as a matrix: the states that follow the unit
+// states, as columns.
+Eigen::MatrixXd period_of(const Loop& loop, const Arm& arm, double latency,
+                          const TruePlant& plant) {
+  const DiscreteDelay delay(plant.loop.latency, loop.device.dt());
+  const LinearObservers observers(loop.filters, loop.device.dt());
+  const Layout at = {loop.device.n_m, delay.slots()};
+  const int n = at.n, size = at.size();
+  const Eigen::MatrixXd now = Eigen::MatrixXd::Identity(size, size);
+  const auto theta = now.middleRows(0, n), dtheta = now.middleRows(n, n),
+             q = now.middleRows(2 * n, n), dq = now.middleRows(3 * n, n);
+  Eigen::MatrixXd next = now;
+  for (int i = 0; i < size; ++i) {
+    observers.advance(theta.col(i), q.col(i), Eigen::VectorXd::Zero(n),
+                      next.col(i).segment(at.observers(), 4 * n));
+  }
+
+  Eigen::MatrixXd seen(5 * n, size);  // theta, theta', q, q', joint torque
+  seen << theta, next.middleRows(at.observers() + n, 3 * n), Eigen::MatrixXd::Zero(n, size);
+  for (int i = 0; i < n; ++i) {
+    const ActuatorModel& actuator = plant.actuators[i];
+    seen.row(4 * n + i) = actuator.stiffness * (theta.row(i) - q.row(i)) +
+                          actuator.damping * (dtheta.row(i) - dq.row(i));
+  }
+
+  // the plant under the commands that arrive during this period, the oldest first
+  Eigen::MatrixXd commands((at.slots + 1) * n, size);
+  commands << now.bottomRows(at.slots * n), feedback(loop, arm.q, arm.weight, latency) * seen;
+  Eigen::MatrixXd x(6 * n, size);
+  x.topRows(5 * n) = now.topRows(5 * n);
+  for (int i = 0; i < kPlantSteps; ++i) {
+    x.bottomRows(n) = commands.middleRows((at.slots - delay.age(i)) * n, n);
+    x = arm.step * x;
+  }
+  next.topRows(5 * n) = x.topRows(5 * n);
+  next.bottomRows(at.slots * n) = commands.bottomRows(at.slots * n);
+  return next;
+}
+
+TruePlant as_modelled(const Loop& loop, double latency) {
+  TruePlant plant = {loop.device.actuators, loop.config.loop};
+  plant.loop.latency = latency;
+  return plant;
+}
 
 // Numbers of a loop in given postures, on which its stability depends.
 class Numbers {
@@ -178,9 +177,13 @@ Numbers numbers_of(const Loop& loop, const std::vector<Eigen::VectorXd>& posture
 
 int search_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& postures, int most,
                    int least) {
-  for (int periods = least; periods <= most; ++periods) {
-    for (const Eigen::VectorXd& q : postures) {
-      if (spectral_radius(loop, q, periods * loop.device.dt()) >= 1.0) return periods - 1;
+  for (const Eigen::VectorXd& q : postures) {
+    const Arm arm = arm_at(q, loop, as_modelled(loop, 0.0));
+    for (int periods = least; periods <= most; ++periods) {
+      const double latency = periods * loop.device.dt();
+      if (!has_decaying_powers(period_of(loop, arm, latency, as_modelled(loop, latency)))) {
+        most = periods - 1;
+      }
     }
   }
   return most;
@@ -189,15 +192,12 @@ int search_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& posture
 }  // namespace
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency) {
-  TruePlant as_modelled = {loop.device.actuators, loop.config.loop};
-  as_modelled.loop.latency = latency;
-  return spectral_radius(loop, q, latency, as_modelled);
+  return spectral_radius(loop, q, latency, as_modelled(loop, latency));
 }
 
 double spectral_radius(const Loop& loop, const Eigen::VectorXd& q, double latency,
                        const TruePlant& plant) {
-  const Eigen::MatrixXd period = SampledLoop(loop, q, latency, plant).period();
-  return hg::spectral_radius(period);
+  return hg::spectral_radius(period_of(loop, arm_at(q, loop, plant), latency, plant));
 }
 
 // Campaigns make hundreds of cycles of one device: what was found for the same numbers is kept.
