@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <list>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -53,7 +54,7 @@ bool try_to(const std::string& file, Check& check, const std::function<void()>& 
     load();
     return true;
   } catch (const SetupError& error) {
-    add(findings_of_message(error.what(), file), check);
+    add(findings_of(error, file), check);
     return false;
   }
 }
@@ -69,17 +70,18 @@ void inspect_units_of(const std::vector<config::SourceText>& sources, Check& che
 // A URDF alone: nothing says which of its parts are used, so all count.
 void load_urdf(const std::string& file, Check& check) {
   check.report.files.push_back({file, "URDF"});
-  const auto refuse = [&](const std::string& fault) {
-    if (!fault.empty()) add(findings_of_message(fault, file), check);
+  const auto add_fault = [&](const std::optional<InputFault>& fault, Severity severity) {
+    if (!fault) return;
+    Finding finding = finding_of(*fault, file);
+    finding.severity = severity;
+    check.report.findings.push_back(std::move(finding));
   };
   try_to(file, check, [&] {
     const model::Urdf urdf = model::read_urdf_file(file);
-    for (const model::UrdfJoint& joint : urdf.joints) refuse(joint.fault);
+    for (const model::UrdfJoint& joint : urdf.joints) add_fault(joint.fault, Severity::kFault);
     for (const model::UrdfLink& link : urdf.links) {
-      if (link.inertial_fault.empty() || model::is_point_mass(link)) continue;
-      Findings found = findings_of_message(link.inertial_fault, file);
-      for (Finding& finding : found) finding.severity = Severity::kWarning;  // it may stand still
-      add(std::move(found), check);
+      if (model::is_point_mass(link)) continue;
+      add_fault(link.inertial_fault, Severity::kWarning);  // it may stand still
     }
     const std::vector<config::SourceText> sources = {{file, read_file(file)}};
     const config::Places places;

@@ -1,51 +1,11 @@
 #include "hg/check/findings.h"
 
-#include <charconv>
+#include <algorithm>
 #include <utility>
 
-#include "hg/core/error.h"
 #include "hg/model/urdf.h"
 
 namespace hg::check {
-namespace {
-
-// Takes "12:" from the front of `text`; 0 if it does not begin so.
-int take_number(std::string_view& text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end == text.data() + text.size() || *end != ':') return 0;
-  text.remove_prefix(end - text.data() + 1);
-  return value;
-}
-
-// "file:line:column: item: what"; column and item may be missing.
-Finding finding_of_line(std::string_view line, const std::string& file) {
-  Finding finding = {.file = file, .place = {}, .item = {}, .what = {}, .fix = {}};
-  if (line.starts_with(file + ": ")) line.remove_prefix(file.size() + 2);
-  for (std::size_t colon = line.find(':'); colon != std::string_view::npos;
-       colon = line.find(':', colon + 1)) {
-    std::string_view rest = line.substr(colon + 1);
-    const int number = take_number(rest);
-    if (number == 0) continue;
-    finding.file = line.substr(0, colon);
-    const int column = take_number(rest);
-    finding.place = {number, column == 0 ? 1 : column};
-    line = rest;
-    break;
-  }
-  if (line.starts_with(' ')) line.remove_prefix(1);
-  const std::size_t colon = line.find(": ");
-  if (colon != std::string_view::npos &&
-      line.substr(0, colon).find(' ') == std::string_view::npos) {
-    finding.item = line.substr(0, colon);
-    line.remove_prefix(colon + 2);
-  }
-  finding.what = line;
-  return finding;
-}
-
-}  // namespace
-
 std::string_view to_string(Severity severity) noexcept {
   switch (severity) {
     case Severity::kNote:
@@ -104,13 +64,21 @@ std::vector<model::Urdf> urdfs_among(const std::vector<config::SourceText>& sour
   return urdfs;
 }
 
-Findings findings_of_message(std::string_view message, const std::string& file) {
-  Findings findings;
-  while (!message.empty()) {
-    const std::size_t end = message.find('\n');
-    findings.push_back(finding_of_line(message.substr(0, end), file));
-    message.remove_prefix(end == std::string_view::npos ? message.size() : end + 1);
+Finding finding_of(const InputFault& fault, const std::string& file) {
+  Finding finding = {.file = file, .place = {}, .item = fault.item, .what = fault.what, .fix = {}};
+  if (fault.line > 0) {
+    finding.file = fault.file;
+    finding.place = {fault.line, std::max(1, fault.column)};
+  } else if (!fault.file.empty() && fault.file != file) {
+    finding.item = fault.file;
+    finding.what = text_without_place(fault);
   }
+  return finding;
+}
+
+Findings findings_of(const SetupError& error, const std::string& file) {
+  Findings findings;
+  for (const InputFault& fault : faults_of(error)) findings.push_back(finding_of(fault, file));
   return findings;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hg/config/sources.h"
+#include "hg/core/input_fault.h"
 #include "hg/model/urdf.h"
 
 namespace hg::check {
@@ -58,8 +59,10 @@ bool is_urdf(const config::SourceText& source);
 /// The URDFs among these texts.
 std::vector<model::Urdf> urdfs_among(const std::vector<config::SourceText>& sources);
 
-/// Findings from an error message of a loader or another part of the program: one per line of
-/// `message`, each "file:line:column: item: what" as far as given; `file` replaces a missing one.
-Findings findings_of_message(std::string_view message, const std::string& file);
+/// A finding from a fault. Without a line it is at the beginning of `file`, the inspected one; the
+/// item is then another file that the fault is of.
+Finding finding_of(const InputFault& fault, const std::string& file);
+/// Findings from an error of a loader or another part of the program, one per fault.
+Findings findings_of(const SetupError& error, const std::string& file);
 
 }  // namespace hg::check

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "hg/model/urdf.h"
@@ -22,12 +23,9 @@ void add_dynamics(model::Urdf& urdf) {
 
 // What is wrong with parts that are not used: with a used one the file would not be read.
 void add_faults(model::Urdf& urdf) {
-  const auto add = [&](const std::string& fault, int line) {
-    if (fault.empty()) return;
-    const std::size_t place = fault.find(": ");  // behind file and line
-    urdf.ignored.push_back({.what = fault.substr(place == std::string::npos ? 0 : place + 2),
-                            .line = line,
-                            .count = 1});
+  const auto add = [&](const std::optional<InputFault>& fault, int line) {
+    if (!fault) return;
+    urdf.ignored.push_back({.what = text_without_place(*fault), .line = line, .count = 1});
   };
   for (const model::UrdfJoint& joint : urdf.joints) add(joint.fault, joint.line);
   for (const model::UrdfLink& link : urdf.links) {

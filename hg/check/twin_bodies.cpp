@@ -122,7 +122,7 @@ void inspect_link(const model::Urdf& urdf, int index, Collector& out) {
   const model::UrdfLink& link = urdf.links[index];
   const bool moves = std::ranges::count(urdf.joints, index, &model::UrdfJoint::child) > 0;
   if (moves) inspect_shapes(link, out);
-  if (!link.inertial || !moves || !link.inertial_fault.empty()) return;
+  if (!link.inertial || !moves || link.inertial_fault) return;
   double size = extent(urdf, index);
   if (!doubt_of_length(size).empty()) size *= kOtherLengths[0].size;
   const double length = std::max(kAtLeast, kSlackness * size);

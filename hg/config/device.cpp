@@ -40,7 +40,7 @@ std::optional<Tool> read_tool(LoaderFile& file, const DeviceDraft& draft) {
   try {
     return load_tool(draft.tool, file.sources);
   } catch (const SetupError& error) {
-    file.faults.add_complete(error.what());
+    file.faults.add_all(error);
     return {};
   }
 }

@@ -45,9 +45,12 @@ std::string shown(const YAML::Node& node) {
   return "nothing";
 }
 
-std::string did_you_mean(std::string_view name, std::span<const std::string> names) {
-  const std::string nearest = nearest_name(name, names);
-  return nearest.empty() ? "" : ", did you mean '" + nearest + "'?";
+// The fault with a proposal of the one of `names` that is nearest to the wrong one.
+InputFault with_proposal(InputFault fault, std::string_view name,
+                         std::span<const std::string> names) {
+  fault.meant = nearest_name(name, names);
+  if (!fault.meant.empty()) fault.what += ", did you mean '" + fault.meant + "'?";
+  return fault;
 }
 
 // Notes where documents begin.
@@ -232,9 +235,11 @@ bool Loader::path(std::string_view key, std::filesystem::path& value, std::strin
   if (!text(key, given, need)) return false;
   const std::filesystem::path file = (file_.path.parent_path() / given).lexically_normal();
   if (!file_.sources.exists(file)) {
-    fault(find(key, need)->value, item_of(key),
-          "no such file, got " + in_quotes(given) +
-              did_you_mean(file.filename().string(), file_.sources.siblings(file)));
+    file_.faults.add(place_of(find(key, need)->value.Mark()),
+                     with_proposal({.item = item_of(key),
+                                    .what = "no such file, got " + in_quotes(given),
+                                    .is_missing_file = true},
+                                   file.filename().string(), file_.sources.siblings(file)));
     return false;
   }
   value = file;
@@ -335,8 +340,8 @@ bool Loader::is_given(std::string_view key) const {
 void Loader::finish() {
   for (const Entry& entry : entries_) {
     if (entry.is_known) continue;
-    file_.faults.add(entry.place, item_of(entry.key),
-                     "unknown key" + did_you_mean(entry.key, known_keys_));
+    file_.faults.add(entry.place, with_proposal({.item = item_of(entry.key), .what = "unknown key"},
+                                                entry.key, known_keys_));
   }
   if (file_.faults.count() > faults_before_) return;
   for (const BrokenRule& rule : broken_rules_) {
@@ -415,9 +420,11 @@ bool Loader::read_name(const YAML::Node& node, const std::string& item, Names na
   const auto found = std::ranges::find(names, node.Scalar());
   if (found == names.end()) {
     if (is_unknown(names)) return false;
-    fault(node, item,
-          "must be " + std::string(kind) + ", got " + shown(node) +
-              did_you_mean(node.Scalar(), names));
+    file_.faults.add(
+        place_of(node.Mark()),
+        with_proposal(
+            {.item = item, .what = "must be " + std::string(kind) + ", got " + shown(node)},
+            node.Scalar(), names));
     return false;
   }
   index = static_cast<int>(found - names.begin());
@@ -439,9 +446,10 @@ bool Loader::each_by_name(std::string_view key, Names names, std::string_view ki
     const auto found = std::ranges::find(names, named.key);
     const std::string item = child.item_of(named.key);
     if (found == names.end()) {
-      file_.faults.add(named.place, item,
-                       "must be " + std::string(kind) + ", got " + in_quotes(named.key) +
-                           did_you_mean(named.key, names));
+      file_.faults.add(named.place, with_proposal({.item = item,
+                                                   .what = "must be " + std::string(kind) +
+                                                           ", got " + in_quotes(named.key)},
+                                                  named.key, names));
     } else {
       read(named, item, static_cast<int>(found - names.begin()));
     }
@@ -471,7 +479,7 @@ YAML::Node read_top_map(LoaderFile& file) {
     refuse_second_document(text, file.faults);
     root = YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    file.faults.add(place_of(error.mark), "not valid YAML", error.msg);
+    file.faults.add(place_of(error.mark), "", "not valid YAML: " + error.msg);
   }
   if (file.faults.count() == 0 && !root.IsMap()) {
     file.faults.add({}, "", "the file must be a map of keys, got " + shown(root));
@@ -505,14 +513,14 @@ std::optional<UrdfText> read_urdf(LoaderFile& file, const std::filesystem::path&
     const model::Urdf parts = model::read_urdf_text(result.text, urdf.generic_string());
     for (const model::UrdfLink& link : parts.links) result.link_names.push_back(link.name);
     for (const model::UrdfJoint& joint : parts.joints) {
-      if (joint.type == model::UrdfJointType::kFixed && joint.fault.empty()) continue;
+      if (joint.type == model::UrdfJointType::kFixed && !joint.fault) continue;
       result.joint_names.push_back(joint.name);
       result.joints.push_back(joint);
     }
     file.knows_names = true;
     return result;
   } catch (const SetupError& error) {
-    file.faults.add_complete(error.what());
+    file.faults.add_all(error);
     return {};
   }
 }
@@ -531,7 +539,7 @@ std::optional<model::ChainModel> read_chain(LoaderFile& file, const UrdfText& ur
   try {
     return model::ChainModel::from_urdf_text(urdf.text, urdf.file.generic_string(), options);
   } catch (const SetupError& error) {
-    file.faults.add_complete(error.what());
+    file.faults.add_all(error);
     return no_chain(file);
   }
 }

@@ -5,7 +5,6 @@
 #include <tuple>
 #include <utility>
 
-#include "hg/core/error.h"
 #include "hg/core/open_file.h"
 
 namespace hg::config {
@@ -46,14 +45,14 @@ std::vector<std::string> SourceReader::siblings(const std::filesystem::path& fil
 
 std::string SourceReader::read(const std::filesystem::path& file) {
   const std::string name = name_within(file);
-  if (!exists(file)) throw SetupError(name + ": no such file");
+  if (!exists(file)) throw InputError(InputFault{.file = name, .what = "no such file"});
   std::string content;
   if (is_recorded_) {
     content = std::ranges::find(recorded_, name, &SourceText::name)->content;
   } else {
     std::error_code ignored;
     if (std::filesystem::file_size(file, ignored) > kSizeMax) {
-      throw SetupError(name + ": a configuration file has at most 4 MB");
+      throw InputError(InputFault{.file = name, .what = "a configuration file has at most 4 MB"});
     }
     content = read_file(file, kSizeMax);
   }
@@ -78,28 +77,31 @@ Place Places::nearest(std::string item) const {
 }
 
 void Faults::add(Place place, std::string_view item, std::string_view what) {
-  std::string message =
-      file_ + ":" + std::to_string(place.line) + ":" + std::to_string(place.column) + ": ";
-  if (!item.empty()) (message += item) += ": ";
-  faults_.push_back({place, message += what});
+  add(place, {.item = std::string(item), .what = std::string(what)});
 }
 
-void Faults::add_complete(std::string_view message) {
-  faults_.push_back({{std::numeric_limits<int>::max(), 0}, std::string(message)});
+void Faults::add(Place place, InputFault fault) {
+  fault.file = file_;
+  fault.line = place.line;
+  fault.column = place.column;
+  faults_.push_back({place, std::move(fault)});
+}
+
+void Faults::add_all(const SetupError& error) {
+  for (InputFault& fault : faults_of(error)) {
+    faults_.push_back({{std::numeric_limits<int>::max(), 0}, std::move(fault)});
+  }
 }
 
 void Faults::throw_if_any() const {
   if (faults_.empty()) return;
-  std::vector<Fault> sorted = faults_;
-  std::ranges::stable_sort(sorted, {}, [](const Fault& fault) {
-    return std::tuple(fault.place.line, fault.place.column);
+  std::vector<Placed> sorted = faults_;
+  std::ranges::stable_sort(sorted, {}, [](const Placed& placed) {
+    return std::tuple(placed.order.line, placed.order.column);
   });
-  std::string message;
-  for (const Fault& fault : sorted) {
-    if (!message.empty()) message += '\n';
-    message += fault.message;
-  }
-  throw SetupError(message);
+  std::vector<InputFault> faults;
+  for (Placed& placed : sorted) faults.push_back(std::move(placed.fault));
+  throw InputError(std::move(faults));
 }
 
 }  // namespace hg::config

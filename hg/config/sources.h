@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "hg/core/input_fault.h"
+
 namespace hg::config {
 
 struct SourceText {
@@ -61,25 +63,27 @@ class Places {
 
 class Faults {
  public:
-  /// Creates a collector; `file` is put before every message.
+  /// Creates a collector of the faults of `file`.
   explicit Faults(std::string file) : file_(std::move(file)) {}
 
-  /// Adds the fault "file:line:column: item: what".
+  /// Adds a fault of this file.
   void add(Place place, std::string_view item, std::string_view what);
-  /// Adds a message of another file or reader that already contains its place.
-  void add_complete(std::string_view message);
+  /// The same with all that is known of it; file, line and column are set here.
+  void add(Place place, InputFault fault);
+  /// Adds the faults of another file or reader, after all of this file.
+  void add_all(const SetupError& error);
 
   std::size_t count() const noexcept { return faults_.size(); }
-  /// Throws SetupError with one fault per line, in the order of the file.
+  /// Throws InputError with the faults in the order of the file.
   void throw_if_any() const;
 
  private:
-  struct Fault {
-    Place place;
-    std::string message;
+  struct Placed {
+    Place order;
+    InputFault fault;
   };
   std::string file_;
-  std::vector<Fault> faults_;
+  std::vector<Placed> faults_;
 };
 
 }  // namespace hg::config

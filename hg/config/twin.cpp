@@ -22,7 +22,8 @@ std::optional<model::ChainModel> make_free_body(LoaderFile& file, TwinDraft& dra
   try {
     return model::ChainModel::free_body(draft.body, options);
   } catch (const SetupError& error) {
-    file.faults.add_complete(file.path.generic_string() + ": free_body: " + error.what());
+    file.faults.add_all(InputError(
+        InputFault{.file = file.path.generic_string(), .item = "free_body", .what = error.what()}));
     return no_chain(file);
   }
 }

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-#include "hg/core/error.h"
+#include "hg/core/input_fault.h"
 
 namespace hg {
 namespace {
@@ -17,7 +17,8 @@ constexpr mode_t kNewFile = 0666;  // less the umask
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const char* what,
                          const std::string& why) {
-  throw SetupError(file.string() + ": cannot be " + what + ": " + why);
+  throw InputError(
+      InputFault{.file = file.string(), .what = "cannot be " + std::string(what) + ": " + why});
 }
 
 // standard output or error, whichever `facts` belong to; -1: neither

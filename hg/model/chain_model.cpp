@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hg/core/error.h"
+#include "hg/core/input_fault.h"
 #include "hg/core/nearest_name.h"
 #include "hg/model/chain_parts.h"
 #include "hg/model/closed_loop.h"
@@ -48,12 +48,14 @@ ChainParts::Axis axis_of(const Joint& joint) {
   return axis;
 }
 
-int find(std::string_view name, const std::vector<std::string>& names, const std::string& chain,
-         const std::string& kind) {
+// Index of a name; `place` is whose names these are, for the error.
+int find(std::string_view name, const std::vector<std::string>& names, const std::string& kind,
+         InputFault place) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<int>(found - names.begin());
-  throw SetupError(chain + ": " + kind + " must be one of the chain, got '" + std::string(name) +
-                   "', nearest is '" + nearest_name(name, names) + "'");
+  place.what = kind + " must be one of the chain, got '" + std::string(name) + "', nearest is '" +
+               nearest_name(name, names) + "'";
+  throw InputError(std::move(place));
 }
 
 // The pose q after moving along the twist `step` of the body for one unit of time.
@@ -129,7 +131,9 @@ class Builder {
       add_branches(chain, joint);
     }
     if (chain.frames.size() != urdf_.links.size()) fail_for_loop();
-    if (chain.joints.empty()) throw SetupError(urdf_.source + ": robot has no moving joint");
+    if (chain.joints.empty()) {
+      throw InputError(InputFault{.file = urdf_.source, .what = "robot has no moving joint"});
+    }
     return chain;
   }
 
@@ -141,8 +145,8 @@ class Builder {
 
   const UrdfLink& link(int index) const { return urdf_.links[index]; }
 
-  [[noreturn]] void fail(int line, const std::string& what) const {
-    throw SetupError(urdf_.source + ":" + std::to_string(line) + ": " + what);
+  [[noreturn]] void fail(int line, const std::string& item, const std::string& what) const {
+    throw InputError(InputFault{.file = urdf_.source, .line = line, .item = item, .what = what});
   }
 
   int root_link() const {
@@ -150,8 +154,8 @@ class Builder {
     for (const UrdfJoint& j : urdf_.joints) {
       const UrdfJoint*& first = holder[j.child];
       if (first != nullptr) {
-        fail(j.line, "joint " + j.name + ": link " + link(j.child).name +
-                         " is the child of joint " + first->name + " already");
+        fail(j.line, "joint " + j.name,
+             "link " + link(j.child).name + " is the child of joint " + first->name + " already");
       }
       first = &j;
     }
@@ -159,8 +163,8 @@ class Builder {
     for (int i = 0; i < static_cast<int>(holder.size()); ++i) {
       if (holder[i] != nullptr) continue;
       if (root >= 0) {
-        fail(link(i).line, "link " + link(i).name + ": is not connected to link " +
-                               link(root).name + ", a chain has one root");
+        fail(link(i).line, "link " + link(i).name,
+             "is not connected to link " + link(root).name + ", a chain has one root");
       }
       root = i;
     }
@@ -169,14 +173,14 @@ class Builder {
   }
 
   [[noreturn]] void fail_for_loop() const {
-    fail(urdf_.joints.front().line, "robot: joints form a loop, a chain has a root and a tip");
+    fail(urdf_.joints.front().line, "robot", "joints form a loop, a chain has a root and a tip");
   }
 
   // Exporters give a frame a mass of nearly nothing, and an inertia that is none: it is left out.
   bool is_frame(const UrdfLink& link) const {
     constexpr double kMassShare = 1e-6;  // of the body that it is fixed to
     constexpr double kInertia = 1e-6;    // kg m^2
-    return !link.inertial_fault.empty() && std::abs(link.inertial->mass) <= kMassShare * mass_ &&
+    return link.inertial_fault && std::abs(link.inertial->mass) <= kMassShare * mass_ &&
            link.inertial->mass != 0.0 && link.inertial->inertia.norm() <= kInertia;
   }
 
@@ -193,8 +197,8 @@ class Builder {
       if (inertial && joint > 0 && !(i > 0 && is_frame(link(at.link)))) {
         // a point mass must be fixed to a body with inertia
         const bool is_point = i > 0 && is_point_mass(link(at.link));
-        const std::string& fault = link(at.link).inertial_fault;
-        if (!fault.empty() && !is_point) throw SetupError(fault);
+        const std::optional<InputFault>& fault = link(at.link).inertial_fault;
+        if (fault && !is_point) throw InputError(*fault);
         chain.model.appendBodyToJoint(joint, to_inertia(*inertial), at.T_joint_link);
         mass_ += inertial->mass;
       }
@@ -235,10 +239,10 @@ class Builder {
       for (const UrdfJoint& j : urdf_.joints) {
         if (j.parent != at.link || j.type == UrdfJointType::kFixed || j.is_branch) continue;
         if (found != nullptr) {
-          fail(j.line, "link " + link(at.link).name + ": branches into the joints " + found->name +
-                           " and " + j.name +
-                           "; name the last link of the chain with tip_link (and its first "
-                           "with root_link): the other joints then stand still");
+          fail(j.line, "link " + link(at.link).name,
+               "branches into the joints " + found->name + " and " + j.name +
+                   "; name the last link of the chain with tip_link (and its first "
+                   "with root_link): the other joints then stand still");
         }
         found = &j;
         T_joint_next_ = at.T_joint_link * to_placement(j.T_parent_joint);
@@ -251,7 +255,7 @@ class Builder {
                             const UrdfJoint& j) const {
     const bool is_scalar = j.type != UrdfJointType::kPlanar && j.type != UrdfJointType::kFloating;
     if (j.mimic && !is_scalar) {
-      fail(j.line, "joint " + j.name + ": only joints with one coordinate can follow another one");
+      fail(j.line, "joint " + j.name, "only joints with one coordinate can follow another one");
     }
     if (j.type != UrdfJointType::kPlanar) return add(chain, parent, j, T_joint_next_, "");
     pinocchio::SE3 placement = T_joint_next_;
@@ -287,8 +291,9 @@ class Builder {
   void refuse_massless(pinocchio::JointIndex joint, const UrdfLink& body,
                        const std::string& joint_name) const {
     if (joint == 0 || mass_ > 0.0) return;
-    fail(body.line, "link " + body.name + ": moves with joint " + joint_name +
-                        " but has no mass; give it an <inertial> or make the joint fixed");
+    fail(body.line, "link " + body.name,
+         "moves with joint " + joint_name +
+             " but has no mass; give it an <inertial> or make the joint fixed");
   }
 
   const Urdf& urdf_;
@@ -338,8 +343,8 @@ class Coupler {
 
   [[noreturn]] void fail(const UrdfMimic& mimic, const std::string& joint,
                          const std::string& what) const {
-    const std::string line = mimic.line > 0 ? ":" + std::to_string(mimic.line) : "";
-    throw SetupError(urdf_.source + line + ": joint " + joint + ": " + what);
+    throw InputError(InputFault{
+        .file = urdf_.source, .line = mimic.line, .item = "joint " + joint, .what = what});
   }
 
   std::string nearest_text(const std::string& name) const {
@@ -399,7 +404,7 @@ void add_couplings(const std::vector<Coupling>& couplings, Urdf& urdf) {
   for (const Coupling& coupling : couplings) {
     std::vector<std::string> names;
     for (const UrdfJoint& joint : urdf.joints) names.push_back(joint.name);
-    const int index = find(coupling.joint, names, urdf.source, "coupled joint");
+    const int index = find(coupling.joint, names, "coupled joint", {.file = urdf.source});
     urdf.joints[index].mimic = {coupling.leader, coupling.ratio, coupling.offset, 0,
                                 coupling.curve};
   }
@@ -416,15 +421,17 @@ ChainParts build(Urdf urdf, const ChainOptions& options) {
   for (const ClosedLoop& loop : options.loops) add_couplings(close_loop(urdf, loop), urdf);
   Urdf part = serial_part(urdf, options.root_link, options.tip_link);
   for (const UrdfJoint& joint : part.joints) {
-    if (!joint.fault.empty()) throw SetupError(joint.fault);
+    if (joint.fault) throw InputError(*joint.fault);
   }
   if (options.tool) attach(*options.tool, part);
   for (const PassiveJoint& joint : options.passive)
     insert_behind(joint.behind, joint.name, joint.axis, part);
   ChainParts chain = Builder(part, options).build();
   if (chain.model.nv > kMaxTwin || chain.model.nq > kMaxTwinCoords) {
-    throw SetupError(urdf.source + ": a chain has at most " + std::to_string(kMaxTwin) +
-                     " degrees of freedom, got " + std::to_string(chain.model.nv));
+    throw InputError(InputFault{.file = urdf.source,
+                                .what = "a chain has at most " + std::to_string(kMaxTwin) +
+                                        " degrees of freedom, got " +
+                                        std::to_string(chain.model.nv)});
   }
   finish(options, chain);
   Coupler(part, chain).couple();
@@ -486,11 +493,11 @@ const std::vector<std::string>& ChainModel::frame_names() const noexcept {
 }
 
 int ChainModel::frame(std::string_view name) const {
-  return find(name, parts_->frame_names, parts_->name, "frame");
+  return find(name, parts_->frame_names, "frame", {.item = parts_->name});
 }
 
 int ChainModel::joint(std::string_view name) const {
-  return find(name, parts_->joint_names, parts_->name, "joint");
+  return find(name, parts_->joint_names, "joint", {.item = parts_->name});
 }
 
 ConfigurationA ChainModel::neutral() const noexcept {

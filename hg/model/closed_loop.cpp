@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "hg/core/error.h"
+#include "hg/core/input_fault.h"
 #include "hg/core/nearest_name.h"
 
 namespace hg::model {
@@ -29,8 +29,9 @@ int index_of(const Items& items, const std::string& name, const std::string& sou
     if (item.name == name) return static_cast<int>(names.size());
     names.push_back(item.name);
   }
-  throw SetupError(source + ": " + what + " must be one of the URDF, got '" + name +
-                   "', nearest is '" + nearest_name(name, names) + "'");
+  throw InputError(InputFault{.file = source,
+                              .what = what + " must be one of the URDF, got '" + name +
+                                      "', nearest is '" + nearest_name(name, names) + "'"});
 }
 
 Pose motion_of(const UrdfJoint& joint, double q) {
@@ -85,7 +86,8 @@ class Linkage {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw SetupError(urdf_.source + ": loop " + loop_.link + " - " + loop_.meets + ": " + what);
+    throw InputError(InputFault{
+        .file = urdf_.source, .item = "loop " + loop_.link + " - " + loop_.meets, .what = what});
   }
 
  private:

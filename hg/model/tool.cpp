@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "hg/core/error.h"
+#include "hg/core/input_fault.h"
 #include "hg/core/nearest_name.h"
 
 namespace hg::model {
@@ -14,6 +14,10 @@ int find(const Urdf& urdf, const std::string& link) {
   return found == urdf.links.end() ? -1 : static_cast<int>(found - urdf.links.begin());
 }
 
+[[noreturn]] void fail(const Urdf& urdf, const std::string& what) {
+  throw InputError(InputFault{.file = urdf.source, .item = "tool", .what = what});
+}
+
 }  // namespace
 
 void attach(const Tool& tool, Urdf& urdf) {
@@ -21,12 +25,12 @@ void attach(const Tool& tool, Urdf& urdf) {
   if (flange < 0) {
     std::vector<std::string> names;
     for (const UrdfLink& link : urdf.links) names.push_back(link.name);
-    throw SetupError(urdf.source + ": tool: the flange must be a link of the chain, got '" +
-                     tool.link + "', nearest is '" + nearest_name(tool.link, names) + "'");
+    fail(urdf, "the flange must be a link of the chain, got '" + tool.link + "', nearest is '" +
+                   nearest_name(tool.link, names) + "'");
   }
   if (find(urdf, tool.handle) >= 0) {
-    throw SetupError(urdf.source + ": tool: the URDF has a link '" + tool.handle +
-                     "' already: take that as the handle instead of a tool, or rename it");
+    fail(urdf, "the URDF has a link '" + tool.handle +
+                   "' already: take that as the handle instead of a tool, or rename it");
   }
 
   // mass in the axes of the handle, which is a link of its own

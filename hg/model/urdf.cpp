@@ -10,7 +10,7 @@
 #include <limits>
 #include <sstream>
 
-#include "hg/core/error.h"
+#include "hg/core/input_fault.h"
 #include "hg/core/linear_algebra.h"
 #include "hg/core/nearest_name.h"
 #include "hg/core/open_file.h"
@@ -45,12 +45,10 @@ constexpr int kMostParts = 1000;         // links or joints; a chain has at most
 constexpr double kLeastMass = 1e-9;      // least nonzero mass of a link
 constexpr double kLeastInertia = 1e-15;  // principal moment
 
-std::string place(const Urdf& urdf, int line) {
-  return urdf.source + ":" + std::to_string(line) + ": ";
-}
-
-[[noreturn]] void fail(const Urdf& urdf, int line, const std::string& what) {
-  throw SetupError(place(urdf, line) + what);
+// `item`: the link or joint; empty where none is at hand.
+[[noreturn]] void fail(const Urdf& urdf, int line, const std::string& item,
+                       const std::string& what) {
+  throw InputError(InputFault{.file = urdf.source, .line = line, .item = item, .what = what});
 }
 
 void ignore(Urdf& urdf, const std::string& what, int line) {
@@ -90,6 +88,27 @@ std::string reason_of(std::string_view text, tinyxml2::XMLError error) {
     default:
       return "an element cannot be read";
   }
+}
+
+// The rule of a body that an inertia breaks, and what it has; empty: none.
+std::string broken_rule(const Inertial& inertial) {
+  // exported files carry six digits; a flat plate has I3 = I1 + I2
+  constexpr double kRounding = 1e-5;
+  if (!(inertial.mass >= kLeastMass && inertial.mass <= kMass.ub)) {
+    return "mass must be " + to_text(kLeastMass) + " .. " + to_text(kMass.ub) + " kg, got " +
+           to_text(inertial.mass);
+  }
+  if (!inertial.p_com.allFinite() || !inertial.inertia.allFinite()) {
+    return "inertia must be finite, got nan or inf";
+  }
+  const Eigen::Vector3d moments = symmetric_eigen(inertial.inertia).values;
+  std::ostringstream got;
+  got << std::setprecision(4) << ", got principal moments " << moments[0] << ", " << moments[1]
+      << ", " << moments[2];
+  if (!(moments[0] >= kLeastInertia)) return "inertia must be positive definite" + got.str();
+  if (moments[0] + moments[1] >= moments[2] * (1.0 - kRounding)) return {};
+  return "inertia is of no body, the two smaller principal moments must add up to the largest" +
+         got.str();
 }
 
 // An element of URDF: what is read of it, and what else URDF has.
@@ -166,7 +185,7 @@ class Inventory {
     all.insert(all.end(), others.begin(), others.end());
     const std::string meant = misspelt_name(name, all);
     if (!meant.empty()) {
-      fail(urdf_, line,
+      fail(urdf_, line, "",
            before + name + after + " is unknown to URDF, nearest is " + in_quotes(meant));
     }
     ignore(urdf_, before + name + after, line);
@@ -178,7 +197,7 @@ class Inventory {
     const std::filesystem::path source = urdf_.source;
     std::filesystem::path plain = source.stem().replace_extension(".urdf");
     if (plain == source.filename()) plain = "plain_" + plain.string();
-    fail(urdf_, e.GetLineNum(),
+    fail(urdf_, e.GetLineNum(), "",
          "is a xacro file, not a URDF; convert it first: xacro " + urdf_.source + " > " +
              plain.string());
   }
@@ -199,7 +218,7 @@ class Reader {
       urdf_.links.push_back(link(*e));
       refuse_second(urdf_.links, "link");
     }
-    if (urdf_.links.empty()) fail(urdf_, robot.GetLineNum(), "robot: has no links");
+    if (urdf_.links.empty()) fail(urdf_, robot.GetLineNum(), "robot", "has no links");
     for (auto* e = robot.FirstChildElement("joint"); e; e = e->NextSiblingElement("joint")) {
       urdf_.joints.push_back(joint(*e));
       refuse_second(urdf_.joints, "joint");
@@ -212,8 +231,8 @@ class Reader {
     int count = 0;
     for (auto* e = robot.FirstChildElement(kind); e; e = e->NextSiblingElement(kind)) {
       if (++count <= kMostParts) continue;
-      fail(urdf_, e->GetLineNum(),
-           std::string("robot: at most ") + std::to_string(kMostParts) + " elements <" + kind +
+      fail(urdf_, e->GetLineNum(), "robot",
+           std::string("at most ") + std::to_string(kMostParts) + " elements <" + kind +
                "> are read, got more");
     }
   }
@@ -221,8 +240,8 @@ class Reader {
   std::string attribute(const XMLElement& e, const char* key, const std::string& item) const {
     const char* text = e.Attribute(key);
     if (text == nullptr) {
-      fail(urdf_, e.GetLineNum(),
-           item + ": <" + e.Name() + "> needs the attribute " + in_quotes(key));
+      fail(urdf_, e.GetLineNum(), item,
+           std::string("<") + e.Name() + "> needs the attribute " + in_quotes(key));
     }
     require_utf8(e, key, text, item);
     return text;
@@ -231,8 +250,8 @@ class Reader {
   void require_utf8(const XMLElement& e, const char* key, const std::string& text,
                     const std::string& item) const {
     if (is_utf8(text)) return;
-    fail(urdf_, e.GetLineNum(),
-         item + ": " + key + " must be UTF-8, got " + in_quotes(visible(text)) +
+    fail(urdf_, e.GetLineNum(), item,
+         std::string(key) + " must be UTF-8, got " + in_quotes(visible(text)) +
              "; convert the file: iconv -f ISO-8859-1 -t UTF-8");
   }
 
@@ -248,18 +267,19 @@ class Reader {
       const char* end = word.data() + word.size();
       const auto [stop, error] = std::from_chars(begin, end, value);
       if (error != std::errc() || stop != end || !std::isfinite(value)) {
-        fail(urdf_, e.GetLineNum(), item + ": " + key + " must be numbers, got " + in_quotes(text));
+        fail(urdf_, e.GetLineNum(), item,
+             std::string(key) + " must be numbers, got " + in_quotes(text));
       }
       if (!range.contains(value)) {
-        fail(urdf_, e.GetLineNum(),
-             item + ": " + key + " must be " + to_text(range.lb) + " .. " + to_text(range.ub) +
+        fail(urdf_, e.GetLineNum(), item,
+             std::string(key) + " must be " + to_text(range.lb) + " .. " + to_text(range.ub) +
                  ", got " + in_quotes(text));
       }
       values.push_back(value);
     }
     if (values.size() != count) {
-      fail(urdf_, e.GetLineNum(),
-           item + ": " + key + " must be " + std::to_string(count) +
+      fail(urdf_, e.GetLineNum(), item,
+           std::string(key) + " must be " + std::to_string(count) +
                (count == 1 ? " number, got " : " numbers, got ") + in_quotes(text));
     }
     return values;
@@ -278,8 +298,8 @@ class Reader {
   const XMLElement& child(const XMLElement& e, const char* name, const std::string& item) const {
     const XMLElement* found = e.FirstChildElement(name);
     if (found == nullptr) {
-      fail(urdf_, e.GetLineNum(),
-           item + ": <" + e.Name() + "> needs an element <" + std::string(name) + ">");
+      fail(urdf_, e.GetLineNum(), item,
+           std::string("<") + e.Name() + "> needs an element <" + std::string(name) + ">");
     }
     return *found;
   }
@@ -301,7 +321,7 @@ class Reader {
 
   // Empty if mass and inertia are zero, which exporters write for links that are mere frames.
   std::optional<Inertial> inertial(const XMLElement& e, const std::string& item,
-                                   std::string& fault) const {
+                                   std::optional<InputFault>& fault) const {
     const Pose pose = origin(e, item);
     const XMLElement& i = child(e, "inertia", item);
     // read before the comma initialiser: it must not be interrupted by an exception
@@ -317,10 +337,10 @@ class Reader {
                              .p_com = pose.p,
                              .inertia = pose.R * inertia * pose.R.transpose()};
     if (result.mass == 0.0 && inertia.isZero(0.0)) return {};
-    try {
-      check_inertial(result, place(urdf_, e.GetLineNum()) + item);
-    } catch (const SetupError& error) {
-      fault = error.what();
+    const std::string broken = broken_rule(result);
+    if (!broken.empty()) {
+      fault =
+          InputFault{.file = urdf_.source, .line = e.GetLineNum(), .item = item, .what = broken};
     }
     return result;
   }
@@ -355,7 +375,7 @@ class Reader {
         result.inertial = inertial(*i, "link " + result.name, result.inertial_fault);
       } catch (const SetupError& error) {
         result.inertial = Inertial{.mass = std::numeric_limits<double>::quiet_NaN()};
-        result.inertial_fault = error.what();
+        result.inertial_fault = faults_of(error).front();
       }
     }
     for (auto* c = e.FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
@@ -371,8 +391,8 @@ class Reader {
       if (l.name == name) return static_cast<int>(names.size());
       names.push_back(l.name);
     }
-    fail(urdf_, e.GetLineNum(),
-         item + ": " + e.Name() + " must be a link, got " + in_quotes(name) + ", nearest is " +
+    fail(urdf_, e.GetLineNum(), item,
+         std::string(e.Name()) + " must be a link, got " + in_quotes(name) + ", nearest is " +
              in_quotes(nearest_name(name, names)));
   }
 
@@ -383,8 +403,8 @@ class Reader {
       if (name == text) return type;
       names.emplace_back(name);
     }
-    fail(urdf_, e.GetLineNum(),
-         item + ": type is unknown, got " + in_quotes(text) + ", nearest is " +
+    fail(urdf_, e.GetLineNum(), item,
+         "type is unknown, got " + in_quotes(text) + ", nearest is " +
              in_quotes(nearest_name(text, names)));
   }
 
@@ -393,8 +413,8 @@ class Reader {
     if (a == nullptr) return Eigen::Vector3d::UnitX();
     const Eigen::Vector3d v = vector3(*a, "xyz", kDirection, item);
     if (v.norm() < 1e-6) {
-      fail(urdf_, a->GetLineNum(),
-           item + ": axis must have a direction, got " + in_quotes(a->Attribute("xyz")));
+      fail(urdf_, a->GetLineNum(), item,
+           "axis must have a direction, got " + in_quotes(a->Attribute("xyz")));
     }
     return v.normalized();
   }
@@ -440,8 +460,8 @@ class Reader {
       const bool is_complete =
           limit->Attribute("lower") != nullptr && limit->Attribute("upper") != nullptr;
       const std::string missing = is_complete ? "" : " (one that is missing is 0)";
-      fail(urdf_, limit->GetLineNum(),
-           item + ": limit lower must be below upper" + missing + ", got lower " +
+      fail(urdf_, limit->GetLineNum(), item,
+           "limit lower must be below upper" + missing + ", got lower " +
                to_text(joint.position.lb) + ", upper " + to_text(joint.position.ub));
     }
   }
@@ -482,7 +502,7 @@ class Reader {
     } catch (const SetupError& error) {
       result.type = UrdfJointType::kFixed;
       result.mimic = leader_of(e);
-      result.fault = error.what();
+      result.fault = faults_of(error).front();
     }
     return result;
   }
@@ -517,9 +537,8 @@ class Reader {
   void refuse_second(const std::vector<Item>& items, const std::string& kind) const {
     for (std::size_t i = 0; i + 1 < items.size(); ++i) {
       if (items[i].name == items.back().name) {
-        fail(urdf_, items.back().line,
-             kind + " " + items.back().name + ": name is taken already in line " +
-                 std::to_string(items[i].line));
+        fail(urdf_, items.back().line, kind + " " + items.back().name,
+             "name is taken already in line " + std::to_string(items[i].line));
       }
     }
   }
@@ -530,25 +549,8 @@ class Reader {
 }  // namespace
 
 void check_inertial(const Inertial& inertial, std::string_view item) {
-  // exported files carry six digits; a flat plate has I3 = I1 + I2
-  constexpr double kRounding = 1e-5;
-  const auto require = [&](bool holds, const std::string& rule, const std::string& value) {
-    if (!holds) throw SetupError(std::string(item) + ": " + rule + ", got " + value);
-  };
-  require(inertial.mass >= kLeastMass && inertial.mass <= kMass.ub,
-          "mass must be " + to_text(kLeastMass) + " .. " + to_text(kMass.ub) + " kg",
-          to_text(inertial.mass));
-  require(inertial.p_com.allFinite() && inertial.inertia.allFinite(), "inertia must be finite",
-          "nan or inf");
-
-  const Eigen::Vector3d moments = symmetric_eigen(inertial.inertia).values;
-  std::ostringstream got;
-  got << std::setprecision(4) << "principal moments " << moments[0] << ", " << moments[1] << ", "
-      << moments[2];
-  require(moments[0] >= kLeastInertia, "inertia must be positive definite", got.str());
-  require(moments[0] + moments[1] >= moments[2] * (1.0 - kRounding),
-          "inertia is of no body, the two smaller principal moments must add up to the largest",
-          got.str());
+  const std::string broken = broken_rule(inertial);
+  if (!broken.empty()) throw SetupError(std::string(item) + ": " + broken);
 }
 
 bool is_point_mass(const UrdfLink& link) noexcept {
@@ -560,13 +562,13 @@ Urdf read_urdf_text(std::string_view text, std::string_view source) {
   urdf.source = source;
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    fail(urdf, std::max(1, document.ErrorLineNum()),
+    fail(urdf, std::max(1, document.ErrorLineNum()), "",
          "is not valid XML: " + reason_of(text, document.ErrorID()));
   }
   const XMLElement* root = document.RootElement();
   if (root == nullptr || std::string_view(root->Name()) != "robot") {
     const std::string got = root == nullptr ? "" : root->Name();
-    fail(urdf, root == nullptr ? 1 : root->GetLineNum(),
+    fail(urdf, root == nullptr ? 1 : root->GetLineNum(), "",
          "root element must be <robot>, got <" + got + ">" + advice_for(got));
   }
   Inventory(urdf).take(*root);

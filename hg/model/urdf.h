@@ -1,7 +1,7 @@
 /// Reads a URDF into plain structs and checks each link and joint on its own.
 ///
 /// Elements and attributes that are not read are listed, misspelt ones are errors. Every error
-/// throws SetupError that starts with `file:line:`. The chain builder checks the topology.
+/// throws InputError with file and line. The chain builder checks the topology.
 #pragma once
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "hg/core/input_fault.h"
 #include "hg/core/interval.h"
 #include "hg/core/text.h"
 #include "hg/core/types.h"
@@ -40,7 +41,8 @@ struct UrdfLink {
   std::string name;
   int line = 0;
   std::optional<Inertial> inertial;
-  std::string inertial_fault;  ///< Error of an impossible inertia; matters for moving links only
+  /// What makes its inertia impossible; matters for moving links only
+  std::optional<InputFault> inertial_fault;
   std::vector<UrdfCollision> collisions;
 };
 
@@ -72,9 +74,9 @@ struct UrdfJoint {
   std::optional<UrdfMimic> mimic;
   /// Moves although it is not between root and tip: it follows a joint that is, see serial_part()
   bool is_branch = false;
-  /// Error of its type, axis, limits, dynamics or mimic; matters for joints of the chain only, and
-  /// the type is then kFixed
-  std::string fault = {};
+  /// What is wrong with its type, axis, limits, dynamics or mimic; matters for joints of the chain
+  /// only, and the type is then kFixed
+  std::optional<InputFault> fault = {};
 };
 
 /// A kind of element or attribute that is not read, or a rating of 0, which stands for an unknown

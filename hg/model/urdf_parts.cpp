@@ -6,11 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "hg/core/error.h"
+#include "hg/core/input_fault.h"
 #include "hg/core/nearest_name.h"
 
 namespace hg::model {
 namespace {
+
+[[noreturn]] void fail(const Urdf& urdf, const std::string& what) {
+  throw InputError(InputFault{.file = urdf.source, .what = what});
+}
 
 int find_link(const Urdf& urdf, const std::string& name, const std::string& key) {
   std::vector<std::string> names;
@@ -18,8 +22,8 @@ int find_link(const Urdf& urdf, const std::string& name, const std::string& key)
     if (link.name == name) return static_cast<int>(names.size());
     names.push_back(link.name);
   }
-  throw SetupError(urdf.source + ": " + key + " must be a link of the URDF, got '" + name +
-                   "', nearest is '" + nearest_name(name, names) + "'");
+  fail(urdf, key + " must be a link of the URDF, got '" + name + "', nearest is '" +
+                 nearest_name(name, names) + "'");
 }
 
 // index of the joint that carries a link; -1 for the root
@@ -36,9 +40,8 @@ std::vector<int> path_between(const Urdf& urdf, int root, int tip) {
     const int joint = joint_above(urdf, link);
     if (joint < 0) {
       if (root < 0) break;
-      throw SetupError(urdf.source + ": root_link '" + urdf.links[root].name +
-                       "' does not carry tip_link '" + urdf.links[tip].name +
-                       "'; a chain goes from the root of the URDF outwards");
+      fail(urdf, "root_link '" + urdf.links[root].name + "' does not carry tip_link '" +
+                     urdf.links[tip].name + "'; a chain goes from the root of the URDF outwards");
     }
     path.push_back(joint);
     link = urdf.joints[joint].parent;
@@ -90,7 +93,7 @@ Urdf serial_part(const Urdf& urdf, const std::string& root, const std::string& t
       joint.is_branch = joint.mimic && is_between(joint.mimic->joint);
       if (joint.is_branch) continue;
       joint.type = UrdfJointType::kFixed;
-      joint.fault.clear();
+      joint.fault.reset();
     }
   }
   return root_index < 0 ? part : hanging_on(part, root_index);
@@ -124,12 +127,11 @@ void insert_behind(const std::string& behind, const std::string& name,
                                                         found->type == UrdfJointType::kContinuous ||
                                                         found->type == UrdfJointType::kPrismatic);
   if (!is_scalar) {
-    throw SetupError(urdf.source + ": a joint that yields must be behind a revolute or prismatic " +
-                     "joint, got '" + behind + "'");
+    fail(urdf, std::string("a joint that yields must be behind a revolute or prismatic ") +
+                   "joint, got '" + behind + "'");
   }
   if (std::ranges::any_of(urdf.links, is_taken) || std::ranges::any_of(urdf.joints, is_taken)) {
-    throw SetupError(urdf.source + ": the name of a joint that yields is taken, got '" + name +
-                     "'");
+    fail(urdf, "the name of a joint that yields is taken, got '" + name + "'");
   }
   constexpr double kMass = 1e-9;  // kg; its inertia is that of 1 mm
   UrdfJoint joint = *found;

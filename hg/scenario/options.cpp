@@ -16,7 +16,7 @@
 #include "hg/config/shipped_files.h"
 #include "hg/config/simulation/script_schema.h"
 #include "hg/controller/rendering/catalogue.h"
-#include "hg/core/error.h"
+#include "hg/core/input_fault.h"
 #include "hg/core/nearest_name.h"
 
 namespace hg::scenario {
@@ -232,30 +232,18 @@ constexpr char kKnownFilesOnly[] =
     "it, "
     "or give --twin or --device";
 
-// Whether a fault proposes a name that --set takes in quotes only.
-bool names_with_dot(const std::string& fault) {
-  const std::size_t meant = fault.find("did you mean '");
-  return meant != std::string::npos && fault.find_first_of(".[", meant) != std::string::npos;
-}
-
-// A fault "FILE:LINE:COLUMN: ITEM: WHAT" in a file with changed values, as one of these values:
-// before them there was none.
-std::string as_change(const std::string& fault, const std::vector<Part>& parts) {
-  for (const Part& part : parts) {
-    if (!fault.starts_with(part.file + ":")) continue;
-    const std::size_t place = fault.find(": ", part.file.size());
-    if (place == std::string::npos) continue;
-    const std::string rest = fault.substr(place + 2);
-    const bool has_item = rest.find(": ") < rest.find(' ');
-    std::string text = fmt::format("--set {}{}{}", part.name, has_item ? "." : ": ", rest);
-    if (rest.find(": no such file, got ") != std::string::npos) {
-      text += kKnownFilesOnly;
-    } else if (names_with_dot(rest)) {
-      text += "; a name with a dot or bracket stands in quotes, as in joints.\"arm.1\".start_rad";
-    }
-    return text;
+// A fault in a file with changed values, as one of these values: before them there was none.
+std::string as_change(const InputFault& fault, const std::vector<Part>& parts) {
+  const auto part = std::ranges::find(parts, fault.file, &Part::file);
+  if (part == parts.end()) return to_text(fault);
+  std::string text = fmt::format("--set {}{}{}", part->name, fault.item.empty() ? ": " : ".",
+                                 text_without_place(fault));
+  if (fault.is_missing_file) {
+    text += kKnownFilesOnly;
+  } else if (fault.meant.find_first_of(".[") != std::string::npos) {
+    text += "; a name with a dot or bracket stands in quotes, as in joints.\"arm.1\".start_rad";
   }
-  return fault;
+  return text;
 }
 
 // The files of `scenario`, which options have made, with the values of --set.
@@ -280,9 +268,8 @@ config::Scenario load_changed(const ScenarioOptions& options, const config::Scen
     config::SourceReader reader(sources);
     return apply_all(known, reader, config::load_scenario(sources));
   } catch (const SetupError& error) {
-    std::istringstream lines(error.what());
     std::vector<std::string> faults;
-    for (std::string line; std::getline(lines, line);) faults.push_back(as_change(line, parts));
+    for (const InputFault& fault : faults_of(error)) faults.push_back(as_change(fault, parts));
     throw SetupError(fmt::format("{}", fmt::join(faults, "\n")));
   }
 }

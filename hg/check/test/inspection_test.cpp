@@ -587,7 +587,7 @@ TEST(IgnoredUrdf, IsNamedInOneNotePerFile) {
 TEST(IgnoredUrdf, FaultsOfPartsThatAreNotUsedAreNamed) {
   const std::vector<config::SourceText> sources = {
       {"f.yaml", ""},
-      {"r.urdf",
+      {"my: r.urdf",
        R"(<robot name="r"><link name="a"><inertial><mass value="1"/></inertial></link><link name="b"/><joint name="socket" type="spherical">)"
        R"(<parent link="a"/><child link="b"/></joint></robot>)"}};
   const config::Places places;
@@ -648,22 +648,60 @@ TEST(Bodies, PlaceholdersAreNamed) {
   }
 }
 
-TEST(Findings, TakesMessagesApart) {
-  const Findings findings = findings_of_message(
-      "a/b.yaml:3:7: joints.m1: must be > 0, got 0\nr.urdf:12: link x: too heavy\nno place\nf: no "
-      "such file",
-      "f");
-  ASSERT_EQ(findings.size(), 4u);
+TEST(Findings, AreWhereTheFaultsAre) {
+  const Findings findings =
+      findings_of(InputError({{.file = "a/b.yaml",
+                               .line = 3,
+                               .column = 7,
+                               .item = "joints.m1",
+                               .what = "must be > 0, got 0"},
+                              {.file = "r.urdf", .line = 12, .item = "link x", .what = "too heavy"},
+                              {.file = "f", .what = "no such file"}}),
+                  "f");
+  ASSERT_EQ(findings.size(), 3u);
   EXPECT_EQ(findings[0].file, "a/b.yaml");
   EXPECT_EQ(findings[0].place.line, 3);
   EXPECT_EQ(findings[0].place.column, 7);
   EXPECT_EQ(findings[0].item, "joints.m1");
   EXPECT_EQ(findings[0].what, "must be > 0, got 0");
+  EXPECT_EQ(findings[1].file, "r.urdf");
   EXPECT_EQ(findings[1].place.line, 12);
-  EXPECT_EQ(findings[1].what, "link x: too heavy");
+  EXPECT_EQ(findings[1].place.column, 1);
+  EXPECT_EQ(findings[1].item, "link x");
+  EXPECT_EQ(findings[1].what, "too heavy");
   EXPECT_EQ(findings[2].file, "f");
-  EXPECT_EQ(findings[2].what, "no place");
-  EXPECT_EQ(findings[3].item + findings[3].what, "no such file");
+  EXPECT_EQ(findings[2].place.line, 1);
+  EXPECT_EQ(findings[2].item + findings[2].what, "no such file");
+}
+
+TEST(Findings, NamesThatLookLikePlacesDoNotMoveThem) {
+  const Finding finding = finding_of({.file = "a:12: b.yaml",
+                                      .line = 3,
+                                      .column = 7,
+                                      .item = "joints.door: 7",
+                                      .what = "is: wrong"},
+                                     "a:12: b.yaml");
+  EXPECT_EQ(finding.file, "a:12: b.yaml");
+  EXPECT_EQ(finding.place.line, 3);
+  EXPECT_EQ(finding.place.column, 7);
+  EXPECT_EQ(finding.item, "joints.door: 7");
+  EXPECT_EQ(finding.what, "is: wrong");
+}
+
+TEST(Findings, AnotherFileAsAWholeIsTheItem) {
+  const Finding finding = finding_of({.file = "r.urdf", .item = "tool", .what = "wrong"}, "f.yaml");
+  EXPECT_EQ(finding.file, "f.yaml");
+  EXPECT_EQ(finding.item, "r.urdf");
+  EXPECT_EQ(finding.what, "tool: wrong");
+}
+
+TEST(Findings, AnErrorWithoutDataIsOneOfTheFile) {
+  const Findings findings = findings_of(SetupError("a.yaml:3:7: x: no place"), "f");
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].file, "f");
+  EXPECT_EQ(findings[0].place.line, 1);
+  EXPECT_EQ(findings[0].item, "");
+  EXPECT_EQ(findings[0].what, "a.yaml:3:7: x: no place");
 }
 
 TEST(FileKind, FollowsFromTheKeysOfTheFile) {

@@ -27,7 +27,7 @@ auto part(LoaderFile& file, const std::filesystem::path& path, Load load)
   try {
     return load();
   } catch (const SetupError& error) {
-    file.faults.add_complete(error.what());
+    file.faults.add_all(error);
     return {};
   }
 }
@@ -89,7 +89,7 @@ std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
     try {
       surfaces.push_back(surface_of(draft, file.sources));
     } catch (const SetupError& error) {
-      file.faults.add_complete(error.what());
+      file.faults.add_all(error);
       continue;
     }
     loader.rule(!surfaces::is_inside(surfaces.back(), start), "surfaces",

@@ -173,7 +173,7 @@ void load_base(LoaderFile& file, const SimulationTarget& device, SimulationDraft
   try {
     load(draft.base, file.sources, device, true, draft);
   } catch (const SetupError& error) {
-    file.faults.add_complete(error.what());
+    file.faults.add_all(error);
   }
 }
 

@@ -142,6 +142,14 @@ TEST(Options, AValueThatDoesNotFitIsRefusedAsTheOneThatWasSet) {
       "--set twin.urdf: no such file, got '/etc/passwd'; --set reads no file that the scenario "
       "did not read without it: change the file that names it, or give --twin or --device");
   EXPECT_EQ(message("twin.mass_scale.x=1"), "--set twin.mass_scale: must be a number, got a map");
+  EXPECT_EQ(message("twin.joints.\"hin: ge\".damping_Nms_per_rad=1"),
+            "--set twin.joints.hin: ge: must be a joint of the twin, got 'hin: ge', did you mean "
+            "'hinge'?");
+  // the words of a fault count as little in a value as any others
+  EXPECT_EQ(message("twin.mass_scale=\": no such file, got \""),
+            "--set twin.mass_scale: must be a number, got ': no such file, got '");
+  EXPECT_EQ(message("twin.mass_scale=\"did you mean 'a.b'\""),
+            "--set twin.mass_scale: must be a number, got 'did you mean 'a.b''");
 }
 
 }  // namespace

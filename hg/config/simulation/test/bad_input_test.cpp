@@ -220,6 +220,46 @@ TEST(BadFile, FilesThatItNamesMustExist) {
             "'../../../../models/twins/door/dor.urdf', did you mean 'door.urdf'?");
 }
 
+TEST(BadFile, FaultsAreDataToo) {
+  const std::string file = "my: door:7: .yaml";
+  SourceReader reader(
+      {{"door.urdf", kDoorUrdf},
+       {file, "name: door\nurdf: dor.urdf\nend_effector: handle\n\"gra: vty\": 1\n"}});
+  try {
+    load_twin(file, reader);
+    FAIL() << "must be refused";
+  } catch (const SetupError& error) {
+    const std::vector<InputFault> faults = faults_of(error);
+    ASSERT_EQ(faults.size(), 2u) << error.what();
+    EXPECT_EQ(faults[0].file, file);
+    EXPECT_EQ(faults[0].line, 2);
+    EXPECT_EQ(faults[0].column, 7);
+    EXPECT_EQ(faults[0].item, "urdf");
+    EXPECT_TRUE(faults[0].is_missing_file);
+    EXPECT_EQ(faults[1].line, 4);
+    EXPECT_EQ(faults[1].item, "gra: vty");
+    EXPECT_EQ(faults[1].what, "unknown key, did you mean 'gravity'?");
+    EXPECT_EQ(faults[1].meant, "gravity");
+    EXPECT_FALSE(faults[1].is_missing_file);
+  }
+}
+
+TEST(BadFile, FaultsOfAUrdfKeepTheirPlaceInTheFileThatNamesIt) {
+  SourceReader reader(
+      {{"door.urdf", "<robot name=\"door\">\n<link name=\"a: 1\"/><link name=\"a: 1\"/></robot>"},
+       {"door.yaml", "name: door\nurdf: door.urdf\nend_effector: handle\n"}});
+  try {
+    load_twin("door.yaml", reader);
+    FAIL() << "must be refused";
+  } catch (const SetupError& error) {
+    const InputFault fault = faults_of(error).back();
+    EXPECT_EQ(fault.file, "door.urdf");
+    EXPECT_EQ(fault.line, 2);
+    EXPECT_EQ(fault.item, "link a: 1");
+    EXPECT_EQ(fault.what, "name is taken already in line 2");
+  }
+}
+
 TEST(BadFile, AUrdfSpeaksForItself) {
   SourceReader reader({{"door.urdf", "<robot name=\"door\"><link/></robot>"},
                        {"door.yaml", "name: door\nurdf: door.urdf\nend_effector: handle\n"}});

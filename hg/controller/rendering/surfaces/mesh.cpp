@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "hg/core/error.h"
+#include "hg/core/input_fault.h"
 
 namespace hg::surfaces {
 namespace {
@@ -98,12 +98,16 @@ class Words {
     rest_.remove_prefix(word.size());
     return !word.empty();
   }
-  std::ptrdiff_t line() const { return line_; }
+  int line() const { return static_cast<int>(line_); }
 
  private:
   std::string_view rest_;
   std::ptrdiff_t line_ = 1;
 };
+
+[[noreturn]] void fail(std::string_view source, const std::string& what, int line = 0) {
+  throw InputError(InputFault{.file = std::string(source), .line = line, .what = what});
+}
 
 double read_number(Words& words, std::string_view source) {
   std::string_view word;
@@ -112,8 +116,8 @@ double read_number(Words& words, std::string_view source) {
   const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc() && end == digits.data() + digits.size()) return value;
-  throw SetupError(std::string(source) + ":" + std::to_string(words.line()) +
-                   ": a number is expected after 'vertex', got '" + std::string(word) + "'");
+  fail(source, "a number is expected after 'vertex', got '" + std::string(word) + "'",
+       words.line());
 }
 
 std::vector<Corners> read_text(std::string_view content, std::string_view source, double scale) {
@@ -126,8 +130,8 @@ std::vector<Corners> read_text(std::string_view content, std::string_view source
     for (double& value : corner) value = scale * read_number(words, source);
   }
   if (corners.size() % 3 != 0) {
-    throw SetupError(std::string(source) + ": three vertices a facet are expected, got " +
-                     std::to_string(corners.size()) + " in all");
+    fail(source,
+         "three vertices a facet are expected, got " + std::to_string(corners.size()) + " in all");
   }
   std::vector<Corners> triangles;
   for (std::size_t i = 0; i < corners.size(); i += 3) {
@@ -204,16 +208,16 @@ Mesh read_stl(std::string_view content, std::string_view source, double scale) {
   const bool is_binary = content.size() >= kHeader &&
                          content.size() == kHeader + kRecord * std::size_t{count_of(content)};
   if (!is_binary && !content.starts_with("solid")) {
-    throw SetupError(std::string(source) +
-                     ": no STL file: it neither begins with 'solid' nor has the length that its "
-                     "count of triangles demands");
+    fail(source,
+         "no STL file: it neither begins with 'solid' nor has the length that its "
+         "count of triangles demands");
   }
   const std::vector<Corners> triangles =
       is_binary ? read_binary(content, scale) : read_text(content, source, scale);
   try {
     return Mesh(triangles);
   } catch (const SetupError& error) {
-    throw SetupError(std::string(source) + ": " + error.what());
+    fail(source, error.what());
   }
 }
 
