@@ -18,8 +18,8 @@
 #include "apps/command_line/option_checks.h"
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/interruption.h"
+#include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/report.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/export_table.h"
 #include "apps/offline/subcommand.h"
@@ -30,6 +30,7 @@
 #include "hg/recording/recording_reader.h"
 #include "hg/recording/rosbag2.h"
 #include "hg/scenario/names.h"
+#include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::apps {
 namespace {
@@ -48,6 +49,7 @@ struct ExportArguments {
   std::string file, format = "csv";
   std::string out;                   ///< without suffix; empty = name of the recording
   std::vector<std::string> columns;  ///< patterns; empty = all
+  std::string json;                  ///< list of the columns; empty = printed
   std::optional<double> rate_Hz, from_s, to_s;
 };
 
@@ -172,7 +174,7 @@ class Survey final : public Listener {
   // what the scenario says, where it can be read
   void describe_scenario(Json& run) const {
     try {
-      const config::Scenario scenario = recorded_scenario(configuration_);
+      const config::Scenario scenario = scenario::recorded_scenario(configuration_);
       const analysis::RunFacts facts = scenario::facts_of_scenario(scenario);
       run.update(Json{{"scenario", scenario.title},
                       {"device", scenario.device.name},
@@ -319,9 +321,21 @@ int export_table(const ExportArguments& arguments) {
   return 0;
 }
 
-int list_columns() {
+int list_columns(const std::string& json_file) {
   const recording::RunParts parts;
   const Columns columns;
+  if (!json_file.empty()) {
+    check_writable(json_file, kJson);
+    Json list = {{"columns", Json::array()}};
+    for (const Column& column : columns.all()) {
+      list["columns"].push_back({{"name", column.name},
+                                 {"has_index", column.is_wide},
+                                 {"unit", parts.facts_of(column).unit},
+                                 {"description", column.note}});
+    }
+    write_json(json_file, list);
+    return 0;
+  }
   for (const Column& column : columns.all()) {
     print_out("{:<36} {:<16} {}\n", column.name + (column.is_wide ? "[]" : ""),
               parts.facts_of(column).unit, column.note);
@@ -351,8 +365,11 @@ void add_export(Command app, int& exit_code) {
       command.add_option("file", arguments->file, "recording, also one that is damaged or cut off")
           .existing_file();
   const auto lists = std::make_shared<bool>(false);
-  command.add_flag("--list-columns", *lists, "print names, units and meanings of all columns")
-      .excludes(file);
+  const Option list =
+      command.add_flag("--list-columns", *lists, "print names, units and meanings of all columns")
+          .excludes(file);
+  command.add_option("--json", arguments->json, "write that list as JSON to this file instead")
+      .needs(list);
   command.add_option("--format", arguments->format, "csv, parquet, hdf5 or rosbag2")
       .one_of({"csv", "parquet", "hdf5", "rosbag2"})
       .capture_default_str();
@@ -371,7 +388,7 @@ void add_export(Command app, int& exit_code) {
       .check(is_time);
   command.callback([arguments, lists, file, &exit_code] {
     if (!*lists && file.count() == 0) refuse_without("file");
-    exit_code = *lists ? list_columns() : run_export(*arguments);
+    exit_code = *lists ? list_columns(arguments->json) : run_export(*arguments);
   });
 }
 

@@ -57,6 +57,11 @@ std::vector<Channel> channels(const std::vector<Channel>& twin) {
   return all;
 }
 
+std::string to_text(const ClockNews& news) {
+  return fmt::format("{}local clock of LSL = run time + {:.6f} s",
+                     news.was_known ? "run time has stood still, from now on " : "", news.offset_s);
+}
+
 const std::array<double, kMaxChannels>& ChannelValues::of(const CycleRecord& record) noexcept {
   std::size_t next = 0;
   const auto add = [&](const auto& vector) {
@@ -92,7 +97,7 @@ class LabStreams::Sender {
     items_.push({sample.record.time_s, lsl_.local_clock(), values_.of(sample.record)});
   }
   void mark(double time_s, std::string_view name, std::string_view text);
-  std::string news();
+  std::optional<ClockNews> news();
   StreamCounts close();
 
  private:
@@ -112,7 +117,7 @@ class LabStreams::Sender {
   std::mutex mutex_;  // guards the next three
   std::vector<Marker> markers_;
   std::uint64_t lost_markers_ = 0;
-  std::string news_;
+  std::optional<ClockNews> news_;
 
   // used only by the thread while it runs
   Liblsl::Outlet numbers_ = nullptr, texts_ = nullptr;
@@ -165,7 +170,7 @@ void LabStreams::Sender::mark(double time_s, std::string_view name, std::string_
       {time_s, text.empty() ? std::string(name) : fmt::format("{}: {}", name, text)});
 }
 
-std::string LabStreams::Sender::news() {
+std::optional<ClockNews> LabStreams::Sender::news() {
   const std::lock_guard lock(mutex_);
   return std::exchange(news_, {});
 }
@@ -202,9 +207,7 @@ void LabStreams::Sender::send(const Item& item) {
   const bool was_known = clock_.is_known();
   if (clock_.see(item.time_s, item.clock_s)) {
     const std::lock_guard lock(mutex_);
-    news_ =
-        fmt::format("{}local clock of LSL = run time + {:.6f} s",
-                    was_known ? "run time has stood still, from now on " : "", clock_.offset_s());
+    news_ = {.offset_s = clock_.offset_s(), .was_known = was_known};
   }
   if (!clock_.is_known()) {
     waiting_.push_back(item);
@@ -256,7 +259,7 @@ void LabStreams::push(const Sample& sample) noexcept { sender_->push(sample); }
 void LabStreams::mark(double time_s, std::string_view name, std::string_view text) {
   sender_->mark(time_s, name, text);
 }
-std::string LabStreams::news() { return sender_->news(); }
+std::optional<ClockNews> LabStreams::news() { return sender_->news(); }
 StreamCounts LabStreams::close() { return sender_->close(); }
 
 }  // namespace hg::lab_streaming

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,6 +53,15 @@ struct StreamCounts {
   std::uint64_t dropped = 0;               ///< samples and markers not sent: the ring was full
 };
 
+/// What has become known of the clock.
+struct ClockNews {
+  double offset_s = 0.0;   ///< local clock of LSL minus run time
+  bool was_known = false;  ///< with another offset: run time has stood still
+};
+
+/// For people.
+std::string to_text(const ClockNews& news);
+
 class LabStreams {
  public:
   /// Opens the streams and starts the thread. `library` must outlive it. Throws SetupError.
@@ -62,8 +72,8 @@ class LabStreams {
   /// Takes a sample or an event; never waits. Observer thread only.
   void push(const Sample& sample) noexcept;
   void mark(double time_s, std::string_view name, std::string_view text);
-  /// What has become known of the clock since the last call; empty = nothing.
-  std::string news();
+  /// What has become known of the clock since the last call.
+  std::optional<ClockNews> news();
 
   /// Sends what is left and closes the streams.
   StreamCounts close();

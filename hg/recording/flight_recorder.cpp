@@ -17,7 +17,7 @@ namespace {
 
 // only recordings of runs enforce the folder's budget: recording a fault deletes no file
 constexpr double kNoBudget = 1e18;
-constexpr std::size_t kMostEvents = 1000;
+constexpr std::size_t kMostEvents = 1000;  // and lab clocks
 
 std::size_t slot_count(const RecordingInfo& info, double seconds) {
   if (!(seconds > 0.0 && info.rate_Hz > 0.0 && std::isfinite(seconds * info.rate_Hz))) {
@@ -66,6 +66,12 @@ void FlightRecorder::event(double time_s, std::string_view name, std::string_vie
   events_.push_back({time_s, std::string(name), std::string(text)});
 }
 
+void FlightRecorder::lab_clock(const LabClock& clock) {
+  if (is_writing_.load(std::memory_order_acquire)) return;
+  if (lab_clocks_.size() == kMostEvents) lab_clocks_.erase(lab_clocks_.begin());
+  lab_clocks_.push_back(clock);
+}
+
 void FlightRecorder::write(const std::string& cause) {
   if (thread_.joinable()) thread_.join();
   is_writing_.store(true);
@@ -108,6 +114,7 @@ RecordingSummary FlightRecorder::write_to(const std::filesystem::path& folder,
   RecordingInfo info = info_;
   info.folder = folder;
   info.name += "_" + cause;
+  info.is_reproducible = false;  // recording.mcap is that of the run
   Recorder recorder(info);
   const std::uint64_t kept = std::min<std::uint64_t>(pushed_, slots_.size());
   const auto sample = std::make_unique<Sample>();
@@ -120,6 +127,7 @@ RecordingSummary FlightRecorder::write_to(const std::filesystem::path& folder,
   for (const Event& event : events_) {
     if (event.time_s >= first_s) recorder.event(event.time_s, event.name, event.text);
   }
+  for (const LabClock& clock : lab_clocks_) recorder.lab_clock(clock);  // an old one still holds
   return recorder.close();
 } catch (const SetupError& error) {
   return {.error = error.what()};

@@ -34,6 +34,7 @@ class FlightRecorder {
   /// Adds a sample, in order; the oldest one is dropped.
   void push(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
+  void lab_clock(const LabClock& clock);
 
   /// Writes all kept samples, with `cause` (letters, digits, dashes) in the file name: to the
   /// folder of `info` or, where that is full or missing, to a new folder hapticgiant_XXXXXX among
@@ -57,6 +58,7 @@ class FlightRecorder {
   std::vector<std::vector<std::byte>> slots_;  ///< encoded samples, a ring
   std::uint64_t pushed_ = 0;                   ///< samples pushed so far
   std::vector<Event> events_;                  ///< events of the kept samples, and some older
+  std::vector<LabClock> lab_clocks_;           ///< the last ones
   std::atomic<bool> is_writing_{false};
   Result result_;
   std::thread thread_;

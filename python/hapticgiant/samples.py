@@ -17,7 +17,7 @@ import numpy as np
 MAGIC = b"\x89MCAP0\r\n"
 MOST_BYTES = 1 << 30  # of a record; a damaged length is larger
 CHUNK_HEAD = 1 + 8 + 3 * 8 + 4 + 4 + 8  # bytes of a chunk besides its data and compression's name
-SAMPLES, EVENTS = "/hapticgiant/sample", "/hapticgiant/events"
+SAMPLES, EVENTS, LAB_CLOCK = "/hapticgiant/sample", "/hapticgiant/events", "/hapticgiant/lab_clock"
 CDR_HEADER = 4  # bytes before what is aligned
 FIELD = re.compile(r"^\s*(\w[\w/]*)(?:\[(?:<=)?(\d*)\])?\s+(\w+)\s*(?:#.*)?$")
 BOUNDED = re.compile(r"\[<=")
@@ -29,6 +29,13 @@ class Event(typing.NamedTuple):
     time_s: float
     name: str
     text: str
+
+
+class LabClock(typing.NamedTuple):
+    """From this run time on, the local clock of the Lab Streaming Layer is run time plus the offset."""
+
+    time_s: float
+    offset_s: float
 
 
 @dataclasses.dataclass
@@ -217,6 +224,8 @@ class Samples:
     count: int = 0
     """Rows."""
     events: list[Event] = dataclasses.field(default_factory=list)
+    lab_clock: list[LabClock] = dataclasses.field(default_factory=list)
+    """Empty without streams, and in recordings of version 0.2.0 and before, which have it in the words of an event alone."""
     metadata: dict[str, list[tuple[str, str]]] = dataclasses.field(default_factory=dict)
     configuration: dict[str, str] = dataclasses.field(default_factory=dict)
     """Files that describe the run, by name."""
@@ -279,9 +288,12 @@ class _Reader:
                 self._waiting.append(record.data)
             elif topic == EVENTS:
                 self._take_event(schema, record.data)
+            elif topic == LAB_CLOCK:
+                layout = schema.layout(record.data)
+                self.found.lab_clock.append(LabClock(*(_number(layout, record.data, name) for name in LabClock._fields)))
         elif isinstance(record, records.Schema):
             self._schemas[record.id] = record
-        elif isinstance(record, records.Channel) and record.topic in (SAMPLES, EVENTS):
+        elif isinstance(record, records.Channel) and record.topic in (SAMPLES, EVENTS, LAB_CLOCK):
             if record.id not in self._channels:
                 schema = _Schema(self._schemas[record.schema_id].data.decode())
                 self._channels[record.id] = record.topic, schema
@@ -295,8 +307,7 @@ class _Reader:
             place, length = layout.texts[name]
             return bytes(data[place:place + length]).decode(errors="replace")
 
-        ((dtype, place, _),) = layout.parts["time_s"]
-        self.found.events.append(Event(float(np.frombuffer(data, dtype, 1, place)[0]), text("name"), text("text")))
+        self.found.events.append(Event(_number(layout, data, "time_s"), text("name"), text("text")))
 
     def _decode(self):
         if self._waiting:
@@ -310,6 +321,12 @@ class _Reader:
         if self._rows is not None:
             found.columns, found.count = self._rows.columns(), self._rows.count
         return found
+
+
+def _number(layout, data, name) -> float:
+    """A number of a message that is no sequence."""
+    ((dtype, place, _),) = layout.parts[name]
+    return float(np.frombuffer(data, dtype, 1, place)[0])
 
 
 def _is_complete(stream) -> bool:

@@ -114,6 +114,14 @@ class Csv(Export):
         self.assertEqual(code, 0)
         known = {line.split()[0].removesuffix("[]") for line in listed.splitlines()}
         self.assertLessEqual(names, known)
+        code, out, _ = run("export", "--list-columns", "--json", "/dev/stdout")
+        listed_json = {column["name"]: column for column in json.loads(out)["columns"]}
+        self.assertEqual(listed_json.keys(), known)
+        for line in listed.splitlines():
+            name = line.split()[0]
+            self.assertEqual(listed_json[name.removesuffix("[]")]["has_index"], name.endswith("[]"))
+        self.assertEqual(listed_json["robot.w_h"]["unit"], "N, Nm")
+        self.assertEqual(run("export", DOOR, "--json", "/dev/stdout")[0], 2)
         # what this run does not have is left out
         self.assertIn("sensors.inertial", known - names)
 

@@ -1,7 +1,5 @@
 """A recording by the official MCAP reader: what exports and streams are compared with."""
 
-import re
-
 import numpy as np
 from mcap.reader import NonSeekingReader
 from mcap_ros2.decoder import DecoderFactory
@@ -25,9 +23,8 @@ def events(file):
 
 
 def lab_clock(file):
-    """Offsets of the clock of the Lab Streaming Layer, in the order of their events."""
-    return [float(re.search(r"run time \+ ([\d.]+) s", text)[1])
-            for _, name, text in events(file) if name == "lab clock"]
+    """Offsets of the clock of the Lab Streaming Layer, in their order."""
+    return [clock.offset_s for _, clock in messages(file, "/hapticgiant/lab_clock")]
 
 
 def quaternion(rotation):

@@ -279,9 +279,11 @@ class Files(Test):
         out = FOLDER / "run"
         run = subprocess.run([PROGRAM, "run", "door", "--lsl", "--no-viewer", "--priority", "0", "--duration", "3",
                               "--recordings", out], capture_output=True, text=True, stdin=subprocess.DEVNULL)
-        recorded = samples.read(out / "latest.mcap", ["mode"]).events
-        clock = markers.lab_clock_of(recorded)
+        found = samples.read(out / "latest.mcap", ["mode"])
+        recorded, clock = found.events, found.lab_clock
         self.assertTrue(clock, run.stdout + run.stderr)
+        self.assertEqual([(event.time_s, event.text.rpartition("run time ")[2]) for event in recorded if event.name == "lab clock"],
+                         [(each.time_s, f"+ {each.offset_s:.6f} s") for each in clock])
         events = {f"{event.name}: {event.text}" if event.text else event.name: event.time_s for event in recorded}
         rows = [row for row in csv.DictReader(markers.table(self.gather(collected, 1), clock).splitlines())]
         for row in rows:

@@ -38,6 +38,7 @@ float64 reaction
 bool is_near
 """
 EVENT = "float64 time_s\nstring name\nstring text\n"
+CLOCK = "float64 time_s\nfloat64 offset_s\n"
 
 
 def sample(i, joints=7, limits=2):
@@ -47,7 +48,7 @@ def sample(i, joints=7, limits=2):
                        "limits": [{"reaction": i + k, "is_near": k == 1} for k in range(limits)]}}
 
 
-def write(file, messages, chunk_size=4000, finish=True, events=()):
+def write(file, messages, chunk_size=4000, finish=True, events=(), clocks=()):
     stream = open(file, "wb")
     writer = RosWriter(stream, chunk_size=chunk_size)
     schema = writer.register_msgdef("hg/msg/Sample", SCHEMA)
@@ -56,6 +57,10 @@ def write(file, messages, chunk_size=4000, finish=True, events=()):
         writer.write_message(samples.SAMPLES, schema, message, i, i)
     for each in events:
         writer.write_message(samples.EVENTS, event, each, 0, 0)
+    if clocks:
+        clock = writer.register_msgdef("hg/msg/LabClock", CLOCK)
+    for each in clocks:
+        writer.write_message(samples.LAB_CLOCK, clock, each, 0, 0)
     if finish:
         writer.finish()
     stream.close()
@@ -82,6 +87,14 @@ class Read(unittest.TestCase):
         self.assertEqual({name: columns[name].dtype.str for name in ("mode", "sensors.mode", "causes", "ratio")},
                          {"mode": "|u1", "sensors.mode": "|u1", "causes": "<i4", "ratio": "<f4"})
         self.assertEqual([list(row[:i % 3]) for i, row in enumerate(columns["causes"])], [[i] * (i % 3) for i in range(500)])
+
+    def test_the_lab_clock_is_a_number_and_not_the_words_of_an_event(self):
+        event = {"time_s": 0.1, "name": "lab clock", "text": "local clock of LSL = run time + 7.5 s"}
+        write(self.file, [sample(0)], events=[event])
+        self.assertEqual(samples.read(self.file).lab_clock, [])
+        write(self.file, [sample(0)], events=[event], clocks=[{"time_s": 0.1, "offset_s": -1234.0000001},
+                                                             {"time_s": 5.5, "offset_s": 1e9}])
+        self.assertEqual(samples.read(self.file).lab_clock, [(0.1, -1234.0000001), (5.5, 1e9)])
 
     def test_sequences_that_change_their_length_end_with_nothing(self):
         rows = [sample(i, joints=i % 4, limits=i % 3) for i in range(40)]

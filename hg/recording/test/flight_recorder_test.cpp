@@ -4,10 +4,14 @@
 
 #include <cstdlib>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "hg/core/error.h"
 #include "hg/core/test/temporary_folder.h"
+#include "hg/messages/cdr_reader.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/recording/test/example_run.h"
 
@@ -55,6 +59,33 @@ TEST_F(FlightRecorderTest, WritesTheLastSecondsAtFullRateWithTheirEvents) {
   ASSERT_EQ(run.events().size(), 1u);
   EXPECT_EQ(run.events()[0].name, "fault");
   EXPECT_EQ(run.configuration().size(), 2u);
+}
+
+// The clocks of the lab in a file.
+struct LabClocks final : MessageListener {
+  std::vector<double> offsets_s;
+
+  void configuration(const NamedText&) override {}
+  void metadata(const std::string&, const KeyValues&) override {}
+  void topic(const Topic&) override {}
+  void message(std::string_view topic, std::uint64_t, std::span<const std::byte> bytes) override {
+    LabClock clock;
+    if (topic != "/hapticgiant/lab_clock") return;
+    EXPECT_TRUE(messages::CdrReader(bytes).decode(clock));
+    offsets_s.push_back(clock.offset_s);
+  }
+};
+
+TEST_F(FlightRecorderTest, KeepsTheLabClockThatIsOlderThanItsSamples) {
+  FlightRecorder recorder(example_info(temporary_.path()), 0.5);
+  recorder.lab_clock({.time_s = 0.1, .offset_s = 1234.5});
+  push(recorder, 0, 1234);
+  recorder.write("stop");
+  const FlightRecorder::Result result = recorder.close();
+  ASSERT_EQ(result.files.size(), 1u);
+  LabClocks found;
+  (void)read_messages(result.files[0], found);
+  EXPECT_EQ(found.offsets_s, std::vector<double>{1234.5});
 }
 
 TEST_F(FlightRecorderTest, RestartsAfterItHasWritten) {

@@ -97,6 +97,11 @@ def check_complete(path):
         (START_NS + SECONDS * 10**9, "end", ""),
     ]
 
+    clocks = by_topic.pop("/hapticgiant/lab_clock")
+    assert [(t, c.time_s, c.offset_s) for t, c in clocks] == [
+        (START_NS + SECONDS * 10**9 // 2, SECONDS / 2, 12345.678901234567)
+    ]
+
     topics = ["/joint_states", "/twin/joint_states", "/tf", "/user_wrench", "/handle_twist"]
     assert sorted(by_topic) == sorted(topics)
     for topic in topics:

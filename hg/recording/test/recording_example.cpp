@@ -33,6 +33,7 @@ int record(const std::string& folder, const std::string& duration, double rate_H
     recorder.push_waiting(hg::recording::example_sample(cycle, rate_Hz));
   }
   if (is_crash) std::_Exit(0);
+  recorder.lab_clock({.time_s = 0.5 * seconds, .offset_s = 12345.678901234567});
   recorder.event(seconds, "end", "");
   const hg::recording::RecordingSummary summary = recorder.close();
 

@@ -42,6 +42,11 @@ void RunRecording::event(double time_s, std::string_view name, std::string_view 
   if (flight_) flight_->event(time_s, name, text);
 }
 
+void RunRecording::lab_clock(const recording::LabClock& clock) {
+  if (recorder_) recorder_->lab_clock(clock);
+  if (flight_) flight_->lab_clock(clock);
+}
+
 std::string RunRecording::news() {
   if (!recorder_ || has_reported_) return {};
   const std::string error = recorder_->error();

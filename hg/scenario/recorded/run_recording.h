@@ -36,6 +36,7 @@ class RunRecording {
   /// Records every sample, in order.
   void push(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
+  void lab_clock(const recording::LabClock& clock);
   /// Reason, returned once, why the recording has ended during the run; empty = no news.
   std::string news();
 

@@ -460,7 +460,7 @@ class Conductor:
         found = trials.measured(self.study, summary, exit_code_of(summary, exit_code))
         recording = self.folder.keep(found.recording, session.code, step, "recording.mcap")
         if self._markers:
-            markers.write(self.folder, session.code, step, self._markers.take(), markers.lab_clock_of(found.recorded_events))
+            markers.write(self.folder, session.code, step, self._markers.take(), found.lab_clock)
         self.folder.write(self.folder.file_of(session.code, step), trials.dump({
             "participant": session.code, "condition": step.condition, "repetition": step.repetition,
             "position": session.place(position), "simulated": not self.hand.is_real, "hand": self.hand.kind,

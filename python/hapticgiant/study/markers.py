@@ -15,7 +15,6 @@ import json
 import math
 import os
 import pathlib
-import re
 import threading
 import time
 
@@ -42,7 +41,6 @@ POLL_S, LOOK_S, MEASURE_S = 0.02, 0.5, 2.0
 UNSEEN_S = 3.0  # a stream that has not answered for so long counts as away
 GONE_S = 10.0  # and is looked for anew from then on
 FAREWELL_S = 0.5  # for what readers have not fetched yet
-CLOCK = re.compile(r"run time \+ (-?[\d.]+) s")
 _configured = False
 
 
@@ -268,16 +266,9 @@ def _word(value) -> str:
         each if each.isprintable() else each.encode("unicode_escape").decode() for each in text)
 
 
-def lab_clock_of(events: list[samples.Event]) -> list[tuple[float, float]]:
-    """The events 'lab clock' of a recording: since which run time, s, the local clock of LSL is run time plus which
-    offset, s."""
-    return [(event.time_s, float(found[1])) for event in events
-            if event.name == "lab clock" and (found := CLOCK.search(event.text))]
-
-
-def run_time(lab_clock: list[tuple[float, float]], clock_s: float) -> float:
+def run_time(lab_clock: list[samples.LabClock], clock_s: float) -> float:
     """The run time at which the local clock of LSL was this, s; NaN without a clock. The first offset counts from the
-    beginning, another one from its event on; while run time stood still it is that of the event."""
+    beginning, another one from its time on; while run time stood still it is that time."""
     last_s = math.inf
     for place, (since_s, offset_s) in reversed(list(enumerate(lab_clock))):
         time_s = clock_s - offset_s
@@ -287,7 +278,7 @@ def run_time(lab_clock: list[tuple[float, float]], clock_s: float) -> float:
     return math.nan
 
 
-def table(markers: list[Marker], lab_clock: list[tuple[float, float]] = ()) -> str:
+def table(markers: list[Marker], lab_clock: list[samples.LabClock] = ()) -> str:
     """Markers as CSV with the columns of COLUMNS."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
@@ -300,7 +291,7 @@ def table(markers: list[Marker], lab_clock: list[tuple[float, float]] = ()) -> s
 
 
 def write(folder, code: str, step, markers: list[Marker],
-          lab_clock: list[tuple[float, float]] = ()) -> pathlib.Path:
+          lab_clock: list[samples.LabClock] = ()) -> pathlib.Path:
     """Writes the markers of a trial beside its other files; its file. step: a planning.Step; None: of the time between
     steps, in the next file sub-CODE_run-N_markers.csv that is not there yet. Raises FolderError."""
     if step is not None:

@@ -52,7 +52,7 @@ class Measured:
     recording: pathlib.Path
     digest: str
     """SHA-256 of the recording."""
-    recorded_events: list[samples.Event]
+    lab_clock: list[samples.LabClock]
 
 
 def columns_of(study: Study) -> list[str]:
@@ -64,9 +64,9 @@ def columns_of(study: Study) -> list[str]:
 
 def known_columns(program: Program) -> dict[str, bool]:
     """The columns that a recording has, and whether they have an index."""
-    done = subprocess.run([program.file, "export", "--list-columns"], capture_output=True, text=True, check=True)
-    names = [line.split()[0] for line in done.stdout.splitlines() if line.strip()]
-    return {name.removesuffix("[]"): name.endswith("[]") for name in names}
+    done = subprocess.run([program.file, "export", "--list-columns", "--json", "/dev/stdout"],
+                          capture_output=True, text=True, check=True)
+    return {column["name"]: column["has_index"] for column in json.loads(done.stdout)["columns"]}
 
 
 def require_columns(study: Study, known: dict[str, bool]) -> None:
@@ -121,7 +121,7 @@ def measured(study: Study, summary: dict, exit_code: int) -> Measured:
                 continue
             raise expressions.ExpressionError(f"{study.place(f'measures.{name}')}: measures.{name}: {error}") from None
     return Measured(exit_code, summary["state_hash"], events, measures, recording, digest_of(recording),
-                    recorded.events)
+                    recorded.lab_clock)
 
 
 def digest_of(file: pathlib.Path) -> str:
