@@ -25,6 +25,7 @@ constexpr int kPostures = 2000;
 constexpr double kTableHeight = 0.75;    // m, of what a standing arm stands on
 constexpr double kTable = 0.05;          // m, handles stay above the plane of the root link by it
 constexpr double kClear = 0.1;           // m, desired between parts of the arm in its posture
+constexpr double kEnough = 0.6;          // share of it: with less a run might end where it begins
 constexpr double kSingularMargin = 0.2;  // rad, kept from a singular value
 constexpr double kRampTime = 0.2;        // s, from rest to full speed where no rating is known
 constexpr double kDefaultSpeed = 1.5;    // rad/s or m/s where the URDF has none
@@ -87,15 +88,52 @@ bool stands(DeviceDraft& d) {
   return d.n_p == 0 && above > kPostures / 4;
 }
 
+// How far the parts of an arm are apart in a posture, by how far they can be.
+class Room {
+ public:
+  explicit Room(DeviceDraft& d) {
+    workspace::PostureSampler sampler(d.ranges);
+    for (const collision::Pair& pair : d.shapes.pairs.watched) {
+      pairs_.push_back({collision::Nearest(d.shapes.shapes, {pair}), 0.0});
+    }
+    for (int k = 0; k < kPostures / 10; ++k) {
+      d.chain.update_poses(sampler.draw());
+      for (Apart& pair : pairs_) pair.most = std::max(pair.most, pair.nearest.distance(d.chain));
+    }
+  }
+
+  // What a posture is worth: 1 with kClear between all parts, or nearly as much as they can have.
+  double worth(const model::ChainData& chain) const {
+    constexpr double kMost = 0.8, kTouching = 1e-3;
+    double share = 1.0;
+    for (const Apart& pair : pairs_) {
+      const double wanted = std::min(kClear, kMost * pair.most);
+      share = std::min(share, pair.nearest.distance(chain) / wanted);
+    }
+    return share < kEnough ? kTouching : share;
+  }
+
+ private:
+  struct Apart {
+    collision::Nearest nearest;
+    double most;  // distance
+  };
+  std::vector<Apart> pairs_;
+};
+
+// `q` as it is written down: its two digits move parts of an arm by centimetres
+Eigen::VectorXd as_written(const Eigen::VectorXd& q) {
+  return q.unaryExpr([](double value) { return std::stod(rounded(value)); });
+}
+
 // the most dexterous of many postures, not too near to the ends of the joints
 Eigen::VectorXd best_posture(DeviceDraft& d) {
   workspace::PostureSampler sampler(d.ranges);
-  const collision::Nearest shapes(d.shapes.shapes, d.shapes.pairs.watched);
-  Eigen::VectorXd best = sampler.draw();
-  constexpr double kTouching = 1e-3;  // worth of a posture in which parts of the arm touch
+  const Room room(d);
+  Eigen::VectorXd best = as_written(sampler.draw());
   double most = -1.0;
   for (int k = 0; k < kPostures; ++k) {
-    const Eigen::VectorXd q = sampler.draw();
+    const Eigen::VectorXd q = as_written(sampler.draw());
     double nearest = 1.0, sum = 0.0;  // 1 in the middle of a range, 0 at its ends
     for (int i = d.n_p; i < q.size(); ++i) {
       const Interval range = d.ranges[i];
@@ -104,9 +142,7 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
       sum += 1.0 - share * share;
     }
     double value = workspace::dexterity(d.chain, d.handle, d.n_p, q) * std::sqrt(nearest) * sum;
-    if (value > most) {
-      value *= std::clamp(shapes.distance(d.chain) / kClear, kTouching, 1.0);
-    }
+    if (value > most) value *= room.worth(d.chain);
     if (value > most && is_usable(d)) {
       most = value;
       best = q;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hg/controller/safety/collision/distance.h"
+#include "hg/controller/safety/collision/shapes.h"
 #include "hg/model/urdf.h"
 #include "hg/model/urdf_parts.h"
 #include "hg/new/bodies.h"
@@ -280,8 +281,13 @@ SelfCollision fit_self_collision(const ChainPart& part, const model::ChainModel&
   const model::Urdf urdf =
       model::serial_part(model::read_urdf_file(part.urdf), part.root_link, part.tip_link);
   fit.bodies = read_bodies(part, urdf, model, fit.result.unread);
-  if (fit.bodies.empty()) return fit.result;
   if (floor) fit.floor = collision::floor_at(*floor);
+  if (fit.bodies.empty()) {
+    fit.result.shapes = collision::read_geometry(urdf, model).shapes;
+    if (floor) fit.result.shapes.push_back(*fit.floor);
+    fit.result.pairs = collision::choose_pairs(fit.result.shapes, model, ranges, kNear);
+    return std::move(fit.result);
+  }
 
   std::size_t step = 0;
   const std::size_t steps = fit.bodies.size() * (1 + kMostPerBody);

@@ -54,7 +54,8 @@ struct SelfCollision {
   std::vector<ApartPair> parts_apart;    ///< Capsules of other bodies that are not watched
   std::vector<CrowdedPair> crowded;      ///< The same
   double safe_distance = 0.0;            ///< Distance that is kept, m
-  std::vector<collision::Shape> shapes;  ///< All shapes of the device, and the floor
+  std::vector<collision::Shape> shapes;  ///< All shapes of the device, and the floor; without
+                                         ///< bodies those of the URDF
   collision::Pairs pairs;                ///< Pairs of them that are watched, and that are not
   std::vector<std::string> unread;       ///< Mesh files that are missing or cannot be read
 };

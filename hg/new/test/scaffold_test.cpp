@@ -5,6 +5,7 @@
 
 #include "hg/config/actuator_library.h"
 #include "hg/config/simulation/scenario.h"
+#include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/open_file.h"
 #include "hg/core/test/message_of.h"
 #include "hg/core/test/temporary_folder.h"
@@ -35,6 +36,29 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
   }
   model::ChainData chain(device.model.chain);
   EXPECT_GT(workspace::dexterity(chain, device.model.handle, 0, device.model.posture), 0.05);
+}
+
+// The shapes may be meshes or stand in the URDF: runs begin where nothing is near.
+TEST(Scaffold, APostureIsClearOfTheArmAndOfItsTable) {
+  for (const char* name : {"ur5e", "gen3", "fr3", "xarm7"}) {
+    const std::string urdf = fmt::format("models/arms/{0}/{0}.urdf", name);
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "arm.yaml", draft_device({urdf, "", ""}, folder.path(), Drives::kIdeal, "").device);
+    const config::DeviceConfig device = config::load_device(file);
+    ASSERT_FALSE(device.collision.pairs.watched.empty()) << name;
+    model::ChainData now(device.model.chain), other(device.model.chain);
+    now.update_poses(device.model.posture);
+    for (const collision::Pair& pair : device.collision.pairs.watched) {
+      const collision::Nearest nearest(device.collision.shapes, {pair});
+      double most = 0.0;
+      for (const double angle : {-2.0, -1.0, 0.5, 1.5, 2.5}) {
+        other.update_poses(Eigen::VectorXd::Constant(device.model.n_m, angle));
+        most = std::max(most, nearest.distance(other));
+      }
+      EXPECT_GE(nearest.distance(now), std::min(0.05, 0.4 * most)) << name;
+    }
+  }
 }
 
 // the device that is drafted for the example arm
