@@ -11,12 +11,12 @@
 
 #include "apps/command_line/command.h"
 #include "apps/command_line/output.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "hg/analysis/latency.h"
 #include "hg/analysis/run_story.h"
 #include "hg/core/error.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/names.h"
+#include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::apps {
 namespace {
@@ -68,7 +68,7 @@ class Reader final : public recording::RecordingListener {
 
   analysis::Names names() {
     try {
-      const config::Scenario scenario = recorded_scenario(configuration_);
+      const config::Scenario scenario = scenario::recorded_scenario(configuration_);
       title_ = scenario.title;
       faults_ = scenario.faults;
       latency_.emplace(scenario.device.model.rate_Hz,

@@ -9,11 +9,11 @@
 #include <type_traits>
 #include <vector>
 
-#include "apps/hapticgiant/run_setup.h"
 #include "hg/messages/cdr_writer.h"
 #include "hg/recording/columns.h"
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::apps {
 namespace {
@@ -75,7 +75,7 @@ class Runner final : public recording::RecordingListener {
                              sample.record.cycle));
     }
     if (!cycle_) {
-      const config::Scenario scenario = recorded_scenario(configuration_);
+      const config::Scenario scenario = scenario::recorded_scenario(configuration_);
       cycle_.emplace(scenario::make_cycle(scenario));
     } else if (sample.record.cycle != result_.cycles) {
       return end(fmt::format("cycle {} is missing in the recording", result_.cycles));

@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include "hg/config/simulation/scenario.h"
 #include "hg/scenario/options.h"
 
 namespace hg::apps {

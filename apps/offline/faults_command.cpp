@@ -10,7 +10,6 @@
 #include "apps/command_line/option_checks.h"
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/report.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "apps/hapticgiant/version.h"
 #include "apps/offline/subcommand.h"
 #include "hg/core/error.h"
@@ -18,6 +17,7 @@
 #include "hg/experiments/moved_scenario.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/options.h"
+#include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::apps {
 namespace {
@@ -86,7 +86,9 @@ int faults(FaultsArguments arguments) {
   std::vector<recording::RecordingInfo> recordings;
   if (recording::recording_available()) {
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
-      recordings.push_back(recording_info(scenarios[i], options[i], scratch.path()));
+      recordings.push_back(scenario::recording_info(scenarios[i], options[i]));
+      recordings.back().folder = scratch.path();
+      recordings.back().version = kVersion;
     }
   }
   if (!is_part) {

@@ -15,7 +15,6 @@
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/report.h"
-#include "apps/hapticgiant/run_setup.h"
 #include "apps/offline/run_data.h"
 #include "apps/offline/subcommand.h"
 #include "hg/analysis/summary.h"
@@ -23,6 +22,7 @@
 #include "hg/recording/recording_reader.h"
 #include "hg/scenario/assembly.h"
 #include "hg/scenario/names.h"
+#include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::apps {
 namespace {
@@ -56,7 +56,7 @@ class Reader final : public recording::RecordingListener {
   }
   void sample(const Sample& sample) override {
     if (!scenario_) {
-      scenario_.emplace(recorded_scenario(configuration_));
+      scenario_.emplace(scenario::recorded_scenario(configuration_));
       summary_.emplace(scenario::make_summary(*scenario_));
     }
     summary_->add(sample);

@@ -128,13 +128,13 @@ Json describe(const EventRule& rule, const config::Scenario& scenario) {
   return json;
 }
 
-Json twin_points(const config::Scenario& scenario, const CycleRecord& record) {
+Json twin_points(const config::Scenario& scenario, const ConfigurationA& q_a) {
   const rendering::TwinModel& twin = scenario.twin.model;
   for (const rendering::TwinDof& dof : twin.dofs) {
     if (dof.q_index < 0) return nullptr;
   }
   model::ChainData chain(twin.chain);
-  chain.update_poses(record.twin.q_a);
+  chain.update_poses(q_a);
   Json points = Json::array();
   for (const std::string& name : chain.model().frame_names()) {
     const Eigen::Vector3d p = chain.pose(chain.model().frame(name)).p;

@@ -24,8 +24,8 @@ nlohmann::ordered_json describe(const config::Scenario& scenario);
 /// "value", ...}]}.
 nlohmann::ordered_json describe(const EventRule& rule, const config::Scenario& scenario);
 
-/// Origins of the twin's links in B, m, root first; null for a twin that floats.
-nlohmann::ordered_json twin_points(const config::Scenario& scenario, const CycleRecord& record);
+/// Origins of the links in B of a twin at `q_a`, m, root first; null for a twin that floats.
+nlohmann::ordered_json twin_points(const config::Scenario& scenario, const ConfigurationA& q_a);
 
 /// Writes run.json and signals.npy into a folder. Throws SetupError.
 void write_run(const std::filesystem::path& folder, const nlohmann::ordered_json& run,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "hg/core/text.h"
 #include "hg/messages/cdr_writer.h"
 #include "hg/messages/event.h"
+#include "hg/messages/lab_clock.h"
 #include "hg/messages/ros_messages.h"
 #include "hg/messages/schema.h"
 #include "hg/messages/tool_messages.h"
@@ -62,6 +64,7 @@ void check_recording_info(const RecordingInfo& info) {
 }
 
 std::uint64_t start_ns(const RecordingInfo& info) {
+  if (info.is_reproducible) return 0;
   const auto since_1970 = info.start.time_since_epoch();
   return static_cast<std::uint64_t>(
       std::chrono::duration_cast<std::chrono::nanoseconds>(since_1970).count());
@@ -119,6 +122,7 @@ class Recorder::Writer {
   bool push(const Sample& sample) noexcept;
   void push_waiting(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
+  void lab_clock(const LabClock& clock);
   RecordingSummary close();
   const std::string& stem() const { return stem_; }
   std::string error() const;
@@ -130,6 +134,7 @@ class Recorder::Writer {
   bool write_waiting_samples();
   void write(const Sample& sample);
   void write_events();
+  void write_lab_clocks();
   void flush();
   void show_that_it_is_written();
   void keep_budget();
@@ -144,8 +149,9 @@ class Recorder::Writer {
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<bool> is_closing_{false};
 
-  mutable std::mutex mutex_;  // guards the next two
+  mutable std::mutex mutex_;  // guards the next three
   std::vector<Event> events_;
+  std::vector<LabClock> lab_clocks_;
   std::string error_;
 
   // used only by the thread while it runs
@@ -156,10 +162,11 @@ class Recorder::Writer {
   CdrWriter cdr_;
   ToolMessages tool_messages_;
   std::uint16_t sample_topic_ = 0, event_topic_ = 0;
-  std::vector<std::uint16_t> tool_topics_;  // in the order of the messages for tools
+  std::optional<std::uint16_t> lab_clock_topic_;  // once there is a clock
+  std::vector<std::uint16_t> tool_topics_;        // in the order of the messages for tools
   Sample sample_;
   std::uint64_t flushed_samples_ = 0;
-  std::uint64_t event_count_ = 0;
+  std::uint64_t event_count_ = 0, lab_clock_count_ = 0;
   double budget_checked_bytes_ = 0.0;
   bool has_ended_ = false;
   RecordingSummary summary_;
@@ -176,7 +183,7 @@ Recorder::Writer::Writer(const RecordingInfo& info)
           static_cast<std::uint64_t>(std::max(1LL, std::llround(info.rate_Hz / kToolRate_Hz)))),
       ring_(static_cast<std::size_t>(std::ceil(kRingSeconds * info.rate_Hz))),
       folder_(info.folder),
-      path_(folder_.new_path(info.name, info.start)),
+      path_(info.is_reproducible ? folder_.fixed_path() : folder_.new_path(info.name, info.start)),
       stem_(path_.stem().stem().string()),
       file_(path_),
       tool_messages_(info, info.make_links ? info.make_links() : messages::LinkTree()) {
@@ -190,7 +197,7 @@ Recorder::Writer::Writer(const RecordingInfo& info)
     throw SetupError("recording file " + path_.string() +
                      ": must be writable, got: " + file_.error());
   }
-  summary_.not_linked = folder_.link_latest(path_);
+  if (!is_reproducible_) summary_.not_linked = folder_.link_latest(path_);
   keep_budget();
   thread_ = std::thread([this] { run(); });
 }
@@ -234,6 +241,11 @@ void Recorder::Writer::event(double time_s, std::string_view name, std::string_v
   events_.push_back({time_s, std::string(name), std::string(text)});
 }
 
+void Recorder::Writer::lab_clock(const LabClock& clock) {
+  const std::lock_guard lock(mutex_);
+  lab_clocks_.push_back(clock);
+}
+
 std::string Recorder::Writer::error() const {
   const std::lock_guard lock(mutex_);
   return error_;
@@ -260,7 +272,10 @@ void Recorder::Writer::run() {
   try {
     while (!is_closing_) {
       const bool has_written = write_waiting_samples();
-      if (!is_reproducible_) write_events();
+      if (!is_reproducible_) {
+        write_events();
+        write_lab_clocks();
+      }
       idle_polls = has_written ? 0 : idle_polls % kTouchPolls + 1;
       const bool is_look = idle_polls > 0 && idle_polls % kLookPolls == 0;
       if ((idle_polls == kIdlePolls || is_look) && !is_reproducible_) flush();
@@ -269,6 +284,7 @@ void Recorder::Writer::run() {
     }
     write_waiting_samples();
     write_events();
+    write_lab_clocks();
     end("");
   } catch (const std::exception& exception) {
     // on any exception the run continues without a recording
@@ -280,6 +296,7 @@ void Recorder::Writer::run() {
 bool Recorder::Writer::write_waiting_samples() {
   bool has_written = false;
   while (ring_.pop(sample_)) {
+    if (is_reproducible_) sample_.cycle_time_us = 0.0;
     write(sample_);
     has_written = true;
   }
@@ -316,6 +333,19 @@ void Recorder::Writer::write_events() {
   if (has_ended_) return;
   for (const Event& event : events) {
     file_.write(event_topic_, event_count_++, log_time(event.time_s), cdr_.encode(event));
+  }
+}
+
+void Recorder::Writer::write_lab_clocks() {
+  std::vector<LabClock> clocks;
+  {
+    const std::lock_guard lock(mutex_);
+    clocks.swap(lab_clocks_);
+  }
+  if (has_ended_ || clocks.empty()) return;
+  if (!lab_clock_topic_) lab_clock_topic_ = add_topic<LabClock>(file_, "/hapticgiant/lab_clock");
+  for (const LabClock& clock : clocks) {
+    file_.write(*lab_clock_topic_, lab_clock_count_++, log_time(clock.time_s), cdr_.encode(clock));
   }
 }
 
@@ -383,6 +413,8 @@ void Recorder::push_waiting(const Sample& sample) { writer_->push_waiting(sample
 void Recorder::event(double time_s, std::string_view name, std::string_view text) {
   writer_->event(time_s, name, text);
 }
+
+void Recorder::lab_clock(const LabClock& clock) { writer_->lab_clock(clock); }
 
 RecordingSummary Recorder::close() { return writer_->close(); }
 

@@ -15,12 +15,14 @@
 #include <vector>
 
 #include "hg/messages/event.h"
+#include "hg/messages/lab_clock.h"
 #include "hg/messages/run_names.h"
 #include "hg/signals/state.h"
 
 namespace hg::recording {
 
 using messages::Event;
+using messages::LabClock;
 
 /// Whether a Recorder can be made; false when the program was built without Rust.
 bool recording_available() noexcept;
@@ -41,8 +43,9 @@ struct RecordingInfo : messages::RunNames {
   double rate_Hz = 1000.0;               ///< samples per second, > 0
   double disk_budget_bytes = 5e9;        ///< budget for all recordings in the folder, > 0
   std::chrono::system_clock::time_point start = std::chrono::system_clock::now();
-  /// Whether the same samples and events give the same bytes: events come after the samples, and
-  /// the timing of samples has no influence.
+  /// Whether the same samples and events give the same bytes: start and computing times are 0,
+  /// events come after the samples. The file is recording.mcap and replaces an earlier one;
+  /// latest.mcap stays as it is.
   bool is_reproducible = false;
 };
 
@@ -80,6 +83,8 @@ class Recorder {
 
   /// Records an event. From any thread but the control loop.
   void event(double time_s, std::string_view name, std::string_view text);
+  /// Records what the lab's clock is from a moment on. From any thread but the control loop.
+  void lab_clock(const LabClock& clock);
 
   /// Writes all pushed samples and completes the file. Later samples are dropped.
   RecordingSummary close();

@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPartial = ".partial";
 constexpr std::string_view kExtension = ".mcap";
+constexpr std::string_view kFixed = "recording.mcap";
 constexpr std::chrono::minutes kAbandoned(1);
 
 /// A finished or broken recording.
@@ -113,6 +114,14 @@ fs::path RecordingFolder::new_path(const std::string& name,
   }
 }
 
+fs::path RecordingFolder::fixed_path() const {
+  const fs::path partial = folder_ / "recording.partial.mcap";
+  std::error_code ignored;
+  fs::remove(folder_ / kFixed, ignored);
+  fs::remove(partial, ignored);
+  return partial;
+}
+
 fs::path RecordingFolder::complete(const fs::path& partial, std::string& why) const {
   std::string name = partial.filename().string();
   name.erase(name.rfind(kPartial), kPartial.size());
@@ -122,7 +131,7 @@ fs::path RecordingFolder::complete(const fs::path& partial, std::string& why) co
     why = complete.string() + ": " + std::strerror(error);
     return partial;
   }
-  link_latest(complete);
+  if (name != kFixed) link_latest(complete);
   return complete;
 }
 

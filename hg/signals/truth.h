@@ -7,6 +7,25 @@
 
 namespace hg {
 
+/// The simulated person on foot, in the base frame; hg/simulator/person/walker.h.
+struct WalkerReport {
+  bool is_walking = false;
+  double x = 0.0, y = 0.0;
+  double heading = 0.0;
+  double hold = 0.0;
+};
+
+template <typename Archive, Is<WalkerReport> T>
+void fields(Archive& a, T& walker) {
+  a("is_walking", walker.is_walking,
+    "the person walks and has grasped the handle; otherwise all other fields are invalid");
+  a("x", walker.x, "x of the body", unit::kM);
+  a("y", walker.y, "y of the body", unit::kM);
+  a("heading", walker.heading, "direction the body faces, from the x axis", unit::kRad);
+  a("hold", walker.hold, "grip on the handle, 0 to 1: 0 once the hand has let go of a door",
+    unit::kNone);
+}
+
 /// True state at the time of a SensorFrame. Wrenches act on the handle, at H, resolved in B, force
 /// first.
 struct Truth {
@@ -19,6 +38,7 @@ struct Truth {
   Vector6 acceleration = Vector6::Zero();
   Vector6 w_H = Vector6::Zero();
   BystanderReport bystander;
+  WalkerReport walker;
 };
 
 template <typename Archive, Is<Truth> T>
@@ -42,6 +62,7 @@ void fields(Archive& a, T& truth) {
     "classical acceleration of the handle, then its angular acceleration", unit::kAcceleration);
   a("w_h", truth.w_H, "wrench of the user at the handle: force, torque", unit::kWrench);
   a("bystander", truth.bystander, "load on a simulated bystander");
+  a("walker", truth.walker, "body of the simulated person who walks");
 }
 
 }  // namespace hg

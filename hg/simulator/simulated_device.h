@@ -16,9 +16,6 @@ class SimulatedDevice final : public device::Device {
   void write(const CommandFrame& command) noexcept override;
   const Truth* truth() const noexcept override;
 
-  /// The machine and the person who holds its handle.
-  const Simulation& simulation() const noexcept { return simulation_; }
-
   /// Sets the faults of the hardware from the next write() on.
   void set_hardware_faults(const HardwareFaults& faults) noexcept { faults_ = faults; }
 

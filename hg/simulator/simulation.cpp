@@ -128,8 +128,7 @@ void Simulation::move(const CommandFrame& command) noexcept {
 // on an ideal plant, which no force can move, it acts at once.
 void Simulation::look(const HandTarget& target) noexcept {
   truth_ = std::visit([](const auto& plant) noexcept { return plant.truth(); }, plant_);
-  const double time_s = static_cast<double>(steps_) * config_.sensed.step;
-  w_H_ = person_.wrench(time_s, {truth_.T_B_H, truth_.twist}, target);
+  w_H_ = person_.wrench(time_s(), {truth_.T_B_H, truth_.twist}, target);
   if (has_left_handle_) w_H_.setZero();
   if (std::holds_alternative<IdealPlant>(plant_)) truth_.w_H = w_H_;
   if (config_.sensors.torque_estimate.is_used) {
@@ -157,14 +156,19 @@ Truth Simulation::felt() const noexcept {
 
 void Simulation::sample() noexcept {
   take_due_command();  // a command that arrives at the moment of the sample is in effect
+  truth_.walker = person_.walker_report(time_s());
   sensors_.sample(truth_, frame_);
   frame_.answered_sequence = at_work_.sequence;
   frame_.driver_fault = is_cut_off_ ? FaultCode::kCommandsLost : FaultCode::kNone;
   frame_.dead_man = config_.has_dead_man && is_held();
 }
 
+double Simulation::time_s() const noexcept {
+  return static_cast<double>(steps_) * config_.sensed.step;
+}
+
 bool Simulation::is_held() const noexcept {
-  return !has_left_handle_ && person_.is_holding(static_cast<double>(steps_) * config_.sensed.step);
+  return !has_left_handle_ && person_.is_holding(time_s());
 }
 
 }  // namespace hg::simulator

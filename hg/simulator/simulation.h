@@ -72,6 +72,7 @@ class Simulation {
   void look(const HandTarget& target) noexcept;
   Truth felt() const noexcept;
   void watch_over(const SafetyPanel& panel) noexcept;
+  double time_s() const noexcept;
   bool is_held() const noexcept;
   void sample() noexcept;
 

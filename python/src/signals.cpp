@@ -99,6 +99,7 @@ void bind_signals(nb::module_& module) {
   bind_fields<TwinState>(module, "TwinState", "State of the twin.");
   bind_fields<TrackingReport>(module, "TrackingReport", "Tracking of the reference by the device.");
   bind_fields<BystanderReport>(module, "BystanderReport", "Load on a simulated bystander.");
+  bind_fields<WalkerReport>(module, "WalkerReport", "Body of a simulated person who walks.");
   bind_fields<Truth>(module, "Truth", "Ground truth of a simulation.");
   bind_fields<Budget>(module, "Budget", "Breakdown of the user's wrench.");
   bind_fields<LimitReport>(module, "LimitReport", "State of one limit in one cycle.");

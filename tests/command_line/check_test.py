@@ -191,6 +191,24 @@ class Check(unittest.TestCase):
                         "--summary", self.folder / "run.json"], capture_output=True, check=False)
         self.assertIn("recording", json.loads((self.folder / "run.json").read_text()))
 
+    def test_names_that_look_like_places_do_not_move_findings(self):
+        folder = self.folder / "a:12: b"
+        shutil.copytree(DOOR.parent, folder)
+        with open(folder / "twin.yaml", "a") as twin:
+            twin.write('"gra: vty": 3\n')
+        urdf = folder / "door.urdf"
+        urdf.write_text(urdf.read_text().replace('type="revolute"', 'type="spherical"', 1))
+        last = (folder / "twin.yaml").read_text().count("\n")
+        self.assertEqual(check(folder / "twin.yaml", "--json", self.folder / "out.json")[0], 2)
+        faults = {each["item"]: each for each in json.loads((self.folder / "out.json").read_text())["findings"]}
+        self.assertEqual((faults["gra: vty"]["file"], faults["gra: vty"]["line"], faults["gra: vty"]["column"],
+                          faults["gra: vty"]["what"]),
+                         (str(folder / "twin.yaml"), last, 1, "unknown key, did you mean 'gravity'?"))
+        of_joint = faults["joint hinge"]
+        self.assertEqual((of_joint["file"], of_joint["column"]), (str(urdf), 1))
+        self.assertGreater(of_joint["line"], 1)
+        self.assertTrue(of_joint["what"].startswith("type is unknown, got 'spherical'"), of_joint)
+
     def test_files_that_are_no_kind_of_ours(self):
         odd = self.folder / "odd.yaml"
         odd.write_text("colour: red\n")

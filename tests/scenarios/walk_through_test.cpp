@@ -4,12 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "hg/simulator/simulated_device.h"
 #include "tests/scenarios/trace.h"
 
 namespace hg {
@@ -24,6 +21,7 @@ constexpr double kLeafHalf = 0.02;                   // m, of its thickness
 constexpr double kOpenFrom = -0.01, kOpenTo = 0.93;  // m, between the posts
 constexpr double kFrameHalf = 0.07;                  // m, of the depth of the posts
 constexpr double kShoulder = 0.25;                   // m, half of the breadth of a person
+constexpr double kRightShoulder = 0.15;              // m, from the middle, of the hand that holds
 
 struct Moment {
   double time_s = 0.0;
@@ -47,9 +45,25 @@ double frame_distance(const Moment& now) {
 // The scenario in truth, from the grasp on.
 class WalkThrough {
  public:
-  explicit WalkThrough(const config::Scenario& scenario)
-      : WalkThrough(scenario, std::make_unique<simulator::SimulatedDevice>(
-                                  scenario::make_simulation(scenario))) {}
+  explicit WalkThrough(const config::Scenario& scenario) : run_(scenario) {
+    const double grasp_s = scenario.script.script.grasp_s;
+    run_.play([&](const Sample& sample) {
+      const WalkerReport& walker = sample.truth.walker;
+      ASSERT_EQ(walker.is_walking, sample.record.time_s >= grasp_s) << sample.record.time_s;
+      if (sample.record.time_s < grasp_s + 0.01) return;
+      const Pose& handle = sample.truth.T_B_H;
+      const Vector2d body(walker.x, walker.y);
+      const Vector2d to_the_left(-std::sin(walker.heading), std::cos(walker.heading));
+      const Vector2d to_person = handle.R.col(2).head<2>();
+      Moment now{.time_s = sample.record.time_s, .body = body - kHingePlace};
+      now.hinge = std::atan2(to_person.x(), -to_person.y());
+      now.lever = sample.record.twin.q_a[1];
+      now.hold = walker.hold;
+      now.hand = handle.p.head<2>() - kHingePlace;
+      now.reach = (handle.p.head<2>() - body + kRightShoulder * to_the_left).norm();
+      moments_.push_back(now);
+    });
+  }
 
   const ScenarioRun& run() const { return run_; }
   const std::vector<Moment>& moments() const { return moments_; }
@@ -63,25 +77,6 @@ class WalkThrough {
   }
 
  private:
-  WalkThrough(const config::Scenario& scenario, std::unique_ptr<simulator::SimulatedDevice> device)
-      : world_(device->simulation()), run_(scenario, std::move(device)) {
-    const double grasp_s = scenario.script.script.grasp_s;
-    run_.play([&](const Sample& sample) {
-      if (sample.record.time_s < grasp_s + 0.01) return;
-      const person::Walker& walker = world_.person().walker();
-      const Pose& handle = world_.truth().T_B_H;
-      const Vector2d to_person = handle.R.col(2).head<2>();
-      Moment now{.time_s = sample.record.time_s, .body = walker.body() - kHingePlace};
-      now.hinge = std::atan2(to_person.x(), -to_person.y());
-      now.lever = sample.record.twin.q_a[1];
-      now.hold = walker.hold();
-      now.hand = handle.p.head<2>() - kHingePlace;
-      now.reach = (handle.p - walker.shoulder()).head<2>().norm();
-      moments_.push_back(now);
-    });
-  }
-
-  const simulator::Simulation& world_;
   ScenarioRun run_;
   std::vector<Moment> moments_;
 };

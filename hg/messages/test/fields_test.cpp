@@ -106,7 +106,7 @@ TEST(Fields, AllStructsOfASampleHaveThem) {
                                         "LimitReport",     "TrackingReport", "CollisionReport",
                                         "PassivityReport", "ContactReport",  "TouchReport",
                                         "InertialReport",  "Truth",          "BystanderReport",
-                                        "RestReport"}));
+                                        "RestReport",      "WalkerReport"}));
 }
 
 TEST(Fields, NameEveryMemberOfEveryStruct) {

@@ -50,6 +50,10 @@ void RunObservers::phase(RunPhase phase, double time_s, const std::string& wante
   for (RunObserver* each : all_) each->phase(phase, time_s, wanted);
 }
 
+void RunObservers::sample(const Sample& sample) {
+  for (RunObserver* each : all_) each->sample(sample);
+}
+
 void RunObservers::event(double time_s, std::string_view name, std::string_view text) {
   for (RunObserver* each : all_) each->event(time_s, name, text);
 }

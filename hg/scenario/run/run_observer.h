@@ -58,6 +58,8 @@ class RunObserver {
   /// A phase begins, or what the device waits for has changed: `wanted` says what a person has to
   /// do before it moves; empty = nothing.
   virtual void phase(RunPhase /*phase*/, double /*time_s*/, const std::string& /*wanted*/) {}
+  /// Every sample, before what it gives rise to; valid only during the call.
+  virtual void sample(const Sample& /*sample*/) {}
   /// An event of the task, or an intervention by a page.
   virtual void event(double /*time_s*/, std::string_view /*name*/, std::string_view /*text*/) {}
   /// The newest sample, ten times per second.
@@ -78,6 +80,7 @@ class RunObservers final : public RunObserver {
 
   void link(const std::string& url) override;
   void phase(RunPhase phase, double time_s, const std::string& wanted) override;
+  void sample(const Sample& sample) override;
   void event(double time_s, std::string_view name, std::string_view text) override;
   void status(const Sample& sample, const config::Scenario& scenario) override;
   void note(std::string_view label, const std::string& text) override;

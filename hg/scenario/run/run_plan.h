@@ -40,6 +40,8 @@ struct RunRecords {
   /// Folder of recordings and of the stored data of a machine
   std::string folder = "recordings";
   bool has_recording = true;  ///< writes the recording and the solver's failed or slow problems
+  /// The recording is recording.mcap, the same bytes for the same run; see RecordingInfo
+  bool is_reproducible = false;
   /// Condition for writing the last seconds: fault, always, off
   std::string flight_recorder = "fault";
   int slow_solve = 100;          ///< number of active sets from which a problem is slow

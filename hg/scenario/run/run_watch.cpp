@@ -74,6 +74,7 @@ void RunWatch::report_latency(double time_s) {
 
 void RunWatch::observe(const Sample& sample) {
   const double time_s = sample.record.time_s;
+  parts_.observer.sample(sample);
   latency_.add(sample);
   if (parts_.script_end_s > 0.0 && time_s > parts_.script_end_s) {
     parts_.script_end_s = 0.0;
@@ -112,8 +113,10 @@ void RunWatch::check_parts(const runtime::Runtime& runtime, double time_s) {
     notify(time_s, "recording", "has ended early, the run continues: " + why);
   }
   if (!parts_.streams) return;
-  const std::string clock = parts_.streams->news();
-  if (!clock.empty()) notify(time_s, "lab clock", clock);
+  if (const std::optional<lab_streaming::ClockNews> clock = parts_.streams->news()) {
+    notify(time_s, "lab clock", to_text(*clock));
+    parts_.recording.lab_clock({.time_s = time_s, .offset_s = clock->offset_s});
+  }
 }
 
 void RunWatch::watch(runtime::Runtime& runtime) {

@@ -60,6 +60,7 @@ RecordingPlan recording_plan(const PreparedRun& run, const RunRecords& records, 
                      .is_waiting = is_fast};
   plan.info.folder = records.folder;
   plan.info.version = version();
+  plan.info.is_reproducible = records.is_reproducible;
   return plan;
 }
 

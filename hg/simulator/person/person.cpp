@@ -27,6 +27,16 @@ double Person::duration_s() const noexcept {
   return config_.script.grasp_s + config_.script.duration_s;
 }
 
+WalkerReport Person::walker_report(double t) const noexcept {
+  const bool walks = config_.kind == PersonKind::kScript && walker_.walk().kind != WalkKind::kNone;
+  if (!walks || !is_holding(t)) return {};
+  return {.is_walking = true,
+          .x = walker_.body().x(),
+          .y = walker_.body().y(),
+          .heading = walker_.heading(),
+          .hold = walker_.hold()};
+}
+
 bool Person::is_pulling(const HandTarget& target) const noexcept {
   return target.active || config_.kind == PersonKind::kScript;
 }

@@ -11,6 +11,7 @@
 #include "hg/core/types.h"
 #include "hg/model/chain_data.h"
 #include "hg/signals/frames.h"
+#include "hg/signals/truth.h"
 #include "hg/simulator/person/hand.h"
 #include "hg/simulator/person/intention.h"
 #include "hg/simulator/person/script.h"
@@ -51,6 +52,8 @@ class Person {
 
   /// The walking body.
   const Walker& walker() const noexcept { return walker_; }
+  /// The same for the truth at time `t`, that of the last wrench().
+  WalkerReport walker_report(double t) const noexcept;
 
   /// Score of a walk along checkpoints.
   const Score& score() const noexcept { return score_; }

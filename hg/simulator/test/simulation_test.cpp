@@ -104,6 +104,28 @@ TEST(IdealSimulation, TheSensorShowsTheHandsWrenchInItsOwnFrame) {
   EXPECT_LT((device.sensors().w_S.tail<3>() - n_S).norm(), 1e-9);
 }
 
+TEST(Simulation, TheTruthHasTheBodyOfAPersonWhoWalksFromTheGraspOn) {
+  const model::ChainModel body = model::ChainModel::free_body({}, {.gravity = false});
+  person::PersonConfig config;
+  config.script.grasp_s = 0.1;
+  config.script.walk.kind = person::WalkKind::kCircle;
+  for (const auto kind : {person::PersonKind::kScript, person::PersonKind::kMouse}) {
+    config.kind = kind;
+    Simulation device = make(ideal_world(), person::Person(config, body, body.frame("handle"), {}));
+    const bool walks = kind == person::PersonKind::kScript;
+    for (int k = 0; k < 1000; ++k) {
+      EXPECT_EQ(device.truth().walker.is_walking, walks && k >= 100) << k;
+      device.step(hold(device));
+    }
+    const WalkerReport& truth = device.truth().walker;
+    const person::Walker& walker = device.person().walker();
+    EXPECT_EQ(Eigen::Vector2d(truth.x, truth.y), walker.body());
+    EXPECT_EQ(truth.heading, walks ? walker.heading() : 0.0);
+    EXPECT_EQ(truth.hold, walks ? 1.0 : 0.0);
+    EXPECT_EQ(walker.speed() > 0.1, walks);
+  }
+}
+
 // As the watchdog of real drives: that commands come again does not move it.
 TEST(Simulation, WithoutNewCommandsTheDrivesStayOffUntilTheyAreCommandedOff) {
   for (const SimulatorConfig& world : {elastic_world(), ideal_world()}) {

@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -30,7 +32,12 @@ class Log final : public RunObserver {
     add("phase " + std::string(to_string(phase)));
     if (phase == RunPhase::kRunning && at_running) at_running();
   }
-  void event(double, std::string_view name, std::string_view) override {
+  void sample(const Sample& sample) override {
+    EXPECT_EQ(sample.record.cycle, samples++);
+    time_s = sample.record.time_s;
+  }
+  void event(double at_s, std::string_view name, std::string_view) override {
+    EXPECT_EQ(at_s, time_s) << name;  // after its sample
     add("event " + std::string(name));
   }
   void status(const Sample& sample, const config::Scenario&) override {
@@ -54,6 +61,8 @@ class Log final : public RunObserver {
   std::vector<std::string> lines;
   Json json;
   std::string closing_lines;
+  std::uint64_t samples = 0;
+  double time_s = -1.0;     ///< of the last sample
   double stop_at_s = -1.0;  ///< sets `stop` then; negative = never
   std::atomic<bool> stop{false};
   std::function<void()> at_running;
@@ -103,6 +112,7 @@ TEST_F(RunPlayerTest, AWholeRunReportsItsPhasesInOrderAndEndsWithZero) {
   for (const std::string& line : order) EXPECT_TRUE(log_.has(line)) << line;
   EXPECT_EQ(log_.lines.back(), "summary");
   EXPECT_EQ(Json::parse(outcome.summary), log_.json);
+  EXPECT_EQ(log_.samples, log_.json["cycles"]);
   EXPECT_FALSE(log_.json["interrupted"]);
   EXPECT_EQ(outcome.recording, "");
 }
@@ -114,6 +124,31 @@ TEST_F(RunPlayerTest, TheSamePlanGivesTheSameState) {
   play(plan_, other, other.stop);
   EXPECT_EQ(log_.json["state_hash"], other.json["state_hash"]);
   EXPECT_EQ(log_.lines, other.lines);
+}
+
+TEST_F(RunPlayerTest, AReproducibleRecordingHasTheSameBytesAndReplacesTheLast) {
+  if (!recording::recording_available()) GTEST_SKIP();
+  plan_.timing.duration_s = 1.0;
+  plan_.records.has_recording = plan_.records.is_reproducible = true;
+  std::vector<std::string> texts;
+  for (int i = 0; i < 2; ++i) {
+    const RunOutcome outcome = play(plan_, *std::make_unique<Log>(), log_.stop);
+    EXPECT_EQ(outcome.recording, folder_ / "recording.mcap");
+    texts.push_back(read_file(outcome.recording));
+    std::ofstream(folder_ / "recording.partial.mcap") << "of a run that was killed";
+  }
+  EXPECT_EQ(texts[0], texts[1]);
+  EXPECT_GT(texts[0].size(), 1000U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "latest.mcap"));
+}
+
+TEST_F(RunPlayerTest, EveryObserverSeesEverySample) {
+  plan_.timing.duration_s = 0.5;
+  Log other;
+  RunObservers both({&log_, &other});
+  play(plan_, both, log_.stop);
+  EXPECT_GT(log_.samples, 0U);
+  EXPECT_EQ(log_.samples, other.samples);
 }
 
 TEST_F(RunPlayerTest, AnEventThatIsMissingEndsWithOne) {
