@@ -40,8 +40,9 @@ class Program(unittest.TestCase):
 
     def make(self, *reports, stdout=subprocess.PIPE, stderr=subprocess.PIPE):
         document = json.dumps({"version": "1.2.3", "reports": reports})
+        buffered = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
         done = subprocess.run([sys.executable, "-B", PROGRAM], input=document, stdout=stdout,
-                              stderr=stderr, text=True, check=False, cwd="/")
+                              stderr=stderr, text=True, check=False, cwd="/", env=buffered)
         return done.returncode, done.stdout, done.stderr
 
     def compare(self, *hashes, **more):

@@ -44,6 +44,12 @@ def visible(text):
                                             for byte in found[0].encode("utf-8", "surrogatepass")), text)
 
 
+def complain(text):
+    """Writes to standard error, at once: that it cannot be written is no error of its own, neither now nor at the end."""
+    with contextlib.suppress(OSError):
+        os.write(sys.stderr.fileno(), text.encode())
+
+
 class Output:
     """Standard output, whose errors are an exit code; that its reader has gone is none."""
 
@@ -81,7 +87,7 @@ class Output:
         """`code`, or that output could not be written."""
         if not self.error:
             return code
-        print(f"standard output could not be written: {self.error.strerror}", file=sys.stderr)
+        complain(f"standard output could not be written: {self.error.strerror}\n")
         return code or NOT_WRITTEN
 
 
@@ -96,8 +102,7 @@ def make(report, output):
               contextlib.redirect_stderr(io.StringIO()) as complaints):
             verdict = module.write(results, folder, docs=docs) or 0
         output.show(text.getvalue() + report["last_line"])
-        with contextlib.suppress(OSError):
-            print(visible(complaints.getvalue()), end="", file=sys.stderr)
+        complain(visible(complaints.getvalue()))
         for name, file in report["files"].items():
             output.write_file(file, (folder / name).read_text(encoding="utf-8"))
     return max(verdict, report["exit_code"])
@@ -112,8 +117,7 @@ def make_all(document):
         try:
             code = max(code, make(report, output))
         except OSError as error:
-            print(visible(f"{error.filename or 'report'}: {error.strerror}\n{report['kept']}"), end="",
-                  file=sys.stderr)
+            complain(visible(f"{error.filename or 'report'}: {error.strerror}\n{report['kept']}"))
             code = NOT_WRITTEN
     return output.code(code)
 
