@@ -25,7 +25,7 @@ constexpr int kPostures = 2000;
 constexpr double kTableHeight = 0.75;    // m, of what a standing arm stands on
 constexpr double kTable = 0.05;          // m, handles stay above the plane of the root link by it
 constexpr double kClear = 0.1;           // m, desired between parts of the arm in its posture
-constexpr double kEnough = 0.6;          // share of it: with less a run might end where it begins
+constexpr double kEnough = 0.6;          // share of that; with less a run might end where it begins
 constexpr double kSingularMargin = 0.2;  // rad, kept from a singular value
 constexpr double kRampTime = 0.2;        // s, from rest to full speed where no rating is known
 constexpr double kDefaultSpeed = 1.5;    // rad/s or m/s where the URDF has none
@@ -88,21 +88,24 @@ bool stands(DeviceDraft& d) {
   return d.n_p == 0 && above > kPostures / 4;
 }
 
-// How far the parts of an arm are apart in a posture, by how far they can be.
-class Room {
+// How far the parts of an arm are apart in a posture, compared with how far they can be.
+class Clearances {
  public:
-  explicit Room(DeviceDraft& d) {
+  explicit Clearances(DeviceDraft& d) {
+    constexpr int kSamples = 200;
     workspace::PostureSampler sampler(d.ranges);
     for (const collision::Pair& pair : d.shapes.pairs.watched) {
       pairs_.push_back({collision::Nearest(d.shapes.shapes, {pair}), 0.0});
     }
-    for (int k = 0; k < kPostures / 10; ++k) {
+    for (int k = 0; k < kSamples; ++k) {
       d.chain.update_poses(sampler.draw());
       for (Apart& pair : pairs_) pair.most = std::max(pair.most, pair.nearest.distance(d.chain));
     }
+    std::erase_if(pairs_, [](const Apart& pair) { return pair.most <= 0.0; });  // always touch
   }
 
-  // What a posture is worth: 1 with kClear between all parts, or nearly as much as they can have.
+  // What a posture is worth: 1 where each pair has kClear, or kMost of its largest distance;
+  // kTouching where one has less than kEnough of that.
   double worth(const model::ChainData& chain) const {
     constexpr double kMost = 0.8, kTouching = 1e-3;
     double share = 1.0;
@@ -121,19 +124,25 @@ class Room {
   std::vector<Apart> pairs_;
 };
 
-// `q` as it is written down: its two digits move parts of an arm by centimetres
+// `q` with the two digits that are written down: rounding moves parts of an arm by centimetres
 Eigen::VectorXd as_written(const Eigen::VectorXd& q) {
   return q.unaryExpr([](double value) { return std::stod(rounded(value)); });
 }
 
-// the most dexterous of many postures, not too near to the ends of the joints
+// The most dexterous of many postures, not too near to the ends of the joints, with clear parts and
+// the gantry in its middle.
 Eigen::VectorXd best_posture(DeviceDraft& d) {
   workspace::PostureSampler sampler(d.ranges);
-  const Room room(d);
-  Eigen::VectorXd best = as_written(sampler.draw());
+  const Clearances clearances(d);
+  const auto draw = [&] {
+    Eigen::VectorXd q = as_written(sampler.draw());
+    for (int i = 0; i < d.n_p; ++i) q[i] = 0.5 * (d.ranges[i].lb + d.ranges[i].ub);
+    return q;
+  };
+  Eigen::VectorXd best = draw();
   double most = -1.0;
   for (int k = 0; k < kPostures; ++k) {
-    const Eigen::VectorXd q = as_written(sampler.draw());
+    const Eigen::VectorXd q = draw();
     double nearest = 1.0, sum = 0.0;  // 1 in the middle of a range, 0 at its ends
     for (int i = d.n_p; i < q.size(); ++i) {
       const Interval range = d.ranges[i];
@@ -142,15 +151,11 @@ Eigen::VectorXd best_posture(DeviceDraft& d) {
       sum += 1.0 - share * share;
     }
     double value = workspace::dexterity(d.chain, d.handle, d.n_p, q) * std::sqrt(nearest) * sum;
-    if (value > most) value *= room.worth(d.chain);
+    if (value > most) value *= clearances.worth(d.chain);
     if (value > most && is_usable(d)) {
       most = value;
       best = q;
     }
-  }
-  for (int i = 0; i < d.n_p; ++i) {
-    const Interval range = d.ranges[i];
-    best[i] = 0.5 * (range.lb + range.ub);
   }
   return best;
 }
@@ -266,10 +271,10 @@ std::string joint_lines(const DeviceDraft& d) {
 }
 
 std::string posture_lines(const DeviceDraft& d) {
-  std::string text =
-      fmt::format("\nposture:  # [V] the most dexterous of {} postures; {}\n", kPostures,
-                  d.n_p > 0 ? "the gantry moves so that the arm stays near it"
-                            : "where runs begin, if they can");
+  std::string text = fmt::format(
+      "\nposture:  # [V] the most dexterous of {} postures with clear parts; {}\n", kPostures,
+      d.n_p > 0 ? "the gantry moves so that the arm stays near it"
+                : "where runs begin, if they can");
   for (int i = d.n_p; i < d.chain.model().nv(); ++i) {
     text += fmt::format("  {}: {}\n", quoted(joint(d, i).name), rounded(d.posture[i]));
   }

@@ -38,25 +38,32 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
   EXPECT_GT(workspace::dexterity(chain, device.model.handle, 0, device.model.posture), 0.05);
 }
 
-// The shapes may be meshes or stand in the URDF: runs begin where nothing is near.
-TEST(Scaffold, APostureIsClearOfTheArmAndOfItsTable) {
-  for (const char* name : {"ur5e", "gen3", "fr3", "xarm7"}) {
-    const std::string urdf = fmt::format("models/arms/{0}/{0}.urdf", name);
+// The shapes may be meshes or stand in the URDF: runs begin where no parts are near.
+TEST(Scaffold, APostureIsClearOfTheDeviceAndOfItsTable) {
+  for (const char* urdf :
+       {"models/arms/ur5e/ur5e.urdf", "models/arms/gen3/gen3.urdf", "models/arms/fr3/fr3.urdf",
+        "models/arms/xarm7/xarm7.urdf", "models/haptic_giant/haptic_giant.urdf"}) {
     const TemporaryFolder folder;
     const auto file = folder.write(
         "arm.yaml", draft_device({urdf, "", ""}, folder.path(), Drives::kIdeal, "").device);
     const config::DeviceConfig device = config::load_device(file);
-    ASSERT_FALSE(device.collision.pairs.watched.empty()) << name;
+    ASSERT_FALSE(device.collision.pairs.watched.empty()) << urdf;
+    Eigen::VectorXd q(device.model.chain.nq());
+    for (int i = 0; i < device.model.n_p; ++i) {
+      q[i] = 0.5 * (device.model.gantry_range[i].lb + device.model.gantry_range[i].ub);
+    }
+    q.tail(device.model.n_m) = device.model.posture;
     model::ChainData now(device.model.chain), other(device.model.chain);
-    now.update_poses(device.model.posture);
+    now.update_poses(q);
     for (const collision::Pair& pair : device.collision.pairs.watched) {
       const collision::Nearest nearest(device.collision.shapes, {pair});
       double most = 0.0;
       for (const double angle : {-2.0, -1.0, 0.5, 1.5, 2.5}) {
-        other.update_poses(Eigen::VectorXd::Constant(device.model.n_m, angle));
+        q.tail(device.model.n_m).setConstant(angle);
+        other.update_poses(q);
         most = std::max(most, nearest.distance(other));
       }
-      EXPECT_GE(nearest.distance(now), std::min(0.05, 0.4 * most)) << name;
+      EXPECT_GE(nearest.distance(now), std::min(0.05, 0.4 * most)) << urdf;
     }
   }
 }
