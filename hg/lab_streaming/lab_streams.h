@@ -56,10 +56,10 @@ struct StreamCounts {
 /// What has become known of the clock.
 struct ClockNews {
   double offset_s = 0.0;   ///< local clock of LSL minus run time
-  bool was_known = false;  ///< with another offset: run time has stood still
+  bool was_known = false;  ///< there was an earlier offset: run time has stood still since
 };
 
-/// For people.
+/// As the text of the event.
 std::string to_text(const ClockNews& news);
 
 class LabStreams {

@@ -14,7 +14,7 @@ struct LabClock {
 
 template <typename Archive, Is<LabClock> T>
 void fields(Archive& a, T& clock) {
-  a("time_s", clock.time_s, "nominal time of the run at which the offset was found", unit::kS);
+  a("time_s", clock.time_s, "nominal time of the run from which on the offset is stated", unit::kS);
   a("offset_s", clock.offset_s, "local clock of LSL minus nominal time of the run", unit::kS);
 }
 

@@ -67,7 +67,7 @@ void FlightRecorder::event(double time_s, std::string_view name, std::string_vie
 }
 
 void FlightRecorder::lab_clock(const LabClock& clock) {
-  if (is_writing_.load(std::memory_order_acquire)) return;
+  const std::scoped_lock lock(lab_clocks_mutex_);
   if (lab_clocks_.size() == kMostEvents) lab_clocks_.erase(lab_clocks_.begin());
   lab_clocks_.push_back(clock);
 }
@@ -108,6 +108,18 @@ std::string FlightRecorder::write_file(const std::string& cause) {
   return second.error.empty() ? "" : first.error;
 }
 
+// The clocks of the samples from `first_s` on; the first of them may be an older one, which holds.
+std::vector<LabClock> FlightRecorder::lab_clocks_from(double first_s) {
+  const std::scoped_lock lock(lab_clocks_mutex_);
+  std::vector<LabClock> clocks;
+  for (LabClock clock : lab_clocks_) {
+    clock.time_s = std::max(clock.time_s, first_s);
+    if (clock.time_s == first_s) clocks.clear();
+    clocks.push_back(clock);
+  }
+  return clocks;
+}
+
 // Reports also the error of a file that cannot be created, in the summary.
 RecordingSummary FlightRecorder::write_to(const std::filesystem::path& folder,
                                           const std::string& cause) try {
@@ -127,7 +139,7 @@ RecordingSummary FlightRecorder::write_to(const std::filesystem::path& folder,
   for (const Event& event : events_) {
     if (event.time_s >= first_s) recorder.event(event.time_s, event.name, event.text);
   }
-  for (const LabClock& clock : lab_clocks_) recorder.lab_clock(clock);  // an old one still holds
+  for (const LabClock& clock : lab_clocks_from(first_s)) recorder.lab_clock(clock);
   return recorder.close();
 } catch (const SetupError& error) {
   return {.error = error.what()};

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -34,6 +35,7 @@ class FlightRecorder {
   /// Adds a sample, in order; the oldest one is dropped.
   void push(const Sample& sample);
   void event(double time_s, std::string_view name, std::string_view text);
+  /// Adds a clock, which holds until the next one.
   void lab_clock(const LabClock& clock);
 
   /// Writes all kept samples, with `cause` (letters, digits, dashes) in the file name: to the
@@ -51,6 +53,7 @@ class FlightRecorder {
 
  private:
   std::string write_file(const std::string& cause);
+  std::vector<LabClock> lab_clocks_from(double first_s);
   RecordingSummary write_to(const std::filesystem::path& folder, const std::string& cause);
 
   RecordingInfo info_;
@@ -58,6 +61,7 @@ class FlightRecorder {
   std::vector<std::vector<std::byte>> slots_;  ///< encoded samples, a ring
   std::uint64_t pushed_ = 0;                   ///< samples pushed so far
   std::vector<Event> events_;                  ///< events of the kept samples, and some older
+  std::mutex lab_clocks_mutex_;                ///< also while a file is written
   std::vector<LabClock> lab_clocks_;           ///< the last ones
   std::atomic<bool> is_writing_{false};
   Result result_;

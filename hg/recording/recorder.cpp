@@ -183,7 +183,8 @@ Recorder::Writer::Writer(const RecordingInfo& info)
           static_cast<std::uint64_t>(std::max(1LL, std::llround(info.rate_Hz / kToolRate_Hz)))),
       ring_(static_cast<std::size_t>(std::ceil(kRingSeconds * info.rate_Hz))),
       folder_(info.folder),
-      path_(info.is_reproducible ? folder_.fixed_path() : folder_.new_path(info.name, info.start)),
+      path_(info.is_reproducible ? folder_.new_fixed_path()
+                                 : folder_.new_path(info.name, info.start)),
       stem_(path_.stem().stem().string()),
       file_(path_),
       tool_messages_(info, info.make_links ? info.make_links() : messages::LinkTree()) {

@@ -114,10 +114,10 @@ fs::path RecordingFolder::new_path(const std::string& name,
   }
 }
 
-fs::path RecordingFolder::fixed_path() const {
-  const fs::path partial = folder_ / "recording.partial.mcap";
+fs::path RecordingFolder::new_fixed_path() const {
+  const fs::path partial =
+      folder_ / ("recording" + std::string(kPartial) + std::string(kExtension));
   std::error_code ignored;
-  fs::remove(folder_ / kFixed, ignored);
   fs::remove(partial, ignored);
   return partial;
 }
@@ -126,12 +126,19 @@ fs::path RecordingFolder::complete(const fs::path& partial, std::string& why) co
   std::string name = partial.filename().string();
   name.erase(name.rfind(kPartial), kPartial.size());
   const fs::path complete = folder_ / name;
+  if (name == kFixed) {  // replaces that of an earlier run in one step
+    std::error_code failed;
+    fs::rename(partial, complete, failed);
+    if (!failed) return complete;
+    why = complete.string() + ": " + failed.message();
+    return partial;
+  }
   const int error = rename_to_free_name(partial, complete);
   if (error != 0) {
     why = complete.string() + ": " + std::strerror(error);
     return partial;
   }
-  if (name != kFixed) link_latest(complete);
+  link_latest(complete);
   return complete;
 }
 

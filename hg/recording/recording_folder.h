@@ -25,12 +25,12 @@ class RecordingFolder {
   std::filesystem::path new_path(const std::string& name,
                                  std::chrono::system_clock::time_point start) const;
 
-  /// The path of recording.partial.mcap, which complete() renames without a link. Both files of
-  /// earlier runs are deleted.
-  std::filesystem::path fixed_path() const;
+  /// The path of recording.partial.mcap; what an earlier run has left there is deleted.
+  std::filesystem::path new_fixed_path() const;
 
-  /// Removes .partial from the name and points `latest.mcap` at the file. Returns the new path, or
-  /// the old one where the name is taken or renaming fails; then `why` gives the reason.
+  /// Removes .partial from the name and points `latest.mcap` at the file; recording.mcap replaces
+  /// an earlier one instead, without a link. Returns the new path, or the old one where the name is
+  /// taken or renaming fails; then `why` gives the reason.
   std::filesystem::path complete(const std::filesystem::path& partial, std::string& why) const;
 
   /// Points `latest.mcap` at a file of this folder; no effect where links are not supported.

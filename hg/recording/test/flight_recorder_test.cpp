@@ -63,7 +63,7 @@ TEST_F(FlightRecorderTest, WritesTheLastSecondsAtFullRateWithTheirEvents) {
 
 // The clocks of the lab in a file.
 struct LabClocks final : MessageListener {
-  std::vector<double> offsets_s;
+  std::vector<double> times_s, offsets_s;
 
   void configuration(const NamedText&) override {}
   void metadata(const std::string&, const KeyValues&) override {}
@@ -72,13 +72,15 @@ struct LabClocks final : MessageListener {
     LabClock clock;
     if (topic != "/hapticgiant/lab_clock") return;
     EXPECT_TRUE(messages::CdrReader(bytes).decode(clock));
+    times_s.push_back(clock.time_s);
     offsets_s.push_back(clock.offset_s);
   }
 };
 
 TEST_F(FlightRecorderTest, KeepsTheLabClockThatIsOlderThanItsSamples) {
   FlightRecorder recorder(example_info(temporary_.path()), 0.5);
-  recorder.lab_clock({.time_s = 0.1, .offset_s = 1234.5});
+  recorder.lab_clock({.time_s = 0.1, .offset_s = 1111.0});
+  recorder.lab_clock({.time_s = 0.2, .offset_s = 1234.5});
   push(recorder, 0, 1234);
   recorder.write("stop");
   const FlightRecorder::Result result = recorder.close();
@@ -86,6 +88,7 @@ TEST_F(FlightRecorderTest, KeepsTheLabClockThatIsOlderThanItsSamples) {
   LabClocks found;
   (void)read_messages(result.files[0], found);
   EXPECT_EQ(found.offsets_s, std::vector<double>{1234.5});
+  EXPECT_GT(found.times_s.at(0), 0.7);  // that of the first sample
 }
 
 TEST_F(FlightRecorderTest, RestartsAfterItHasWritten) {

@@ -28,7 +28,7 @@ COLUMNS = {
     "clock_offset_s": ("s", "local clock of LSL of the study's computer minus that of the sender, the last known when "
                             "the marker came; empty: not measured"),
     "offset_error_s": ("s", "round trip of that measurement: the offset is wrong by at most this"),
-    "run_time_s": ("s", "time of the trial's recording, by its event 'lab clock'; below 0: before the run began; "
+    "run_time_s": ("s", "time of the trial's recording, by its lab clock; below 0: before the run began; "
                         "empty: there was no run or no clock"),
     "value": ("", "the text or number; of several channels a list")}
 MOST_WAITING = 20_000  # markers of a stream that nobody has taken yet
