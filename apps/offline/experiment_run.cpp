@@ -64,6 +64,7 @@ class Collector final : public scenario::RunObserver {
         name_(name),
         scenario_(scenario),
         duration_s_(duration_s),
+        is_filmed_(walks_through_door(scenario)),
         frame_cycles_(std::max(1L, std::lround(kFrame_s * scenario.device.model.rate_Hz))) {}
 
   void sample(const Sample& sample) override {
@@ -71,7 +72,7 @@ class Collector final : public scenario::RunObserver {
     const WalkerReport& walker = sample.truth.walker;
     columns.append(sample);
     q_a_ = record.twin.q_a;
-    if (!walker.is_walking || record.cycle % frame_cycles_ != 0) return;
+    if (!is_filmed_ || !walker.is_walking || record.cycle % frame_cycles_ != 0) return;
     film.push_back({record.time_s, walker.x, walker.y, walker.heading, walker.hold});
   }
   void event(double time_s, std::string_view name, std::string_view text) override {
@@ -105,6 +106,7 @@ class Collector final : public scenario::RunObserver {
   std::string_view name_;
   const config::Scenario& scenario_;
   double duration_s_;
+  bool is_filmed_;
   std::uint64_t frame_cycles_;
   ConfigurationA q_a_;  ///< of the twin, now
 };

@@ -59,8 +59,8 @@ bool is_urdf(const config::SourceText& source);
 /// The URDFs among these texts.
 std::vector<model::Urdf> urdfs_among(const std::vector<config::SourceText>& sources);
 
-/// A finding from a fault. Without a line it is at the beginning of `file`, the inspected one; the
-/// item is then another file that the fault is of.
+/// A finding from a fault. Without a line it is at the beginning of `file`, the inspected one; its
+/// item is then the file of the fault, if that is another one.
 Finding finding_of(const InputFault& fault, const std::string& file);
 /// Findings from an error of a loader or another part of the program, one per fault.
 Findings findings_of(const SetupError& error, const std::string& file);

@@ -10,8 +10,8 @@
 namespace hg {
 namespace {
 
-// Whether some x > 0 with |A| x < x is found, which proves a spectral radius below 1 (Collatz,
-// Wielandt). Powers of |A| come near to such an x.
+// Whether some x > 0 with |A| x < x is found: then the spectral radius is below 1, up to rounding
+// (Collatz, Wielandt). Powers of |A| come near to such an x.
 bool shrinks(const Eigen::MatrixXd& A) {
   constexpr int kPowers = 8;
   const Eigen::MatrixXd magnitudes = A.cwiseAbs();
@@ -68,12 +68,12 @@ double spectral_radius(const Eigen::MatrixXd& A) {
 bool has_decaying_powers(const Eigen::MatrixXd& A) {
   constexpr int kSquarings = 9;  // cheaper than the eigenvalues
   Eigen::MatrixXd power = A, square(A.rows(), A.cols());
-  for (int i = 0; i <= kSquarings && power.allFinite(); ++i) {
+  for (int i = 0; i < kSquarings && power.allFinite(); ++i) {
     if (shrinks(power)) return true;
     square.noalias() = power * power;
     power.swap(square);
   }
-  return spectral_radius(A) < 1.0;
+  return shrinks(power) || spectral_radius(A) < 1.0;
 }
 
 Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& A) { return A.exp(); }

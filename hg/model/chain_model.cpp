@@ -48,7 +48,7 @@ ChainParts::Axis axis_of(const Joint& joint) {
   return axis;
 }
 
-// Index of a name; `place` is whose names these are, for the error.
+// Index of a name; `place` is the file or chain that has the names.
 int find(std::string_view name, const std::vector<std::string>& names, const std::string& kind,
          InputFault place) {
   const auto found = std::find(names.begin(), names.end(), name);

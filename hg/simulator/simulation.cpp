@@ -156,7 +156,7 @@ Truth Simulation::felt() const noexcept {
 
 void Simulation::sample() noexcept {
   take_due_command();  // a command that arrives at the moment of the sample is in effect
-  truth_.walker = person_.walker_report(time_s());
+  truth_.walker = has_left_handle_ ? WalkerReport{} : person_.walker_report(time_s());
   sensors_.sample(truth_, frame_);
   frame_.answered_sequence = at_work_.sequence;
   frame_.driver_fault = is_cut_off_ ? FaultCode::kCommandsLost : FaultCode::kNone;

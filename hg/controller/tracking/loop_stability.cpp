@@ -182,7 +182,7 @@ int search_latency(const Loop& loop, const std::vector<Eigen::VectorXd>& posture
     for (int periods = least; periods <= most; ++periods) {
       const double latency = periods * loop.device.dt();
       if (!has_decaying_powers(period_of(loop, arm, latency, as_modelled(loop, latency)))) {
-        most = periods - 1;
+        most = periods - 1;  // and what is longer does not matter in other postures
       }
     }
   }

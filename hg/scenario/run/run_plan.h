@@ -40,7 +40,7 @@ struct RunRecords {
   /// Folder of recordings and of the stored data of a machine
   std::string folder = "recordings";
   bool has_recording = true;  ///< writes the recording and the solver's failed or slow problems
-  /// The recording is recording.mcap, the same bytes for the same run; see RecordingInfo
+  /// The recording is recording.mcap, with is_fast the same bytes for the same run; RecordingInfo
   bool is_reproducible = false;
   /// Condition for writing the last seconds: fault, always, off
   std::string flight_recorder = "fault";
