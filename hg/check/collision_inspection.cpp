@@ -9,9 +9,37 @@
 #include <vector>
 
 #include "hg/controller/safety/collision/guard.h"
+#include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/unit_doubt.h"
+#include "hg/model/chain_data.h"
 
 namespace hg::check {
+namespace {
+
+// The posture where runs begin, with the gantry in its middle.
+void inspect_posture(const config::DeviceConfig& device, Collector& out) {
+  const DeviceModel& model = device.model;
+  if (model.posture.size() != model.n_m || !model.posture.allFinite()) return;
+  Eigen::VectorXd q(model.chain.nq());
+  for (int i = 0; i < model.n_p; ++i) {
+    q[i] = 0.5 * (model.gantry_range[i].lb + model.gantry_range[i].ub);
+  }
+  q.tail(model.n_m) = model.posture;
+  if (!q.allFinite()) return;
+  model::ChainData chain(model.chain);
+  chain.update_poses(q);
+  const std::vector<collision::Shape>& shapes = device.collision.shapes;
+  for (const collision::Pair& pair : device.collision.pairs.watched) {
+    const double distance = collision::Nearest(shapes, {pair}).distance(chain);
+    if (distance > 0.0) continue;
+    out.add(Severity::kWarning, "posture",
+            fmt::format("{} and {} are {:.0f} mm inside each other there", shapes[pair.a].name,
+                        shapes[pair.b].name, -1e3 * distance),
+            "a run that begins there stops at once: give a posture in which no parts touch");
+  }
+}
+
+}  // namespace
 
 void inspect_collisions(const config::DeviceConfig& device, Collector& out) {
   const collision::CollisionConfig& config = device.collision;
@@ -40,6 +68,7 @@ void inspect_collisions(const config::DeviceConfig& device, Collector& out) {
                         suspected_unit(size, {0.0, kLargest}, kOtherLengths, "m")),
             "give lengths in metres, and meshes in millimetres a scale of 0.001");
   }
+  inspect_posture(device, out);
   const auto count = [&](collision::Exclusion reason) {
     return std::ranges::count(config.pairs.excluded, reason, &collision::Excluded::reason);
   };

@@ -7,7 +7,8 @@
 
 namespace hg::check {
 
-/// Adds one finding: a note, or a warning where parts of the device move unwatched.
+/// Adds a note, warnings where parts of the device move unwatched, and one for each pair of parts
+/// that touch in the device's posture.
 void inspect_collisions(const config::DeviceConfig& device, Collector& out);
 
 /// Adds findings on a floor above all places of the handle, or one that contains a part of the

@@ -289,6 +289,17 @@ Findings flywheel_findings(const std::string& dq_max_rad_per_s) {
   return inspect(config::load_twin("f.yaml", reader), kDt);
 }
 
+TEST(Inspection, APostureInWhichPartsTouchIsNamed) {
+  config::DeviceConfig device = config::load_device("models/arms/xarm7/device.yaml");
+  const auto touching = [&] {
+    const Findings findings = inspect(device, workspace::survey(device, kFew));
+    return find(findings, "posture", "inside each other") != nullptr;
+  };
+  EXPECT_FALSE(touching());
+  device.model.posture[1] = 1.8;  // the arm bends into its table
+  EXPECT_TRUE(touching());
+}
+
 TEST(Inspection, ALeaderThatIsTooFastForAJointThatFollowsIsFoundAtItsSpeed) {
   const std::string item = "joints.lever_joint.dq_max_rad_per_s";
   EXPECT_EQ(find(flywheel_findings("1.6"), item, "wheel_joint"), nullptr);
