@@ -18,7 +18,10 @@ export interface Theme {
   exposure: number;
 }
 
-export const FORCE_COLOR = 0xf0643c;
+// The device and the twin in all pictures and plots; the force has neither colour.
+export const DEVICE_COLOR = 0x3f74b0;
+export const TWIN_COLOR = 0xf0901e;
+export const FORCE_COLOR = 0xd92642;
 export const TORQUE_COLOR = 0xa855d8;
 export const TARGET_COLOR = 0x2f7bf6;
 export const ELBOW_COLOR = 0x0f9d8c;
