@@ -2,6 +2,7 @@
 
 import type { Link } from "./data/freshness";
 import type { Frame, Scene, SceneJoint } from "./messages";
+import { causes, names_limits, summary } from "./panels/budget";
 
 // "Drawer, Franka FR3": what is rendered, and by which device.
 export function heading_text({ title, device }: Scene): string {
@@ -69,27 +70,31 @@ export function is_pushing(frame: Frame): boolean {
   return force_of(frame) >= SMALLEST_FORCE || Math.hypot(...frame.torque_Nm) >= SMALLEST_TORQUE;
 }
 
-// `parts`: the largest parts of the budget in words, may be empty.
 /** The virtual surface that pushes: of one whose share is 0 nothing is felt. */
 export function felt_contact({ contact }: Frame): Frame["contact"] {
   return contact && Math.hypot(...contact.force) >= SMALLEST_CONTACT ? contact : null;
 }
 
-export function felt_text(scene: Scene, frame: Frame, parts: string): string {
+// Why the hand feels what it feels, the largest cause first.
+export function felt_text(scene: Scene, frame: Frame): string {
   if (!is_pushing(frame)) {
     return frame.active.length > 0
       ? "You do not push. What holds all the same:"
       : "You do not push, so nothing pushes back.";
   }
-  if (frame.felt) return frame.felt.text;
+  const found = causes(frame.budget);
+  const first = found[0]?.part;
+  if (first === "limits" && frame.felt) return frame.felt.text;
   const contact = felt_contact(frame);
-  if (contact) {
+  if (first === "surface" && contact) {
     const size = Math.hypot(...contact.force);
     const { name } = scene.surfaces[contact.surface]!;
     return `Virtual surface ${name}: ${size.toFixed(size < 9.95 ? 1 : 0)} N.`;
   }
-  if (parts === "") return "Nothing holds you.";
-  return frame.active.length > 0 ? `Hardly a limit: ${parts}.` : `No limit: ${parts}.`;
+  const words = summary(found, frame.felt?.text.replace(/\.$/, ""));
+  if (words === "") return "Nothing holds you.";
+  if (names_limits(found)) return `${with_capital(words)}.`;
+  return frame.active.length > 0 ? `Hardly a limit: ${words}.` : `No limit: ${words}.`;
 }
 
 // A fault, why the device does not follow the hand, or how a run begins again.

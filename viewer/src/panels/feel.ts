@@ -12,7 +12,7 @@ import {
 import type { ActiveLimit, Frame, Scene } from "../messages";
 import { fill, make, make_button, write } from "../page";
 import { felt_contact, felt_text, is_pushing } from "../text";
-import { type Kind, PARTS, PART_NAMES, type Part, limits_matter, shares, summary, total } from "./budget";
+import { type Kind, PARTS, PART_NAMES, type Part, causes, shares, total } from "./budget";
 
 const FULL_FORCE = 80; // N, of a full bar
 const FULL_TORQUE = 10; // Nm
@@ -83,10 +83,9 @@ export class FeelPanel {
     write(this.torque, torque.toFixed(torque < 9.95 ? 1 : 0));
     fill(this.force_bar, force / FULL_FORCE);
     fill(this.torque_bar, torque / FULL_TORQUE);
-    const parts = shares(frame.budget, "force");
-    const felt = limits_matter(frame.budget) ? frame.felt : null;
-    write(this.reason, felt_text(scene, { ...frame, felt }, summary(parts)));
-    const is_held = felt !== null || felt_contact(frame) !== null;
+    write(this.reason, felt_text(scene, frame));
+    const first = causes(frame.budget)[0]?.part;
+    const is_held = first === "limits" || (first === "surface" && felt_contact(frame) !== null);
     this.reason.dataset.held = String(is_held && is_pushing(frame));
     this.show_acting(scene, frame);
     this.show_near(scene, frame);
@@ -101,7 +100,10 @@ export class FeelPanel {
   }
 
   private show_acting(scene: Scene, frame: Frame): void {
-    const lines = frame.active.map((active) => acting_line(scene, frame, active));
+    const felt_first = (active: ActiveLimit): number => Number(active.index !== frame.felt?.index);
+    const lines = [...frame.active]
+      .sort((a, b) => felt_first(a) - felt_first(b))
+      .map((active) => acting_line(scene, frame, active));
     update_list(this.acting, lines);
   }
 

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { limits_matter, shares, summary, total } from "../../src/panels/budget";
+import { causes, names_limits, shares, summary, total } from "../../src/panels/budget";
 import { budget, wrench } from "./examples";
 
 const pushed = budget({
@@ -28,33 +28,66 @@ describe("shares", () => {
   });
 });
 
+const turned = (Nm: number) => ({
+  force_N: wrench().force_N,
+  torque_Nm: [0, 0, Nm] as [number, number, number],
+});
+
+describe("causes", () => {
+  it("add up to what the hand feels, the largest first", () => {
+    const found = causes(budget({ ...pushed, spring: wrench() }));
+    expect(found.map(({ part }) => part)).toEqual(["inertia", "damping"]);
+    expect(found.reduce((sum, { force_N }) => sum + force_N, 0)).toBeCloseTo(11, 12);
+  });
+
+  it("puts bearings of 54.7 N before the limit of a lever of 4.3 Nm", () => {
+    const user = wrench([0, 64, 0]);
+    const [first, second] = causes(
+      budget({ user, structure: wrench([0, 54.7, 0]), limits: wrench([0, 9.3, 0]) }),
+    );
+    expect(first).toEqual({ part: "structure", force_N: expect.closeTo(54.7, 9) });
+    expect(second!.part).toBe("limits");
+  });
+
+  it("compares a torque by the force with which it presses on the hand", () => {
+    const user = { force_N: [0, 20, 0] as [number, number, number], torque_Nm: turned(3).torque_Nm };
+    const parts = { structure: wrench([0, 20, 0]), limits: turned(3) };
+    expect(causes(budget({ user, ...parts }))[0]!.part).toBe("limits"); // 3 Nm are 30 N
+    const weak = { force_N: user.force_N, torque_Nm: turned(1).torque_Nm };
+    expect(causes(budget({ user: weak, ...parts, limits: turned(1) }))[0]!.part).toBe("structure");
+  });
+
+  it("counts limits in conflict as limits", () => {
+    const user = wrench([0, 10, 0]);
+    const both = budget({ user, limits: wrench([0, 3, 0]), conflict: wrench([0, 3, 0]), damping: wrench([0, 4, 0]) });
+    expect(causes(both)[0]).toEqual({ part: "limits", force_N: expect.closeTo(6, 9) });
+  });
+
+  it("are none while the user hardly pushes or turns", () => {
+    expect(causes(budget({ user: wrench([0.1, 0, 0]), inertia: wrench([50, 0, 0]) }))).toEqual([]);
+    expect(causes(budget({ user: turned(3), limits: turned(3) }))[0]!.part).toBe("limits");
+  });
+});
+
 describe("summary", () => {
   it("names the largest parts that resist", () => {
-    expect(summary(shares(pushed, "force"))).toBe(
-      "mostly mass of the twin (55 %) and damping (45 %)",
-    );
-    expect(summary(shares(budget(), "force"))).toBe("");
+    expect(summary(causes(pushed))).toBe("mostly mass of the twin (55 %) and damping (45 %)");
+    expect(summary(causes(budget()))).toBe("");
   });
 
   it("says what it means when the bearings carry most", () => {
     const across = budget({ user: wrench([0, 10, 0]), structure: wrench([0, 10, 0]) });
-    expect(summary(shares(across, "force"))).toMatch(/^mostly bearings.* you push where it cannot/);
-    expect(summary(shares(pushed, "force"))).not.toContain("cannot move");
-  });
-});
-
-describe("limits_matter", () => {
-  it("is false while a limit carries little of the felt force", () => {
-    const user = wrench([0, 20, 0]);
-    const bearings = wrench([0, 20, 0]);
-    const little = wrench([0, 0.1, 0]);
-    expect(limits_matter(budget({ user, structure: bearings, limits: little }))).toBe(false);
-    expect(limits_matter(budget({ user, limits: bearings }))).toBe(true);
-    expect(limits_matter(budget({ user, conflict: bearings }))).toBe(true);
+    expect(summary(causes(across))).toMatch(/^mostly bearings.* you push where it cannot/);
+    expect(summary(causes(pushed))).not.toContain("cannot move");
   });
 
-  it("looks at torques, too", () => {
-    const turned = { force_N: wrench().force_N, torque_Nm: [0, 0, 3] as [number, number, number] };
-    expect(limits_matter(budget({ user: turned, limits: turned }))).toBe(true);
+  it("names the limit behind what is larger", () => {
+    const found = causes(
+      budget({ user: wrench([0, 10, 0]), structure: wrench([0, 7, 0]), limits: wrench([0, 3, 0]) }),
+    );
+    expect(names_limits(found)).toBe(true);
+    expect(summary(found, "lever: upper limit, 4.3 Nm")).toBe(
+      "mostly bearings of the twin (70 %), you push where it cannot move; then lever: upper limit, 4.3 Nm (30 %)",
+    );
   });
 });

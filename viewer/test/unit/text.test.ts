@@ -12,7 +12,7 @@ import {
   twin_text,
   unit_text,
 } from "../../src/text";
-import { frame, scene } from "./examples";
+import { budget, frame, scene, wrench } from "./examples";
 
 describe("names of device and twin", () => {
   const chosen = (twin: string, name: string, title: string) => ({
@@ -90,33 +90,45 @@ describe("unit_text", () => {
 describe("felt_text", () => {
   const zero: [number, number, number] = [0, 0, 0];
 
+  const lock = {
+    index: 2,
+    state: "lower",
+    cause: "lock",
+    reaction: 3,
+    excess: 0,
+    text: "hinge: locked",
+  } as const;
+  const felt = { index: 0, name: "m4", text: "m4: upper limit", force_N: zero, torque_Nm: zero };
+  const user = wrench([0, 10, 0]);
+
   it("names the limit, else the largest parts, else nothing", () => {
-    const felt = { index: 0, name: "m4", text: "m4: upper limit", force_N: zero, torque_Nm: zero };
-    expect(felt_text(scene, { ...frame, felt }, "")).toBe("m4: upper limit");
-    expect(felt_text(scene, frame, "mostly damping (60 %)")).toContain("mostly damping");
-    expect(felt_text(scene, frame, "")).toContain("Nothing");
+    const limited = { ...frame, felt, budget: budget({ user, limits: user }) };
+    expect(felt_text(scene, limited)).toBe("m4: upper limit");
+    const damped = { ...frame, felt: null, budget: budget({ user, damping: user }) };
+    expect(felt_text(scene, damped)).toContain("mostly damping");
+    expect(felt_text(scene, frame)).toContain("Nothing");
+  });
+
+  it("names what is larger before the limit, and the limit only where it is felt", () => {
+    const parts = { structure: wrench([0, 7, 0]), limits: wrench([0, 3, 0]) };
+    const both = { ...frame, felt, budget: budget({ user, ...parts }) };
+    expect(felt_text(scene, both)).toMatch(/^Mostly bearings.*; then m4: upper limit \(30 %\)\.$/);
+    const little = { structure: wrench([0, 9.5, 0]), limits: wrench([0, 0.5, 0]) };
+    const hardly = { ...both, active: [lock], budget: budget({ user, ...little }) };
+    expect(felt_text(scene, hardly)).toMatch(/^Hardly a limit: mostly bearings/);
   });
 
   it("does not blame a limit while the user does not push", () => {
-    const felt = { index: 0, name: "m4", text: "m4: lower limit", force_N: zero, torque_Nm: zero };
     const free = { ...frame, force_N: zero, torque_Nm: zero, felt };
     expect(is_pushing(free)).toBe(false);
-    expect(felt_text(scene, free, "")).toContain("do not push");
+    expect(felt_text(scene, free)).toContain("do not push");
     expect(is_pushing({ ...free, torque_Nm: [0, 0, 1] })).toBe(true);
   });
 
   it("does not say that nothing pushes while limits hold something", () => {
     const free = { ...frame, force_N: zero, torque_Nm: zero, felt: null };
-    expect(felt_text(scene, { ...free, active: [] }, "")).toContain("nothing pushes");
-    const lock = {
-      index: 2,
-      state: "lower",
-      cause: "lock",
-      reaction: 3,
-      excess: 0,
-      text: "hinge: locked",
-    } as const;
-    expect(felt_text(scene, { ...free, active: [lock] }, "")).not.toContain("nothing pushes");
+    expect(felt_text(scene, { ...free, active: [] })).toContain("nothing pushes");
+    expect(felt_text(scene, { ...free, active: [lock] })).not.toContain("nothing pushes");
   });
 
   it("names the virtual surface that pushes", () => {
@@ -130,12 +142,14 @@ describe("felt_text", () => {
     } as const;
     const room = { ...scene, surfaces: [{ ...wall, name: "table" }, wall] } as never;
     const contact = { surface: 1, force: [0, 3, 4] as [number, number, number], proxy: zero };
-    const touching = { ...frame, felt: null, contact };
-    expect(felt_text(room, touching, "mostly damping")).toBe("Virtual surface wall: 5.0 N.");
+    const touching = { ...frame, felt: null, contact, budget: budget({ user, surface: user }) };
+    expect(felt_text(room, touching)).toBe("Virtual surface wall: 5.0 N.");
+    const dragged = { ...touching, budget: budget({ user, damping: wrench([0, 9, 0]), surface: wrench([0, 1, 0]) }) };
+    expect(felt_text(room, dragged)).toContain("mostly damping");
     const free = { ...touching, force_N: zero, torque_Nm: zero };
-    expect(felt_text(room, free, "")).toContain("do not push");
-    const stopped = { ...touching, contact: { ...contact, force: zero } };
-    expect(felt_text(room, stopped, "mostly damping")).toBe("No limit: mostly damping.");
+    expect(felt_text(room, free)).toContain("do not push");
+    const stopped = { ...touching, contact: { ...contact, force: zero }, budget: budget({ user, damping: user }) };
+    expect(felt_text(room, { ...stopped, active: [] })).toBe("No limit: mostly damping (100 %).");
   });
 });
 
