@@ -107,6 +107,21 @@ class Expressions(unittest.TestCase):
             self.assertAlmostEqual(self.value(text, x=[0, 1, 2, 3, 4], **time), wanted, 12, text)
         self.assertTrue(np.isnan(self.value("event('none')")))
 
+    def test_the_time_of_a_task_that_was_not_completed_is_none(self):
+        """The last event that came is not the end of the task: who fails early would look fast."""
+        events, time = [(1.0, "opened"), (3.0, "passed")], expressions.parse(expressions.SHIPPED["time_s"][0])
+        for missing, wanted, why in (([], 2, None), (["closed"], math.nan, "event 'closed' is missing"),
+                                     (["locked", "closed"], math.nan, "event 'locked' is missing")):
+            trial = expressions.Trial({}, events, {}, missing)
+            np.testing.assert_equal(expressions.evaluate(time, trial), wanted)
+            if why:
+                self.assertEqual(expressions.why_no_number(time, trial), why)
+        begun = expressions.Trial({}, [], {}, ["opened", "closed"])
+        for text, why in (("first_event()", "event 'opened' is missing"), ("2 * event('closed')", "event 'closed' is missing"),
+                          ("sqrt(0 - 1)", "its expression gives no number")):
+            self.assertTrue(math.isnan(expressions.evaluate(expressions.parse(text), begun)), text)
+            self.assertEqual(expressions.why_no_number(expressions.parse(text), begun), why)
+
     def test_nothing_else_of_python_can_be_written(self):
         for text in ("__import__('os')", "().__class__", "(lambda: 1)()", "[1][0]", "x if 1 else 2", "'a'", "f(x=1)",
                      "max(x, key=1)", "{1}", "x := 1", "max.__class__(1)", "open('a')", "1 if", "x[0:1]", "x['a']",
@@ -451,7 +466,8 @@ class Faults(unittest.TestCase):
             for other in ({"position": None}, {"position": 10**400}, {"exit_code": "0"}, {"condition": "none"}, {"measures": []},
                           {"measures": {"peak_force_N": 1.0}}, {"measures": {"peak_force_N": math.inf, "half": 1.0}},
                           {"measures": {"peak_force_N": "1", "half": 1.0}}, {"measures": {"peak_force_N": 10**400, "half": 1}},
-                          {"recording": 3}, {"state_hash": {}}):
+                          {"recording": 3}, {"state_hash": {}}, {"missing_events": {}}, {"missing_events": [1]},
+                          {"no_value": []}, {"no_value": {"half": 1}}):
                 self.trial(own, **other)
                 with self.assertRaisesRegex(folder.FolderError, "run-1_trial.json: is damaged", msg=other):
                     there.rows()
@@ -479,11 +495,11 @@ class Faults(unittest.TestCase):
             self.assertEqual(self.said("report", file)[0], 0)
             trials_csv, plan = (out / name for name in ("trials.csv", "code/plan.json"))
             table, planned = trials_csv.read_text(), plan.read_text()
-            first = "P01,1,heavy,1,time,,1.0,2.0"
+            first = "P01,1,heavy,1,time,,,,1.0,2.0"
             self.assertIn(first, table)
 
             for cell in ("nan", "inf", "-inf", "1e308", "1e999", ""):
-                trials_csv.write_text(table.replace(first, f"P01,1,heavy,1,time,,{cell},2.0"))
+                trials_csv.write_text(table.replace(first, f"P01,1,heavy,1,time,,,,{cell},2.0"))
                 data = analysis.Data(out)
                 self.assertIn(["P01", "heavy 1", "peak_force_N has no value" + (f": {cell}" if cell else "")],
                               analysis.exclusion_rows(data))
@@ -499,6 +515,72 @@ class Faults(unittest.TestCase):
                 trials_csv.write_text(table)
             done = subprocess.run([sys.executable, out / "code" / "analysis.py"], capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stdout, done.stderr.count("\n")), (1, "", 1), done.stderr)
+
+    def failing(self, path):
+        """A study of two people who did both conditions; P01 did not complete heavy."""
+        file = self.answered(path)
+        for person in ("P01", "P02"):
+            for condition in ("light", "heavy"):
+                fails = (person, condition) == ("P01", "heavy")
+                self.trial(file.with_suffix(".study") / f"sub-{person}" / f"sub-{person}_task-{condition}_run-1_trial.json",
+                           condition=condition, measures={"peak_force_N": 1.0, "half": None if fails else 2.0},
+                           missing_events=["opened", "closed"] if fails else [],
+                           no_value={"half": "event 'opened' is missing"} if fails else {})
+        return file, file.with_suffix(".study")
+
+    def test_trials_without_a_value_are_counted_with_their_reason(self):
+        with tempfile.TemporaryDirectory() as path:
+            file, out = self.failing(path)
+            file.write_text(file.read_text().replace("[{outcome: peak_force_N}]", "[{outcome: peak_force_N}, {outcome: half}]"))
+            shutil.copy(file, out / "study.yaml")
+            there = json.loads((out / "dataset_description.json").read_text())
+            study = description.load_study(file)
+            (out / "dataset_description.json").write_text(json.dumps(there | {"Study": study.digest()}))
+            self.assertEqual(self.said("report", file)[0], 0)
+            data = analysis.Data(out)
+            row, = (row for row in data.trials if row["events_missing"])
+            self.assertEqual((row["half"], row["events_missing"], row["no_value"]),
+                             ("", "opened; closed", "half: event 'opened' is missing"))
+            self.assertIn(["P01", "heavy 1", "half has no value: event 'opened' is missing"], analysis.exclusion_rows(data))
+            self.assertEqual(analysis.trial_rows(data)[1:], [["light", "2", "0", "2", "0", "0"],
+                                                             ["heavy", "2", "0", "2", "1", "half 1"]])
+            self.assertEqual(analysis.missing_words(data, "half"), "without a value: 0 of 2 trials of light, 1 of 2 trials of "
+                                                                   "heavy; the others are compared")
+            self.assertEqual(analysis.missing_words(data, "peak_force_N"), "")
+            self.assertIn("half 1", (out / "report.html").read_text())
+
+    def test_who_has_withdrawn_is_counted_and_not_named(self):
+        with tempfile.TemporaryDirectory() as path:
+            file, out = self.failing(path)
+            self.assertEqual(self.said("forget", "P02", file)[0], 0)
+            self.assertEqual(self.said("report", file)[0], 0)
+            rows = dict(analysis.participant_rows(analysis.Data(out))[1:])
+            self.assertEqual([rows[name] for name in ("planned", "have begun", "have withdrawn; their data are deleted", "count")],
+                             ["16", "2", "1", "1"])
+            self.assertIn("1 of 2 participants count (16 were planned, 1 withdrew)", (out / "report.html").read_text())
+            self.assertNotIn("P02", (out / "report.html").read_text())
+
+    def test_a_report_has_a_figure_of_each_scale_and_words_about_no_other(self):
+        from hapticgiant.study import report
+
+        items = ("  own: {items: {real: {kind: likert, points: 7, text: Real}, safe: {kind: likert, points: 7, text: Safe}, "
+                 "far: {kind: slider, from: 0, to: 50, text: How far}, said: {kind: text, text: What}}}\n")
+        study = load(STUDY.replace("measures:\n", items + "measures:\n"))
+        scales = report.scales_of(study)
+        self.assertEqual([each.outcomes[-1] for each in scales],
+                         ["tlx.frustration", "sus.score", "own.safe", "own.far", "peak_force_N", "half"])
+        self.assertEqual([each.ends for each in scales[:4]], [(0, 100), (0, 100), (1, 7), (0, 50)])
+        with tempfile.TemporaryDirectory() as path:
+            for words, has_tlx, has_sus in ((STUDY, True, True), (STUDY.replace("  sus: {kind: sus, after: end}\n", ""), True, False),
+                                            (STUDY.replace("  tlx: {kind: nasa_tlx, weighted: true}\n", ""), False, True)):
+                about = " ".join(each.about for each in report.scales_of(load(words)))
+                self.assertEqual(("TLX" in about, "SUS" in about), (has_tlx, has_sus))
+            file, out = self.failing(path)
+            self.assertEqual(self.said("report", file)[0], 0)
+            page = (out / "report.html").read_text()
+            self.assertEqual(page.count("<svg"), 4)  # TLX, SUS, two measures
+            ids = re.findall(r'\bid="([^"]+)"', page)
+            self.assertEqual(len(ids), len(set(ids)))
 
     def test_links_and_pipes_of_a_folder_from_elsewhere_lead_nowhere(self):
         def link(out, name, target):

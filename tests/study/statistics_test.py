@@ -16,7 +16,7 @@ import numpy as np
 from scipy import stats
 
 import without_compiled_part  # noqa: F401
-from hapticgiant.study import inference
+from hapticgiant.study import analysis, inference
 
 SLEEP = ([0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0],
          [1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4])
@@ -117,6 +117,36 @@ class Paired(unittest.TestCase):
             self.assertAlmostEqual(found, np.mean([abs(each - middle) >= abs(v - middle) for each in sums]), 12)
             self.assertGreaterEqual(found, inference.least_p("wilcoxon", [len(difference)]))
 
+    def test_pairs_that_count_and_ties_are_reported(self):
+        """pingouin 0.7.0 leaves zeros out, too: wilcoxon(SLEEP) RBC = 1.0, of the depression data 0.777778. V and p of
+        wilcox.exact() of R's exactRankTests 0.8-35."""
+        found = inference.wilcoxon(*SLEEP)
+        self.assertEqual((found.counted, found.value, found.p, found.size), ("9 of 10", 45, 0.00390625, 1))
+        self.assertEqual(found.note, "1 of 10 pairs do not differ and are left out: 9 count; 2 of 9 differences share a rank")
+        found = inference.wilcoxon(*DEPRESSION)
+        self.assertEqual((found.counted, found.note), ("9 of 9", ""))
+        self.assertAlmostEqual(found.size, 0.777778, 6)
+        # pvalue(wilcoxsign_test(distribution = "exact", zero.method = "Wilcoxon")) of R's coin 1.4-2
+        found = inference.wilcoxon([3, 4, 3, 3, 4, 3, 3, 2, 4], [4, 4, 5, 3, 5, 6, 2, 4, 5])
+        self.assertEqual((found.counted, found.p), ("7 of 9", 0.078125))
+
+    def test_the_interval_is_that_of_the_test(self):
+        """It has the shifts that the test does not reject, whatever ties and zeros; 0 is one of them where p >= alpha."""
+        dice = np.random.default_rng(4)
+        for _ in range(150):
+            people = dice.integers(6, 14)
+            a, b, c = (dice.integers(1, 9, count).astype(float) for count in (people, people, dice.integers(4, 9)))
+            kept = (b - a)[b != a]
+            for found, p_of, shifts in (
+                    (inference.wilcoxon(a, b), lambda shift: inference.signed_rank_p(kept - shift), np.add.outer(kept, kept) / 2),
+                    (inference.mann_whitney(a, c), lambda shift: inference.rank_sum_p(a, c - shift), np.subtract.outer(c, a))):
+                edges = np.unique(shifts)
+                for shift in [edges[0] - 1, *(edges[1:] + edges[:-1]) / 2, edges[-1] + 1]:
+                    self.assertEqual(found.low < shift < found.high, p_of(shift) >= 0.05, (a, b, c, shift))
+                is_in, is_inside = found.low <= 0 <= found.high, found.low < 0 < found.high
+                self.assertTrue(is_in if found.p >= 0.05 else not is_inside, (a, b, c))
+                self.assertTrue(found.low <= found.estimate <= found.high)
+
     def test_no_difference_at_all_is_no_error(self):
         self.assertEqual(inference.wilcoxon([1, 2, 3], [1, 2, 3]).p, 1)
         self.assertEqual(inference.paired_t([1, 2, 3], [1, 2, 3]).p, 1)
@@ -135,6 +165,21 @@ class FewPeople(unittest.TestCase):
                 at = ranks[:len(a)].sum()
                 wanted = min(1.0, 2 * min(np.mean(sums <= at), np.mean(sums >= at)))
                 self.assertAlmostEqual(inference.mann_whitney(a, b).p, wanted, 12)
+
+    def test_two_groups_exact(self):
+        """wilcox.test(A, B, conf.int = TRUE), permeability data of ?wilcox.test (Hollander and Wolfe, p. 69)"""
+        a = [1.15, 0.88, 0.90, 0.74, 1.21]
+        found = inference.mann_whitney(a, [0.80, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46])
+        self.assertEqual((found.value, found.counted), (35, "5 + 10"))
+        for value, wanted in ((found.p, 0.2544), (found.estimate, 0.305), (found.low, -0.15), (found.high, 0.76)):
+            self.assertAlmostEqual(value, wanted, 4)
+
+    def test_an_interval_that_few_people_cannot_have_has_no_ends(self):
+        found = inference.wilcoxon([1, 2, 3, 4], [6, 8, 10, 12])
+        self.assertEqual((found.low, found.high, found.estimate), (-np.inf, np.inf, 6.5))
+        self.assertEqual(analysis.interval(found.low, found.high), "none")
+        found = inference.run("wilcoxon", [1, 2, 3, 4, 5, 6, 1, 2, 5, 7, 9, 11], list("aaaaaabbbbbb"), [*range(6)] * 2)
+        self.assertIn("with 4 pairs that differ no p below 0.125", found.notes[0])
 
     def test_the_least_p_of_ranks_is_reported(self):
         """wilcox.test(1:3, 4:6)$p.value is 0.1; of four differences above 0 it is 0.125"""
@@ -211,6 +256,7 @@ class Groups(unittest.TestCase):
         self.assertAlmostEqual(found.p, 0.2530851, 7)
         self.assertEqual(found.estimate, -4)
         self.assertEqual((-found.high, -found.low), (-3, 10))
+        self.assertAlmostEqual(found.size, -0.182442, 6)  # RBC of pingouin 0.7.0: mwu(B, A)
 
 
 class ByName(unittest.TestCase):

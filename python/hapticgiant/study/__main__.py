@@ -18,6 +18,7 @@ if not __package__:
     sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
     import as_folder  # noqa: F401
 
+SHIPPED = pathlib.Path(__file__).resolve().parent / "door_and_path.yaml"
 NEEDED = {"yaml": "pyyaml", "numpy": "numpy", "scipy": "scipy"}
 FOR_MIXED = {"statsmodels": "statsmodels"}
 NEEDED_BY = {"report": {"matplotlib": "matplotlib", "jinja2": "jinja2"}, "run": {"aiohttp": "aiohttp", "mcap": "mcap"},
@@ -35,6 +36,7 @@ def parser():
         command.add_argument("study", help="study.yaml")
         return command
 
+    add("new", "Writes a study of two conditions that is complete, as a file to be changed.")
     check = add("check", "Finds what would ruin a study, plays a trial of each condition, and simulates its tests.")
     check.add_argument("--no-trials", action="store_true", help="play nothing")
     registration = add("preregistration", "Writes the text of a pre-registration (Markdown).")
@@ -167,6 +169,22 @@ def missing(needed):
     return [package for module, package in needed.items() if importlib.util.find_spec(module) is None]
 
 
+def write_new(name):
+    """Writes the shipped study under a name of its own."""
+    from hapticgiant.sweep.reader import InputError
+
+    file = pathlib.Path(name)
+    if file.suffix not in (".yaml", ".yml"):
+        raise InputError(f"{file}: expected a name that ends in .yaml, as {file.name}.yaml")
+    try:
+        with open(file, "x", encoding="utf-8") as out:
+            out.write(SHIPPED.read_text(encoding="utf-8"))
+    except FileExistsError:
+        raise InputError(f"{file}: is there already; take another name") from None
+    print(f"written     {file}\nnext        hapticgiant study check {file}")
+    return 0
+
+
 def show_plan(study, code):
     from hapticgiant.study import planning
     from hapticgiant.sweep.reader import InputError, nearest
@@ -213,12 +231,12 @@ def check(study, arguments):
             unit = study.measures[name].unit
             values = "".join(f"{one.measures[name]:12.4g}" for one in measured.values())
             print(f"  {name:24}{values}  {unit}")
-            for condition, one in measured.items():
-                if one.measures[name] != one.measures[name]:
-                    problems.append(f"measure {name} has no value in condition {condition}")
+            problems += [f"measure {name} has no value in condition {condition}: {one.no_value[name]}"
+                         for condition, one in measured.items() if name in one.no_value]
         for condition, one in measured.items():
             if one.exit_code:
-                problems.append(f"a trial of {condition} ends with exit code {one.exit_code}")
+                what = f", {trials.missing_text(one.missing)}" if one.missing else ""
+                problems.append(f"a trial of {condition} ends with exit code {one.exit_code}{what}")
             if why := trials.excluded(study, one.measures, one.exit_code):
                 problems.append(f"a trial of {condition} would be left out: {why}")
         print(f"  {'':24}{''.join(f'{condition:>12}' for condition in measured)}")
@@ -263,6 +281,8 @@ def run(arguments):
         print(f"{arguments.code}: {count} files deleted, tables made anew; reports of before are deleted: "
               f"hapticgiant study report {arguments.study}")
         return 0
+    if arguments.command == "new":
+        return write_new(arguments.study)
     study = description.load_study(arguments.study)
     if arguments.command == "plan":
         return show_plan(study, arguments.participant)
@@ -279,7 +299,7 @@ def run(arguments):
         from hapticgiant.study import report
 
         if any(test.test == "mixed" for test in study.tests) and missing(FOR_MIXED):
-            raise InputError(f"test 'mixed': {sys.executable} needs statsmodels: pip install statsmodels")
+            raise InputError(f"test 'mixed': {sys.executable} needs statsmodels: pip install 'hapticgiant[study]'")
         for file in report.write(folder):
             print(f"  written    {file}")
         return 0
@@ -297,7 +317,7 @@ def main(words):
     arguments = parser().parse_args(words)
     needed = NEEDED | NEEDED_BY.get(arguments.command, {})
     if packages := missing(needed):
-        print(f"study: {sys.executable} needs {', '.join(packages)}: pip install {' '.join(packages)}", file=sys.stderr)
+        print(f"study: {sys.executable} needs {', '.join(packages)}: pip install 'hapticgiant[study]'", file=sys.stderr)
         return 2
     from hapticgiant.command_line import INTERRUPTED, exit_code_of
     from hapticgiant.study.expressions import ExpressionError

@@ -23,9 +23,11 @@ else:
     import inference
 
 
-OF_PLAN = {"people": str, "title": str, "conditions": list, "alpha": float, "correction": str, "outcomes": dict, "tests": list}
+OF_PLAN = {"people": str, "title": str, "conditions": list, "alpha": float, "correction": str, "outcomes": dict,
+           "tests": list, "participants": int}
 """Keys of plan.json, and what each holds."""
-COLUMNS = {"participants": ("participant", "excluded"), "trials": ("participant", "condition", "repetition", "excluded"),
+COLUMNS = {"participants": ("participant", "complete", "excluded"),
+           "trials": ("participant", "condition", "repetition", "excluded", "events_missing", "no_value"),
            "answers": ("participant", "condition", "form", "item", "kind", "value")}
 """Of the tables, those that are always read."""
 
@@ -43,6 +45,17 @@ class Data:
         self.participants, self.trials, self.answers = (
             self._table(folder / f"{name}.csv", columns + measures * (name == "trials")) for name, columns in COLUMNS.items())
         self.left_out = {row["participant"] for row in self.participants if row["excluded"]}
+        self.withdrawn = self._withdrawn(folder / "withdrawn.json")
+        """How many people have withdrawn: their data are deleted."""
+
+    @staticmethod
+    def _withdrawn(file):
+        try:
+            return len(json.loads(file.read_text(encoding="utf-8")))
+        except FileNotFoundError:
+            return 0
+        except (ValueError, TypeError, RecursionError) as error:
+            raise UnreadableError(f"{file}: is damaged: {error}") from None
 
     @staticmethod
     def _plan(file):
@@ -97,10 +110,20 @@ class Data:
         return ([value for _, value in rows], [row["condition"] for row, _ in rows],
                 [row["participant"] for row, _ in rows])
 
+    def counting(self) -> list[dict]:
+        """Trials that are not left out."""
+        return [row for row in self.trials if not row["excluded"] and row["participant"] not in self.left_out]
+
     def without(self, outcome: str) -> list[tuple[dict, str]]:
-        """Trials that count, but have no value of this measure; what their cells hold."""
-        return [(row, row[outcome]) for row in self.trials if "." not in outcome and not row["excluded"]
-                and row["participant"] not in self.left_out and self._number(outcome, row[outcome]) is None]
+        """Trials that count, but have no value of this measure; why."""
+        if "." in outcome:
+            return []
+        return [(row, self._why(outcome, row)) for row in self.counting() if self._number(outcome, row[outcome]) is None]
+
+    @staticmethod
+    def _why(outcome, row):
+        reasons = dict(each.partition(": ")[::2] for each in row["no_value"].split("; "))
+        return reasons.get(outcome) or row[outcome]
 
     def people(self, outcome: str) -> dict[str, np.ndarray]:
         """Means of people by condition; "" where it was asked once."""
@@ -135,10 +158,23 @@ def tests(data: Data) -> list[tuple[str, inference.Result | str, float]]:
             found.append(inference.run(test["test"], values, conditions, people, plan["alpha"], plan["correction"]))
         except (ValueError, np.linalg.LinAlgError) as error:
             found.append(str(error))
+    for test, each in zip(plan["tests"], found):
+        if not isinstance(each, str) and (words := missing_words(data, test["outcome"])):
+            each.notes.append(words)
     done = [each for each in found if not isinstance(each, str)]
     corrected = iter(inference.adjusted([each.p for each in done], plan["correction"]))
     return [(test["outcome"], each, math.nan if isinstance(each, str) else next(corrected))
             for test, each in zip(plan["tests"], found)]
+
+
+def missing_words(data: Data, outcome: str) -> str:
+    """How many trials of each condition have no value of a measure; empty: all have one."""
+    missing = [row["condition"] for row, _ in data.without(outcome)]
+    if not missing:
+        return ""
+    played = [row["condition"] for row in data.counting()]
+    return "without a value: " + ", ".join(f"{missing.count(name)} of {played.count(name)} trials of {name}"
+                                           for name in data.plan["conditions"]) + "; the others are compared"
 
 
 def degrees(df) -> str:
@@ -161,15 +197,21 @@ def test_rows(data: Data, found) -> list[list[str]]:
 def pair_rows(data: Data, found) -> list[list[str]]:
     """The table of pairs of conditions."""
     percent = f"{100 * (1 - data.plan['alpha']):g} %"
-    rows = [["outcome", "conditions", "difference", f"{percent} interval", "statistic", "p",
+    rows = [["outcome", "conditions", "count", "difference", f"{percent} interval", "statistic", "p",
              f"p, {data.plan['correction']}", "effect size"]]
     for outcome, each, _ in found:
         for pair in [] if isinstance(each, str) else each.comparisons:
             df = "" if pair.df is None else f"({degrees([pair.df])})"
-            rows.append([outcome, f"{pair.second} - {pair.first}", f"{pair.estimate:.3g}",
-                         f"{pair.low:.3g} to {pair.high:.3g}", f"{pair.statistic}{df} = {pair.value:.3f}",
+            rows.append([outcome, f"{pair.second} - {pair.first}", pair.counted, f"{pair.estimate:.3g}",
+                         interval(pair.low, pair.high), f"{pair.statistic}{df} = {pair.value:.3f}",
                          inference.number(pair.p), inference.number(pair.p_adjusted), f"{pair.effect} = {pair.size:.2f}"])
     return rows
+
+
+def interval(low: float, high: float) -> str:
+    """Both ends of an interval; a test by ranks of few people may have none."""
+    low, high = ("no end" if math.isinf(each) else f"{each:.3g}" for each in (low, high))
+    return "none" if low == high == "no end" else f"{low} to {high}"
 
 
 def assumption_rows(found) -> list[list[str]]:
@@ -178,6 +220,7 @@ def assumption_rows(found) -> list[list[str]]:
     for outcome, each, _ in found:
         if not isinstance(each, str):
             rows += [[outcome, text] for text in each.assumptions + each.notes]
+            rows += [[outcome, f"{pair.second} - {pair.first}: {pair.note}"] for pair in each.comparisons if pair.note]
             if each.variances:
                 rows.append([outcome, "deviations: " + ", ".join(f"{name} {math.sqrt(max(0, value)):.3g}"
                                                                  for name, value in each.variances.items())])
@@ -194,16 +237,42 @@ def description_rows(data: Data) -> list[list[str]]:
     return rows
 
 
+def participant_rows(data: Data) -> list[list[str]]:
+    """How many people were planned, have begun, and count."""
+    incomplete = sum(row["complete"] != "yes" for row in data.participants)
+    return [["participants", "number"], ["planned", str(data.plan["participants"])],
+            ["have begun", str(len(data.participants) + data.withdrawn)],
+            ["have withdrawn; their data are deleted", str(data.withdrawn)],
+            ["are left out by a criterion", str(len(data.left_out))],
+            ["count", str(len(data.participants) - len(data.left_out))],
+            ["have not done every trial and form, whether they count or not", str(incomplete)]]
+
+
+def trial_rows(data: Data) -> list[list[str]]:
+    """How many trials of each condition were played, count, and lack events or values."""
+    rows = [["condition", "played", "left out", "count", "of these with events missing", "of these without a value"]]
+    count = data.counting()
+    measures = [outcome for outcome in data.plan["outcomes"] if "." not in outcome]
+    for name in data.plan["conditions"]:
+        played = sum(row["condition"] == name for row in data.trials)
+        ours = [row for row in count if row["condition"] == name]
+        lost = {outcome: sum(row["condition"] == name for row, _ in data.without(outcome)) for outcome in measures}
+        rows.append([name, str(played), str(played - len(ours)), str(len(ours)), str(sum(bool(row["events_missing"]) for row in ours)),
+                     ", ".join(f"{outcome} {number}" for outcome, number in lost.items() if number) or "0"])
+    return rows
+
+
 def exclusion_rows(data: Data) -> list[list[str]]:
     """What is left out, and why."""
     rows = [["participant", "trial", "why"]]
     rows += [[row["participant"], "all", row["excluded"]] for row in data.participants if row["excluded"]]
-    rows += [[row["participant"], f"{row['condition']} {row['repetition']}", row["excluded"]]
+    rows += [[row["participant"], f"{row['condition']} {row['repetition']}", row["excluded"]
+              + (f" (missing: {row['events_missing']})" if row["events_missing"] else "")]
              for row in data.trials if row["excluded"]]
     for outcome in data.plan["outcomes"]:  # a mean of the others would hide them
-        rows += [[row["participant"], f"{row['condition']} {row['repetition']}", f"{outcome} has no value{cell and ': ' + cell}"]
-                 for row, cell in data.without(outcome)]
-    return rows
+        rows += [[row["participant"], f"{row['condition']} {row['repetition']}", f"{outcome} has no value{why and ': ' + why}"]
+                 for row, why in data.without(outcome)]
+    return rows if len(rows) > 1 else [*rows, ["-", "-", "nothing is left out"]]
 
 
 def main() -> None:
@@ -212,7 +281,7 @@ def main() -> None:
         found = tests(data)
         tables = (("tests", test_rows(data, found)), ("pairs", pair_rows(data, found)),
                   ("assumptions and notes", assumption_rows(found)), ("means of people", description_rows(data)),
-                  ("left out", exclusion_rows(data)))
+                  ("participants", participant_rows(data)), ("trials", trial_rows(data)), ("left out", exclusion_rows(data)))
     except (OSError, UnreadableError) as error:
         sys.exit(str(error))
     print(data.plan["people"])

@@ -464,14 +464,12 @@ class Conductor:
         self.folder.write(self.folder.file_of(session.code, step), trials.dump({
             "participant": session.code, "condition": step.condition, "repetition": step.repetition,
             "position": session.place(position), "simulated": not self.hand.is_real, "hand": self.hand.kind,
-            "ended_by": ended_by, "exit_code": found.exit_code, "measures": found.measures,
-            "events": [{"time_s": at, "name": name} for at, name in found.events], "state_hash": found.state_hash,
-            "recording_sha256": found.digest, "recording": recording.name}))
+            "ended_by": ended_by, **found.facts(), "recording": recording.name}))
         self._last = {
             "condition": step.condition, "repetition": step.repetition, "exit_code": found.exit_code,
-            "excluded": trials.excluded(self.study, found.measures, found.exit_code),
-            "measures": {name: {"value": value if math.isfinite(value) else None, "unit": self.study.measures[name].unit}
-                         for name, value in found.measures.items()}}
+            "excluded": trials.excluded(self.study, found.measures, found.exit_code), "missing_events": found.missing,
+            "measures": {name: {"value": value if math.isfinite(value) else None, "unit": self.study.measures[name].unit,
+                                "why": found.no_value.get(name, "")} for name, value in found.measures.items()}}
 
     async def close(self) -> None:
         """Ends what goes on; the trial that is played does not count."""

@@ -1,4 +1,4 @@
-"""study.yaml: what a user study consists of. docs/start/user_studies.md."""
+"""study.yaml: what a user study consists of. docs/start/user_studies_reference.md."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ TESTS = ("auto", "paired_t", "wilcoxon", "friedman", "mixed", "welch_t", "mann_w
          "kruskal")
 WITHIN_TESTS, BETWEEN_TESTS = TESTS[1:5], TESTS[5:]
 TWO_CONDITIONS = ("paired_t", "wilcoxon", "welch_t", "mann_whitney")
-TRIAL_COLUMNS = ("participant", "position", "condition", "repetition", "ended_by", "excluded", "exit_code", "state_hash",
-                 "recording_sha256", "recording")
+TRIAL_COLUMNS = ("participant", "position", "condition", "repetition", "ended_by", "excluded", "events_missing",
+                 "no_value", "exit_code", "state_hash", "recording_sha256", "recording")
 """Columns of trials.csv beside the measures."""
 CORRECTIONS = ("holm", "bonferroni", "none")
 OWN_STREAMS = ("HapticGiant", "HapticGiantEvents", "HapticGiantStudy")

@@ -27,7 +27,7 @@ class ExpressionError(ValueError):
 
 SHIPPED = {
     "time_s": ("last_event() - first_event()", "s",
-               "time from the first to the last event of the scenario"),
+               "time from the first to the last event of the scenario; none where an event is missing"),
     "duration_s": ("duration()", "s", "time that the handle could be felt"),
     "path_length_m": ("path_length(handle.p[0], handle.p[1], handle.p[2])", "m",
                       "length of the path of the handle"),
@@ -165,17 +165,19 @@ def is_true(text: str, values: dict[str, float]) -> bool:
 
 
 class Trial:
-    """What an expression can ask: columns by name, events, the summary of the run."""
+    """What an expression can ask: columns by name, events, those of the task that are missing, the summary of the run."""
 
-    def __init__(self, columns: dict[str, np.ndarray], events=(), summary=None):
-        self.columns, self.events, self.summary = columns, list(events), summary or {}
+    def __init__(self, columns: dict[str, np.ndarray], events=(), summary=None, missing=()):
+        self.columns, self.events, self.summary, self.missing = columns, list(events), summary or {}, list(missing)
 
     def call(self, name, args):
         if name in ("event", "events"):
             times = [time for time, event in self.events if fnmatch.fnmatchcase(event, args[0])]
             return len(times) if name == "events" else times[0] if times else np.nan
-        if name in ("first_event", "last_event"):
-            return self.events[0 if name == "first_event" else -1][0] if self.events else np.nan
+        if name == "first_event":
+            return self.events[0][0] if self.events else np.nan
+        if name == "last_event":  # of the task: one that came before it is not its end
+            return self.events[-1][0] if self.events and not self.missing else np.nan
         if name == "summary":
             return float(self.summary[args[0]]) if args[0] in self.summary else np.nan
         time = self.columns["time_s"]
@@ -188,6 +190,20 @@ class Trial:
             return np.count_nonzero(np.diff(at) > args[1]) + (1 if len(at) else 0)
         values = np.broadcast_to(np.asarray(args[0], float), time.shape)  # a truth value is 0 or 1
         return scipy.integrate.trapezoid(values, time) if name == "integral" else np.gradient(values, time)
+
+
+def why_no_number(tree: ast.expr, trial: Trial) -> str:
+    """Why an expression gives no number in this trial: the first event that it needs and that has not happened."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        if node.func.id == "last_event" and trial.missing:
+            return f"event '{trial.missing[0]}' is missing"
+        if node.func.id in ("first_event", "last_event") and not trial.events:
+            return f"event '{trial.missing[0]}' is missing" if trial.missing else "there was no event"
+        if node.func.id == "event" and not trial.call("events", [node.args[0].value]):
+            return f"event '{node.args[0].value}' is missing"
+    return "its expression gives no number"
 
 
 def evaluate(tree: ast.expr, trial: Trial) -> float:

@@ -51,6 +51,7 @@ TRIAL = "_trial.json"
 OF_STUDY = {"Study": str, "Simulated": bool, "Model": str, "GeneratedBy": list}  # keys of files, and what each holds
 OF_TRIAL = {"position": int, "condition": str, "repetition": int, "measures": dict, "exit_code": int, "state_hash": str,
             "recording_sha256": str, "recording": str | None}
+OF_TRIAL_SINCE = {"missing_events": list, "no_value": dict}  # keys that trials of older versions lack
 OF_FORM = {"condition": str, "form": str, "answers": dict, "pairs": dict}
 OF_NOTE = {"step": int, "text": str}
 LARGEST = 1 << 53  # of whole numbers
@@ -405,12 +406,16 @@ class Folder:
                 out += bool(why)
                 found["trials"].append({
                     "participant": code, "position": each["position"], "condition": each["condition"],
-                    "repetition": each["repetition"], "ended_by": each.get("ended_by", "time"), "excluded": why, **each["measures"],
-                    "exit_code": each["exit_code"], "state_hash": each["state_hash"],
+                    "repetition": each["repetition"], "ended_by": each.get("ended_by", "time"), "excluded": why,
+                    "events_missing": "; ".join(each["missing_events"]),
+                    "no_value": "; ".join(f"{name}: {reason}" for name, reason in each["no_value"].items()),
+                    **each["measures"], "exit_code": each["exit_code"], "state_hash": each["state_hash"],
                     "recording_sha256": each["recording_sha256"], "recording": each["recording"] or ""})
             why = self._participant_excluded(len(played), out)
+            done, count = self.progress(participant)
             found["participants"].append({
                 "participant": code, "order": " ".join(participant.conditions), "trials": len(played),
+                "complete": "yes" if done == count else "no",
                 "excluded_trials": out, "put_aside": len({file.name.rpartition("_")[0] for file in (folder / ASIDE).glob("*")}), "excluded": why})
             for file in sorted(folder.glob("*_answers.json")):
                 each = self._form(file)
@@ -435,6 +440,11 @@ class Folder:
         measures = found["measures"]
         if found["condition"] not in self.study.conditions or measures.keys() != self.study.measures.keys():
             raise FolderError(f"{file}: is damaged: the study has other conditions or measures")
+        for key, kind in OF_TRIAL_SINCE.items():
+            each = found.setdefault(key, kind())
+            if not isinstance(each, kind) or not all(isinstance(word, str) for word in [*each, *(
+                    each.values() if kind is dict else [])]):
+                raise FolderError(f"{file}: is damaged: '{key}' cannot be {json.dumps(each)[:40]}")
         for name, value in measures.items():  # null: has no value
             if value is not None and not (type(value) in (int, float) and abs(value) <= sys.float_info.max):
                 raise FolderError(f"{file}: is damaged: '{name}' cannot be {json.dumps(value)[:40]}")
@@ -496,6 +506,7 @@ class Folder:
         lines += [("participants", *each) for each in (
             ("participant", "", "code"), ("order", "", "conditions in the order of the plan"),
             ("trials", "", "trials that were played, without practice"),
+            ("complete", "", "yes: every trial was played and every form filled"),
             ("excluded_trials", "", "of these left out by a criterion"),
             ("put_aside", "", "trials that were put aside, by the operator or because they had no result, and played again; not in trials"),
             ("excluded", "", "why all of the participant is left out; empty: counts"))]
@@ -504,6 +515,8 @@ class Folder:
             ("condition", "", "as in study.yaml"), ("repetition", "", "from 1"),
             ("ended_by", "", "events: all of the task have happened; operator; time: the longest one, or the script's"),
             ("excluded", "", "why the trial is left out; empty: counts"),
+            ("events_missing", "", "events of the task that have not happened"),
+            ("no_value", "", "measures without a number, and why"),
             *((m.name, m.unit, f"{m.what}: {m.expression}") for m in self.study.measures.values()),
             ("exit_code", "", "of hapticgiant run: 0 as expected, 1 an event is missing or a limit was exceeded, 3 fault"),
             ("state_hash", "", "of the last cycle; the same run has the same"),

@@ -8,6 +8,7 @@ said, and a test that does without it stands beside.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import itertools
 import math
 import warnings
@@ -44,6 +45,10 @@ class Comparison:
     size: float
     df: float | None = None
     p_adjusted: float | None = None
+    counted: str = ""
+    """How many values the test counts: people, pairs that differ, or both groups."""
+    note: str = ""
+    """What ranks leave out or share."""
 
 
 @dataclasses.dataclass
@@ -90,12 +95,17 @@ def normality(values, what: str, alpha: float) -> str:
         return f"{what}: too few different values to judge whether they are normal"
     value, p = stats.shapiro(values)
     words = "no sign against normal" if p >= alpha else "NOT normal"
-    return f"{what}: {words} (Shapiro-Wilk W = {value:.3f}, p = {number(p)})"
+    return f"{what}: {words} (Shapiro-Wilk W = {value:.3f}, {p_text(p)})"
 
 
 def number(value: float) -> str:
     """Three digits behind the point; small ones as < 0.001."""
     return "< 0.001" if 0 <= value < 0.001 else f"{value:.3f}"
+
+
+def p_text(p: float) -> str:
+    """As p = 0.012, or p < 0.001."""
+    return f"p {number(p)}" if p < 0.001 else f"p = {number(p)}"
 
 
 def rounded(values, scale: float) -> np.ndarray:
@@ -123,19 +133,57 @@ def paired_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     mean, deviation = difference.mean(), difference.std(ddof=1)
     if deviation == 0:
         return Comparison(*names, "t", math.nan, 1.0 if mean == 0 else 0.0, mean, mean, mean, "d_z",
-                          math.nan, len(difference) - 1)
+                          math.nan, len(difference) - 1, counted=str(len(difference)))
     test = stats.ttest_1samp(difference, 0)
     low, high = test.confidence_interval(1 - alpha)
-    return Comparison(*names, "t", test.statistic, test.pvalue, mean, low, high, "d_z", mean / deviation, test.df)
+    return Comparison(*names, "t", test.statistic, test.pvalue, mean, low, high, "d_z", mean / deviation, test.df,
+                      counted=str(len(difference)))
 
 
-def signed_rank_counts(ranks) -> np.ndarray:
-    """How many of the 2^n signs of the ranks give each sum of positive ones, in steps of a half (ties share a rank).
+def not_rejected(ends, p_of, p: float, estimate: float, alpha: float) -> tuple[float, float]:
+    """The interval of shifts that a test by ranks does not reject: the test inverted, ties and all.
+
+    ends: sorted shifts at which the ranks change; p_of(shift): p between them; p: of the shift 0. An end that no shift
+    is rejected beyond is infinite. With ties p need not fall evenly: where it leaves a doubt, 0 is within the interval
+    if and only if the test does not reject it.
+    """
+    limit = alpha * (1 - 1e-12)  # p of the limit itself is not rejected
+    width = ends[-1] - ends[0] + abs(ends[0]) + 1
+    edges = np.concatenate([[ends[0] - width], ends, [ends[-1] + width]])
+    middle = int(np.searchsorted(edges, estimate))
+
+    def last_kept(outer, inner):
+        """The outermost gap of shifts that is not rejected."""
+        if p_of((edges[outer] + edges[outer + 1]) / 2) >= limit:
+            return outer
+        while abs(outer - inner) > 1:
+            probe = (outer + inner) // 2
+            is_kept = p_of((edges[probe] + edges[probe + 1]) / 2) >= limit
+            outer, inner = (outer, probe) if is_kept else (probe, inner)
+        return inner
+
+    first, last = last_kept(0, min(middle, len(edges) - 2)), last_kept(len(edges) - 2, max(middle - 1, 0))
+    low = -math.inf if first == 0 else float(edges[first])
+    high = math.inf if last == len(edges) - 2 else float(edges[last + 1])
+    if p >= limit:
+        return min(low, 0.0), max(high, 0.0)
+    if low < 0 < high:
+        return (0.0, high) if estimate > 0 else (low, 0.0)
+    return low, high
+
+
+def doubled_ranks(values) -> tuple[int, ...]:
+    """Twice the ranks, rising: whole numbers, ties share one."""
+    return tuple(np.sort(np.rint(2 * stats.rankdata(values)).astype(int)).tolist())
+
+
+@functools.lru_cache(maxsize=64)
+def signed_rank_counts(doubled: tuple[int, ...]) -> np.ndarray:
+    """How many of the 2^n signs of the ranks give each sum of positive ones; ranks and sums are doubled.
 
     scipy counts them without ties only; with ties it lists all 2^n, and stops at 13.
     """
-    doubled = np.rint(2 * np.asarray(ranks)).astype(int)
-    ways = np.zeros(doubled.sum() + 1)
+    ways = np.zeros(sum(doubled) + 1)
     ways[0] = 1
     for step in doubled:
         ways[step:] += ways[:-step].copy()
@@ -153,7 +201,7 @@ def signed_rank_p(difference, is_exact: bool | None = None) -> float:
     if not is_exact:
         return min(1.0, float(stats.wilcoxon(kept, correction=True, method="asymptotic").pvalue))
     ranks = stats.rankdata(abs(kept))
-    share = np.cumsum(signed_rank_counts(ranks)) / 2.0 ** len(kept)
+    share = np.cumsum(signed_rank_counts(doubled_ranks(abs(kept)))) / 2.0 ** len(kept)
     smaller = min(ranks[kept > 0].sum(), ranks[kept < 0].sum())
     return min(1.0, 2 * float(share[round(2 * smaller)]))
 
@@ -161,21 +209,36 @@ def signed_rank_p(difference, is_exact: bool | None = None) -> float:
 def wilcoxon(first, second, alpha=0.05, names=("a", "b"), is_exact: bool | None = None) -> Comparison:
     """Wilcoxon's signed ranks; p by signed_rank_p, zeros left out, as R's wilcox.test does.
 
-    Estimate and interval: Hodges and Lehmann; effect size: rank-biserial correlation.
+    Estimate: Hodges and Lehmann; interval: the test inverted; both of the pairs that differ. Effect size: matched-pairs
+    rank-biserial correlation (Kerby, 2014).
     """
     difference = differences(first, second)
     kept = difference[difference != 0]
-    count = len(kept)
+    count, counted = len(kept), f"{np.count_nonzero(difference)} of {len(difference)}"
+    effect = "matched-pairs rank-biserial"
     if count == 0:
-        return Comparison(*names, "V", 0.0, 1.0, 0.0, 0.0, 0.0, "rank-biserial", 0.0)
+        return Comparison(*names, "V", 0.0, 1.0, 0.0, -math.inf, math.inf, effect, 0.0, counted=counted,
+                          note="no pair differs")
     ranks = stats.rankdata(abs(kept))
     v = ranks[kept > 0].sum()
     total = count * (count + 1) / 2
-    walsh = np.sort([(kept[i] + kept[j]) / 2 for i in range(count) for j in range(i, count)])
-    share = np.cumsum(signed_rank_counts(range(1, count + 1))[::2]) / 2.0 ** count
-    at = max(1, int(np.searchsorted(share, alpha / 2 * (1 - 1e-12))))
-    return Comparison(*names, "V", v, signed_rank_p(difference, is_exact), float(np.median(walsh)), walsh[at - 1],
-                      walsh[len(walsh) - at], "rank-biserial", (2 * v - total) / total)
+    above, other = np.triu_indices(count)
+    walsh = rounded((kept[above] + kept[other]) / 2, float(np.max(abs(kept))))
+    estimate, p = float(np.median(walsh)), signed_rank_p(kept, is_exact)
+    low, high = not_rejected(np.unique(walsh), lambda shift: signed_rank_p(kept - shift, is_exact), p, estimate, alpha)
+    notes = []
+    if count < len(difference):
+        notes.append(f"{len(difference) - count} of {len(difference)} pairs do not differ and are left out: {count} count")
+    if tied := shared(ranks):
+        notes.append(f"{tied} of {count} differences share a rank")
+    return Comparison(*names, "V", v, p, estimate, low, high, effect, (2 * v - total) / total, counted=counted,
+                      note="; ".join(notes))
+
+
+def shared(ranks) -> int:
+    """How many of the ranks are those of ties."""
+    _, counts = np.unique(ranks, return_counts=True)
+    return int(counts[counts > 1].sum())
 
 
 def welch_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
@@ -183,7 +246,8 @@ def welch_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     a, b = np.asarray(first, float), np.asarray(second, float)
     if np.ptp(a) == 0 and np.ptp(b) == 0:
         mean = b[0] - a[0]
-        return Comparison(*names, "t", math.nan, 1.0 if mean == 0 else 0.0, mean, mean, mean, "Hedges' g", math.nan)
+        return Comparison(*names, "t", math.nan, 1.0 if mean == 0 else 0.0, mean, mean, mean, "Hedges' g", math.nan,
+                          counted=both(a, b))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # one group alone may be constant
         test = stats.ttest_ind(b, a, equal_var=False)
@@ -192,14 +256,19 @@ def welch_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
     small = 1 - 3 / (4 * (len(a) + len(b)) - 9)
     mean = b.mean() - a.mean()
     return Comparison(*names, "t", test.statistic, test.pvalue, mean, low, high, "Hedges' g",
-                      small * mean / pooled if pooled > 0 else math.nan, test.df)
+                      small * mean / pooled if pooled > 0 else math.nan, test.df, counted=both(a, b))
 
 
-def rank_sum_counts(ranks, count: int) -> np.ndarray:
-    """How many choices of `count` of the ranks give each sum, in steps of a half (ties share a rank); scipy counts them
-    without ties only."""
-    doubled = np.rint(2 * np.asarray(ranks)).astype(int)
-    ways = np.zeros((count + 1, doubled.sum() + 1))
+def both(first, second) -> str:
+    """How many values two groups have."""
+    return f"{len(first)} + {len(second)}"
+
+
+@functools.lru_cache(maxsize=64)
+def rank_sum_counts(doubled: tuple[int, ...], count: int) -> np.ndarray:
+    """How many choices of `count` of the ranks give each sum; ranks and sums are doubled. scipy counts them without ties
+    only."""
+    ways = np.zeros((count + 1, sum(doubled) + 1))
     ways[0, 0] = 1
     for step in doubled:
         ways[1:, step:] += ways[:-1, :-step].copy()
@@ -218,7 +287,7 @@ def rank_sum_p(first, second, is_exact: bool | None = None) -> float:
         method = "exact" if is_exact else "asymptotic"
         return float(stats.mannwhitneyu(second, first, method=method, use_continuity=True).pvalue)
     ranks = stats.rankdata(pooled)
-    ways = rank_sum_counts(ranks, len(first))
+    ways = rank_sum_counts(doubled_ranks(pooled), len(first))
     at = round(2 * ranks[:len(first)].sum())
     return min(1.0, 2 * float(min(ways[:at + 1].sum(), ways[at:].sum()) / ways.sum()))
 
@@ -226,15 +295,18 @@ def rank_sum_p(first, second, is_exact: bool | None = None) -> float:
 def mann_whitney(first, second, alpha=0.05, names=("a", "b"), is_exact: bool | None = None) -> Comparison:
     """Mann and Whitney's U of the second group, as R's wilcox.test; p by rank_sum_p.
 
-    Estimate: Hodges and Lehmann; effect size: rank-biserial correlation.
+    Estimate: Hodges and Lehmann; interval: the test inverted; effect size: rank-biserial correlation, which is Cliff's
+    delta.
     """
     a, b = for_ranks([first, second])
-    u = stats.mannwhitneyu(b, a, method="asymptotic").statistic if np.ptp(np.concatenate([a, b])) > 0 else len(a) * len(b) / 2
-    gaps = np.sort((b[:, None] - a[None, :]).ravel())
-    spread = math.sqrt(len(a) * len(b) * (len(a) + len(b) + 1) / 12)
-    at = max(1, int(len(gaps) / 2 - stats.norm.ppf(1 - alpha / 2) * spread))
-    return Comparison(*names, "U", u, rank_sum_p(a, b, is_exact), float(np.median(gaps)), gaps[at - 1],
-                      gaps[len(gaps) - at], "rank-biserial", 2 * u / len(gaps) - 1)
+    pooled = np.concatenate([a, b])
+    u = stats.mannwhitneyu(b, a, method="asymptotic").statistic if np.ptp(pooled) > 0 else len(a) * len(b) / 2
+    gaps = rounded((b[:, None] - a[None, :]).ravel(), float(np.max(abs(pooled))))
+    estimate, p = float(np.median(gaps)), rank_sum_p(a, b, is_exact)
+    low, high = not_rejected(np.unique(gaps), lambda shift: rank_sum_p(a, b - shift, is_exact), p, estimate, alpha)
+    tied = shared(stats.rankdata(pooled))
+    return Comparison(*names, "U", u, p, estimate, low, high, "rank-biserial (Cliff's delta)", 2 * u / len(gaps) - 1,
+                      counted=both(a, b), note=f"{tied} of {len(pooled)} values share a rank" if tied else "")
 
 
 def least_p(test: str, sizes: list[int]) -> float:
@@ -392,7 +464,7 @@ def mixed(values, conditions, people, alpha=0.05, correction="holm") -> Result:
         half = stats.t.ppf(1 - alpha / 2, df[1]) * error
         result.comparisons.append(Comparison(
             names[i], names[j], "t", estimate / error, 2 * stats.t.sf(abs(estimate / error), df[1]), estimate,
-            estimate - half, estimate + half, "d", estimate / deviation, df[1]))
+            estimate - half, estimate + half, "d", estimate / deviation, df[1], counted=str(len(persons))))
     for each, p in zip(result.comparisons, adjusted([c.p for c in result.comparisons], correction)):
         each.p_adjusted = p
     result.effect, result.size = "partial eta2", result.value * df[0] / (result.value * df[0] + df[1])
@@ -433,7 +505,7 @@ def equal_spread(columns, alpha) -> str:
         return "groups: too few different values to judge their spread"
     value, p = stats.levene(*columns, center="median")
     words = "no sign against equal spread" if p >= alpha else "spread DIFFERS"
-    return f"groups: {words} (Levene W = {value:.3f}, p = {number(p)})"
+    return f"groups: {words} (Levene W = {value:.3f}, {p_text(p)})"
 
 
 def two_conditions(test: str, groups: dict[str, np.ndarray], alpha: float, count: int) -> Result:
@@ -448,20 +520,22 @@ def two_conditions(test: str, groups: dict[str, np.ndarray], alpha: float, count
     if test == "paired_t":
         result.assumptions = [normality(b - a, "differences", alpha)]
         rank = wilcoxon(a, b, alpha)
-        result.notes.append(f"without normality: Wilcoxon V = {rank.value:g}, p = {number(rank.p)}")
+        result.notes.append(f"without normality: Wilcoxon V = {rank.value:g}, {p_text(rank.p)}")
     if test == "welch_t":
         result.assumptions = [normality(each, name, alpha) for name, each in groups.items()]
         rank = mann_whitney(a, b, alpha)
-        result.notes.append(f"without normality: Mann-Whitney U = {rank.value:g}, p = {number(rank.p)}")
+        result.notes.append(f"without normality: Mann-Whitney U = {rank.value:g}, {p_text(rank.p)}")
     if test == "wilcoxon":
         gaps = differences(a, b)
         skew = float(stats.skew(gaps)) if np.ptp(gaps) > 0 else 0.0
         result.assumptions = [f"differences: skewness {skew:.2f}; signed ranks assume that they are "
                               "symmetric about their middle"]
-    least = least_p(test, list(map(len, groups.values())))
+    pairs = int(np.count_nonzero(differences(a, b))) if test == "wilcoxon" else 0
+    least = least_p(test, [pairs] if pairs else list(map(len, groups.values())))
     if least > alpha:
-        result.notes.append(f"with {count} people no p below {least:g} can come out, and the interval cannot reach "
-                            f"{100 * (1 - alpha):g} %")
+        who = f"{pairs} pairs that differ" if 0 < pairs < count else f"{count} people"
+        result.notes.append(f"with {who} no p below {least:g} can come out, and no interval of {100 * (1 - alpha):g} % "
+                            "has both ends")
     return result
 
 
@@ -486,10 +560,10 @@ def run(test: str, values, conditions, people, alpha=0.05, correction="holm") ->
         table = np.array([[np.mean(cells[p, c]) for c in names] for p in complete])
         if len(names) > 2 and len(complete) > 2:
             chi = friedman(dict(zip(names, table.T)), alpha, correction)
-            result.notes.append(f"without normality: Friedman chi2 = {chi.value:.3f}, p = {number(chi.p)}")
+            result.notes.append(f"without normality: Friedman chi2 = {chi.value:.3f}, {p_text(chi.p)}")
         elif len(complete) > 2:
             rank = wilcoxon(*table.T, alpha, names)
-            result.notes.append(f"without normality: Wilcoxon V = {rank.value:g}, p = {number(rank.p)}")
+            result.notes.append(f"without normality: Wilcoxon V = {rank.value:g}, {p_text(rank.p)}")
         return result
     groups = {c: np.array([np.mean(cells[p, c]) for p in complete if (p, c) in cells]) for c in names}
     if min(map(len, groups.values())) < 2:

@@ -88,10 +88,7 @@ def _keep(study, folder: Folder, program, code, step: Step, position, measured: 
     seed = _seed(study, code, step)
     folder.write(folder.file_of(code, step), trials.dump({
         "participant": code, "condition": step.condition, "repetition": step.repetition, "position": position,
-        "simulated": True, "exit_code": measured.exit_code, "measures": measured.measures,
-        "events": [{"time_s": time, "name": name} for time, name in measured.events],
-        "state_hash": measured.state_hash, "recording_sha256": measured.digest,
-        "recording": recording.name if recording else None, "hand": hand, "seed": seed,
+        "simulated": True, **measured.facts(), "recording": recording.name if recording else None, "hand": hand, "seed": seed,
         "command": "hapticgiant " + shlex.join(trials.shown_command(study, program, step.condition, hand, seed)[1:])}))
 
 

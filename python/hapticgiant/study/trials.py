@@ -53,6 +53,16 @@ class Measured:
     digest: str
     """SHA-256 of the recording."""
     lab_clock: list[samples.LabClock]
+    missing: list[str]
+    """Names of the task's events that have not happened."""
+    no_value: dict[str, str]
+    """Measures without a number, and why."""
+
+    def facts(self) -> dict:
+        """What the file of a trial has of it."""
+        return {"exit_code": self.exit_code, "measures": self.measures, "no_value": self.no_value,
+                "events": [{"time_s": time, "name": name} for time, name in self.events],
+                "missing_events": self.missing, "state_hash": self.state_hash, "recording_sha256": self.digest}
 
 
 def columns_of(study: Study) -> list[str]:
@@ -65,7 +75,9 @@ def columns_of(study: Study) -> list[str]:
 def known_columns(program: Program) -> dict[str, bool]:
     """The columns that a recording has, and whether they have an index."""
     done = subprocess.run([program.file, "export", "--list-columns", "--json", "/dev/stdout"],
-                          capture_output=True, text=True, check=True)
+                          capture_output=True, text=True)
+    if done.returncode:
+        raise TrialError(done.stderr.strip() or f"{program.file} export --list-columns: exit code {done.returncode}")
     return {column["name"]: column["has_index"] for column in json.loads(done.stdout)["columns"]}
 
 
@@ -110,18 +122,26 @@ def measured(study: Study, summary: dict, exit_code: int) -> Measured:
     for values in columns.values():
         values.setflags(write=False)
     events = [(event["time_s"], event["name"]) for event in summary["events"]]
-    trial = expressions.Trial(columns, events, _numbers(summary))
-    measures = {}
-    for name, each in study.measures.items():
-        try:
-            measures[name] = expressions.evaluate(expressions.parse(each.expression), trial)
-        except expressions.ExpressionError as error:
-            if not is_felt.any():  # ended before the handle was taken
-                measures[name] = math.nan
-                continue
-            raise expressions.ExpressionError(f"{study.place(f'measures.{name}')}: measures.{name}: {error}") from None
+    missing = list(summary["missing_events"])
+    measures, no_value = _values(study, expressions.Trial(columns, events, _numbers(summary), missing), is_felt.any())
     return Measured(exit_code, summary["state_hash"], events, measures, recording, digest_of(recording),
-                    recorded.lab_clock)
+                    recorded.lab_clock, missing, no_value)
+
+
+def _values(study, trial, was_held):
+    """The measures of a trial, and why some have no number."""
+    measures, no_value = {}, {}
+    for name, each in study.measures.items():
+        tree = expressions.parse(each.expression)
+        try:
+            measures[name] = expressions.evaluate(tree, trial)
+        except expressions.ExpressionError as error:
+            if was_held:
+                raise expressions.ExpressionError(f"{study.place(f'measures.{name}')}: measures.{name}: {error}") from None
+            measures[name] = math.nan
+        if not math.isfinite(measures[name]):
+            no_value[name] = expressions.why_no_number(tree, trial) if was_held else "the handle was not taken"
+    return measures, no_value
 
 
 def digest_of(file: pathlib.Path) -> str:
@@ -165,6 +185,11 @@ def excluded(study: Study, measures: dict[str, float], exit_code: int) -> str:
         if each.kind == "trial" and expressions.is_true(each.expression, known):
             return each.why
     return ""
+
+
+def missing_text(missing: list[str]) -> str:
+    """Which events of a task have not happened, in words; empty: none is missing."""
+    return f"missing: {', '.join(missing)}" if missing else ""
 
 
 def discard(folder: pathlib.Path) -> None:
