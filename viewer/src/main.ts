@@ -15,10 +15,13 @@ import { Notices } from "./panels/notices";
 import { SafetyPanel } from "./panels/safety";
 import { Tabs } from "./panels/tabs";
 import { PlotDrawer } from "./plots/drawer";
+import { Glossary } from "./guide/glossary";
+import { show_guide } from "./guide/guide";
+import { Legend } from "./guide/legend";
 import { ReplayBar } from "./replay_bar";
 import { show_part } from "./part";
 import { Cameras } from "./scene/cameras";
-import { foot_of_arm, sight_of, what_matters } from "./scene/first_view";
+import { FirstView } from "./scene/first_view";
 import { Layers } from "./scene/layers";
 import { type Pixel, Stage } from "./scene/stage";
 import { World } from "./scene/world";
@@ -56,7 +59,11 @@ class Page {
   private readonly store = new Store();
   private readonly stage = new Stage(element("stage"));
   private readonly cameras = new Cameras(this.stage.camera, this.stage.canvas);
-  private readonly layers = new Layers(() => this.world?.apply_layers());
+  private readonly layers = new Layers(() => {
+    this.world?.apply_layers();
+    this.legend.apply_layers();
+  });
+  private readonly legend = new Legend(this.layers);
   private readonly drag = new Drag(
     this.stage,
     this.cameras,
@@ -81,7 +88,7 @@ class Page {
   private readonly notices = new Notices();
   private readonly plots = new PlotDrawer(element("plots"), this.store);
   private world: World | null = null;
-  private has_looked = false; // the first view has turned to the handle
+  private has_looked = false; // the first view has been chosen
   private readonly happened: Event[] = [];
   private frames = 0;
   private panels_ms = 0;
@@ -190,18 +197,19 @@ class Page {
   private note(frame: Frame): void {
     this.frames += 1;
     this.world?.note(frame);
-    if (this.has_looked) return;
+  }
+
+  private look(world: World, frame: Frame): void {
     this.has_looked = true;
-    const { scene } = this.store;
-    const foot = scene && foot_of_arm(scene);
-    if (!scene || !foot) return this.cameras.look_at(frame.p_B_H_m);
-    const places = what_matters(scene, frame, foot);
-    this.cameras.begin_with(() => sight_of(places, this.stage.camera));
+    const first = new FirstView(world.sights(frame));
+    this.cameras.begin_with(() => first.sight(this.stage.camera));
   }
 
   private draw(now_ms: number): void {
     const { scene, frame } = this.store;
     if (!scene || !frame || this.world?.scene !== scene) return;
+    if (!this.has_looked) this.look(this.world, frame);
+    this.legend.show(frame.ghost !== null);
     const target = this.drag.target_m ?? this.headset.target_m ?? seen_target(frame);
     this.world.show(frame, target, this.drag.axis);
     const is_first_person = this.cameras.current === "first person" || this.headset.is_worn;
@@ -293,3 +301,5 @@ start_theme();
 show_part();
 if (token() === "") write(element("story"), "Open the link that the program printed: it has the token.");
 window.hapticgiant = new Page().state();
+show_guide(element("stage-area"));
+new Glossary(element("panel"));

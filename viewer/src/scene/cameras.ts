@@ -26,7 +26,6 @@ export class Cameras {
   private view: View = "orbit";
   private low = new Vector3();
   private high = new Vector3();
-  private seen_first = new Vector3(); // what the first view turns to
   private first_sight: (() => Sight) | null = null; // null: from beside the box
   private is_moved = false; // away from the first view
 
@@ -52,21 +51,14 @@ export class Cameras {
     this.first_sight = null;
     this.low.set(...box.min_m);
     this.high.set(...box.max_m);
-    this.seen_first.addVectors(this.low, this.high).multiplyScalar(0.5);
     this.choose("orbit");
   }
 
-  // Begins with a view of all that matters, instead of one into the box. It is taken again when the
-  // size of the picture changes, until the user moves the camera.
+  // Begins with a view of all that matters, instead of one into the box. It is fitted again when
+  // the size of the picture changes, until the user moves the camera.
   begin_with(sight: () => Sight): void {
     this.first_sight = sight;
     this.choose(this.view);
-  }
-
-  // Turns the first view half way to what matters.
-  look_at(p_B: Vec3): void {
-    this.seen_first.lerp(new Vector3(...p_B), 0.5);
-    if (this.view === "orbit") this.controls.target.copy(this.seen_first);
   }
 
   choose(view: View): void {
@@ -87,7 +79,7 @@ export class Cameras {
       this.camera.position.set(center.x, center.y - 0.01, center.z + height);
     } else if (view !== "first person") {
       const away = Math.max(SMALLEST_AWAY, 0.62 * size.y);
-      this.controls.target.copy(this.seen_first);
+      this.controls.target.copy(center);
       this.camera.position.set(center.x + 0.6 * size.x, this.low.y - away, center.z + EYE_ABOVE);
     }
     this.resize();

@@ -32,6 +32,7 @@ interface Rest {
 
 export class ChainView {
   readonly placement = new Group();
+  readonly complete: Promise<unknown>; // when its mesh files are there, or missing for good
   private readonly robot: URDFRobot | null;
   private readonly rests = new Map<Object3D, Rest>();
 
@@ -40,7 +41,9 @@ export class ChainView {
     urdf: string,
     paint: Paint,
   ) {
-    this.robot = urdf === "" ? null : parse(urdf, paint);
+    const meshes: Promise<void>[] = [];
+    this.robot = urdf === "" ? null : parse(urdf, paint, meshes);
+    this.complete = Promise.all(meshes);
     const [x, y, z, w] = chain.quaternion_B_root as [number, number, number, number];
     this.placement.position.set(...chain.p_B_root_m);
     this.placement.quaternion.set(x, y, z, w);
@@ -145,17 +148,18 @@ async function load_mesh(
 }
 
 // Mesh files arrive later; those that the program has not found stay away.
-function parse(urdf: string, paint: Paint): URDFRobot {
+function parse(urdf: string, paint: Paint, meshes: Promise<void>[]): URDFRobot {
   const loader = new URDFLoader();
   loader.loadMeshCb = (address, manager, material, done) => {
     if (!address.startsWith(MESHES)) return;
-    load_mesh(address, manager, material).then(
+    const arrived = load_mesh(address, manager, material).then(
       (mesh) => {
         paint(mesh);
         done(mesh);
       },
       (error) => done(null as unknown as Object3D, error),
     );
+    meshes.push(arrived);
   };
   return loader.parse(urdf);
 }

@@ -2,7 +2,17 @@
 
 import { type Material, Color, Mesh, MeshStandardMaterial, type Object3D } from "three";
 
-import { GHOST_COLOR, current_theme } from "../theme";
+import { DEVICE_COLOR, GHOST_COLOR, TWIN_COLOR, current_theme } from "../theme";
+
+// How the shapes of a chain are drawn.
+interface Look {
+  color: number; // that its own colours are mixed with
+  share: number; // of it, 0..1
+  opacity: number; // below 1 solid things behind stay visible
+}
+
+export const DEVICE: Look = { color: DEVICE_COLOR, share: 0.68, opacity: 1 };
+export const TWIN: Look = { color: TWIN_COLOR, share: 0.6, opacity: 0.85 }; // it is not there
 
 interface Surface {
   roughness: number;
@@ -24,14 +34,14 @@ function surface_of(name: string): Surface {
   return SURFACES.find(([names]) => names.test(name))?.[1] ?? PAINTED;
 }
 
-// Gives all shapes under `root` their material; below opacity 1 solid things behind stay visible.
-export function paint_shapes(root: Object3D, opacity: number): void {
+// Gives all shapes under `root` their material.
+export function paint_shapes(root: Object3D, look: Look): void {
   root.traverse((part) => {
     if (!(part instanceof Mesh)) return;
     part.castShadow = true;
     part.receiveShadow = true;
     const materials = [part.material].flat() as Material[];
-    const painted = materials.map((material) => paint(material, opacity));
+    const painted = materials.map((material) => paint(material, look));
     part.material = Array.isArray(part.material) ? painted : painted[0]!;
   });
 }
@@ -53,15 +63,16 @@ const GHOST = new MeshStandardMaterial({
   polygonOffsetUnits: 4,
 });
 
-function paint(material: Material, opacity: number): Material {
-  const color = "color" in material ? (material.color as Color) : new Color(current_theme().link);
-  const share = opacity * material.opacity;
+function paint(material: Material, look: Look): Material {
+  const own = "color" in material ? (material.color as Color) : new Color(current_theme().link);
+  const color = own.clone().lerp(new Color(look.color), look.share);
+  const opacity = look.opacity * material.opacity;
   return new MeshStandardMaterial({
     name: material.name,
     color,
     ...surface_of(material.name),
-    opacity: share,
-    transparent: share < 1,
+    opacity,
+    transparent: opacity < 1,
   });
 }
 

@@ -5,6 +5,7 @@ import {
   Group,
   Mesh,
   MeshStandardMaterial,
+  type Object3D,
   Quaternion,
   SphereGeometry,
   TorusGeometry,
@@ -56,6 +57,7 @@ export class Person {
   private readonly legs: Limb[];
   private heading: number | null = null; // of the look, about z_B
   private readonly skin = new MeshStandardMaterial({ roughness: 0.8 });
+  private readonly palm = new MeshStandardMaterial({ roughness: 0.8 }); // the hand never fades
   private readonly shirt = new MeshStandardMaterial({ roughness: 0.9 });
 
   // `faced_B`: what the person faces, beyond the handle; null: they stand where the hand axis points.
@@ -63,8 +65,8 @@ export class Person {
     private readonly floor_z_m: number,
     private readonly faced_B: Vector3 | null = null,
   ) {
-    const { skin, shirt } = this;
-    for (const material of [skin, shirt]) {
+    const { skin, shirt, palm } = this;
+    for (const material of [skin, shirt, palm]) {
       Object.assign(material, { transparent: true, opacity: OPACITY });
     }
     const limb = (radius: number, length: number, material = skin): Limb => {
@@ -82,13 +84,14 @@ export class Person {
     this.head.scale.set(0.88, 1, 1.18);
     this.head.position.z = EYES;
     this.body.add(torso, this.head);
-    this.build_hand(skin);
+    this.build_hand(palm);
     this.group.add(this.body, this.hand);
     this.group.traverse((part) => (part.castShadow = part.receiveShadow = true));
   }
 
   paint(theme: Theme): void {
     this.skin.color.set(theme.person);
+    this.palm.color.set(theme.person);
     this.shirt.color.set(theme.person).offsetHSL(0.0, 0.12, -0.14);
   }
 
@@ -121,6 +124,11 @@ export class Person {
     this.hand.quaternion.copy(attitude);
     this.eyes.p_B.copy(at(0, -0.04, EYES));
     this.eyes.towards_B.copy(p_B);
+  }
+
+  // All of it but the hand that holds.
+  get parts(): Object3D[] {
+    return this.group.children.filter((part) => part !== this.hand);
   }
 
   // In first person one does not see one's own head and body, only hand and arm.

@@ -14,6 +14,7 @@ import {
   Mesh,
   MeshStandardMaterial,
   NeutralToneMapping,
+  type Object3D,
   PCFShadowMap,
   PerspectiveCamera,
   PMREMGenerator,
@@ -26,6 +27,7 @@ import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment
 import { page_options } from "../data/token";
 import type { SceneBox, Vec3 } from "../messages";
 import { current_theme, on_theme_change } from "../theme";
+import { ContactShadow } from "./contact_shadow";
 import { dispose_of } from "./dispose";
 import { Grid } from "./grid";
 import { Quality, type Wish } from "./quality";
@@ -54,6 +56,7 @@ export class Stage {
     new MeshStandardMaterial({ roughness: 0.95 }),
   );
   private readonly grid = new Grid();
+  private readonly contact = new ContactShadow();
   private readonly box_lines = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
   private is_see_through = false;
 
@@ -75,7 +78,8 @@ export class Stage {
     this.floor.receiveShadow = true;
     this.add_sun();
     if (this.quality.is_fine) this.reflect_room();
-    this.scene.add(this.rig, this.sky, this.floor, this.grid.mesh, this.box_view);
+    this.scene.add(this.rig, this.sky, this.floor, this.grid.mesh, this.contact.group);
+    this.scene.add(this.box_view);
     this.paint();
     on_theme_change(() => this.paint());
     new ResizeObserver(() => {
@@ -95,8 +99,14 @@ export class Stage {
       } catch (error) {
         reportError(error); // three would never draw again
       }
+      if (!is_in_headset) this.contact.update(this.renderer, this.scene);
       this.renderer.render(this.scene, this.camera);
     });
+  }
+
+  // What `root` shows stands on the floor.
+  ground(root: Object3D): void {
+    this.contact.add(root);
   }
 
   load(box: SceneBox, floor_z_m: number): void {
@@ -109,6 +119,7 @@ export class Stage {
     this.box_view.add(lines);
     const [x, y] = [0, 1].map((axis) => 0.5 * (box.min_m[axis]! + box.max_m[axis]!));
     this.sun.target.position.set(x!, y!, floor_z_m);
+    this.contact.group.position.set(x!, y!, floor_z_m);
     this.sun.position.set(x! + 1.8, y! - 2.6, floor_z_m + 9);
   }
 
@@ -174,7 +185,7 @@ export class Stage {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / Math.max(1, height);
     this.on_resize();
-    this.sun.castShadow = this.quality.has_shadows;
+    this.sun.castShadow = this.contact.is_shown = this.quality.has_shadows;
   }
 }
 

@@ -29,6 +29,7 @@ const PLATE = { wide: 0.36, thick: 0.03 }; // m, under an arm
 
 export interface Surroundings {
   group: Group;
+  wall?: Group; // what may hide the device
   paint(theme: Theme): void;
 }
 
@@ -110,7 +111,7 @@ function wall(twin: SceneChain, floor_z: number): Surroundings {
       add(group, new Mesh(shape, material), x, y, z).receiveShadow = true;
     }
   }
-  return { group, paint: (theme) => void material.color.set(theme.wall) };
+  return { group, wall: group, paint: (theme) => void material.color.set(theme.wall) };
 }
 
 // Gives the points of `shape` an opacity by their x.

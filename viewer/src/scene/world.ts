@@ -5,25 +5,28 @@ import { Box3, Group, type Object3D, Quaternion, Vector3 } from "three";
 import { limit_closeness } from "../limit_words";
 import type { Frame, Scene, Vec3 } from "../messages";
 import { ELBOW_COLOR, FORCE_COLOR, type Theme } from "../theme";
-import { arrow_size } from "./arrow_size";
+import { type ArrowSize, arrow_size } from "./arrow_size";
 import { Checkpoints } from "./checkpoints";
 import { type ChainView, load_chain } from "./chain_view";
 import { add_shapes } from "./collision_shapes";
 import { dispose_of } from "./dispose";
-import { foot_of_arm } from "./first_view";
+import { type Sights, foot_of_arm } from "./first_view";
 import { Ghost } from "./ghost";
 import { HandleView } from "./handle_view";
 import { JointGauge } from "./joint_gauges";
 import type { Layer, Layers } from "./layers";
-import { paint_shapes } from "./materials";
+import { DEVICE, TWIN, paint_shapes } from "./materials";
 import { Person } from "./person";
 import { scanner_zone } from "./scanner_zone";
 import type { Stage } from "./stage";
+import { SeeThrough } from "./see_through";
 import { SurfacesView } from "./surfaces";
 import { type Surroundings, surroundings_of } from "./surroundings";
 import { Trail } from "./trail";
+import { points_on, thinned } from "./voxels";
+import { ways_of_handle } from "./ways";
 
-const TWIN_OPACITY = 0.85; // it is not there: the device shines through
+const TABLE_POINTS = 0.2; // m between them
 
 interface Gauge {
   view: JointGauge;
@@ -34,6 +37,7 @@ interface Gauge {
 export class World {
   readonly root = new Group();
   readonly person: Person;
+  private readonly arrow: ArrowSize;
   private readonly handle: HandleView;
   private readonly handle_trail = new Trail(FORCE_COLOR);
   private readonly elbow_trail = new Trail(ELBOW_COLOR);
@@ -45,6 +49,7 @@ export class World {
   private readonly scanner: Group;
   private readonly shapes: Object3D[];
   private readonly ghost: Ghost;
+  private readonly see_through = new SeeThrough();
 
   private constructor(
     readonly scene: Scene,
@@ -54,7 +59,8 @@ export class World {
     private readonly layers: Layers,
   ) {
     const joints = scene.device.joints.map(({ name }) => device.joint(name));
-    this.handle = new HandleView(arrow_size(joints.filter((joint) => joint !== null)));
+    this.arrow = arrow_size(joints.filter((joint) => joint !== null));
+    this.handle = new HandleView(this.arrow);
     this.person = new Person(scene.floor_z_m, foot_of_arm(scene));
     const lowest = new Box3().setFromObject(device.placement).min.z;
     this.surroundings = surroundings_of(scene, lowest);
@@ -69,14 +75,22 @@ export class World {
     this.root.add(this.person.group, this.trails, this.scanner, this.surfaces.group);
     this.root.add(this.checkpoints.group);
     this.root.add(this.handle.pull, this.handle.arrows);
+    stage.ground(this.root);
     this.apply_layers();
+    this.see_through.add_shapes(twin.placement);
+    if (this.surroundings.wall) this.see_through.add_whole([this.surroundings.wall]);
+    this.see_through.add_whole(this.person.parts);
+    if (scene.gantry_joints > 0 && this.shoulder) {
+      this.see_through.add_frame(device.placement, this.shoulder);
+    }
   }
 
   static async load(scene: Scene, stage: Stage, layers: Layers): Promise<World> {
     const [device, twin] = await Promise.all([
-      load_chain(scene.device, (root) => paint_shapes(root, 1)),
-      load_chain(scene.twin, (root) => paint_shapes(root, TWIN_OPACITY)),
+      load_chain(scene.device, (root) => paint_shapes(root, DEVICE)),
+      load_chain(scene.twin, (root) => paint_shapes(root, TWIN)),
     ]);
+    await Promise.all([device.complete, twin.complete]);
     return new World(scene, device, twin, stage, layers);
   }
 
@@ -119,21 +133,53 @@ export class World {
 
   // `target`: where the handle is dragged to, null = it is not; `axis`: along which only.
   show(frame: Frame, target: Vec3 | null, axis: Vec3 | null): void {
-    this.device.pose(frame.q_device);
-    this.twin.pose(frame.q_twin);
+    this.pose(frame);
     this.show_gauges(frame);
     this.handle.show_wrench(frame.p_B_H_m, frame.force_N, frame.torque_Nm);
     this.handle.show_target(frame.p_B_H_m, target, axis);
-    const attitude = new Quaternion(...frame.quaternion_B_H).normalize();
-    this.person.pose(new Vector3(...frame.p_B_H_m), attitude);
     this.ghost.show(frame.ghost);
     this.surfaces.show(frame.p_B_E_m, frame.contact);
-    this.checkpoints.show(new Vector3(...frame.p_B_H_m), attitude);
+    this.checkpoints.show(new Vector3(...frame.p_B_H_m), attitude_of(frame));
+    const eye = this.stage.camera.getWorldPosition(new Vector3());
+    const seen = [frame.p_B_H_m, frame.p_B_E_m, frame.p_B_elbow_m];
+    this.see_through.update(eye, seen.map((point) => new Vector3(...point)));
+  }
+
+  // What a first view is to show.
+  sights(frame: Frame): Sights {
+    this.pose(frame);
+    const { shoulder } = this;
+    const { gantry_joints } = this.scene;
+    const frame_points = shoulder ? points_on(this.device.placement, shoulder) : [];
+    const table = gantry_joints === 0 ? thinned(frame_points, TABLE_POINTS) : [];
+    return {
+      arm: points_on(shoulder ?? this.device.placement),
+      frame: frame_points,
+      twin: points_on(this.twin.placement),
+      person: this.person.parts.flatMap((part) => points_on(part)),
+      around: points_on(this.surroundings.group),
+      handle: new Vector3(...frame.p_B_H_m),
+      to_user: new Vector3(0, 0, 1).applyQuaternion(attitude_of(frame)),
+      arrow: this.arrow.longest_m,
+      room: [...ways_of_handle(this.scene, frame, this.twin), ...table],
+    };
   }
 
   dispose(): void {
     this.root.removeFromParent();
     dispose_of(this.root);
+  }
+
+  // The first joint that no gantry moves.
+  private get shoulder(): Object3D | null {
+    const first = this.scene.device.joints[this.scene.gantry_joints];
+    return first ? this.device.joint(first.name) : null;
+  }
+
+  private pose(frame: Frame): void {
+    this.device.pose(frame.q_device);
+    this.twin.pose(frame.q_twin);
+    this.person.pose(new Vector3(...frame.p_B_H_m), attitude_of(frame));
   }
 
   private show_gauges(frame: Frame): void {
@@ -144,6 +190,10 @@ export class World {
       view.show_torque(q, torque);
     }
   }
+}
+
+function attitude_of(frame: Frame): Quaternion {
+  return new Quaternion(...frame.quaternion_B_H).normalize();
 }
 
 function gauges_of(scene: Scene, device: ChainView): Gauge[] {

@@ -159,9 +159,9 @@ export function arc(handle, hinge, angles) {
 
 // Number of pixels of the scene that change when `layer` is switched off, and come back with it; what
 // moves on its own does not count.
-export async function hide_and_compare(page, layer) {
+export async function hide_and_compare(page, layer, place = null) {
   const { x, y, width, height } = await page.locator("#stage").boundingBox();
-  const clip = { x, y: y + 70, width, height: height - 140 }; // without what lies over it
+  const clip = place ?? { x, y: y + 70, width, height: height - 140 }; // without what lies over it
   const take = async () => {
     await pictures(page);
     return (await page.screenshot({ clip })).toString("base64");
