@@ -80,6 +80,12 @@ void add_page(Command command, scenario::RunPageOptions& page) {
       .excludes("--no-viewer")
       .check(number_that(scenario::kPortRule));
   command
+      .add_option("--token-file", page.token_file,
+                  "file that keeps the secret of the link, made if missing: with --port the link "
+                  "stays the same when the program starts again")
+      .excludes("--fast")
+      .excludes("--no-viewer");
+  command
       .add_option("--embedded-in", page.embedders,
                   "the run is a trial of a study: pages of this origin, as "
                   "http://127.0.0.1:8123, may show its page inside themselves, and pages change "

@@ -217,6 +217,8 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   scene.rate_hz = scenario.device.model.rate_Hz;
   scene.box = box_of(scenario);
   scene.floor_z = scenario.device.floor_z;
+  scene.hand_stiffness = scenario.script.hand.stiffness;
+  scene.hand_force_max = scenario.script.hand.force_max;
   scene.stopping = stopping_text(scenario.device);
   scene.environment = environment_of(scenario.twin.surroundings);
   for (const surfaces::Surface& surface : scenario.surfaces) {

@@ -106,6 +106,7 @@ std::span<const RunPage::Order> RunPage::orders() {
                                       {CommandName::kMark, false, false, &RunPage::mark},
                                       {CommandName::kEmergencyStop, false, false, nullptr},
                                       {CommandName::kReleaseStop, false, false, nullptr},
+                                      {CommandName::kAskForHand, false, false, nullptr},
                                       {CommandName::kPause, true, true, &RunPage::set_pace},
                                       {CommandName::kResume, true, true, &RunPage::set_pace},
                                       {CommandName::kStep, true, true, &RunPage::set_pace},

@@ -1,10 +1,14 @@
 #include "hg/viewer_server/access.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <regex>
 
 #include "hg/core/error.h"
@@ -35,6 +39,8 @@ std::string content_type(const std::filesystem::path& file) {
   return "application/octet-stream";
 }
 
+constexpr std::size_t kTokenDigits = 32;
+
 bool is_address(const std::string& text, int family) {
   in6_addr address;  // large enough for both
   return inet_pton(family, text.c_str(), &address) == 1;
@@ -52,6 +58,32 @@ std::string random_token() {
   for (const unsigned char byte : bytes) {
     token += kDigits[byte >> 4];
     token += kDigits[byte & 15];
+  }
+  return token;
+}
+
+std::string kept_token(const std::filesystem::path& file) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  const auto refuse = [&](const std::string& why) { throw SetupError(file.string() + ": " + why); };
+  const int made = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (made >= 0) {
+    const OpenFile owner(made);
+    const std::string token = random_token();
+    if (write(made, token.data(), token.size()) != static_cast<ssize_t>(token.size())) {
+      refuse("the token of the page cannot be written");
+    }
+    return token;
+  }
+  if (errno != EEXIST) refuse("cannot be written: " + std::string(std::strerror(errno)));
+  const OpenFile kept = open_to_read(file);
+  struct stat facts {};
+  if (fstat(kept.descriptor(), &facts) != 0 || (facts.st_mode & 077U) != 0) {
+    refuse("the token of the page must be its owner's only: chmod 600 " + file.string());
+  }
+  std::string token = read_file(file, 2 * kTokenDigits);
+  token.erase(token.find_last_not_of(" \r\n") + 1);
+  if (token.size() != kTokenDigits || token.find_first_not_of(kDigits) != std::string::npos) {
+    refuse("a token is 32 hexadecimal digits 0-9 a-f: delete the file, and a new one is made");
   }
   return token;
 }

@@ -15,6 +15,10 @@ namespace hg::viewer_server {
 /// Random token: 128 random bits of the operating system as 32 hexadecimal digits.
 std::string random_token();
 
+/// Token in `file`, which is created with a random one if missing, for its owner only. Throws
+/// SetupError when others may read the file or it holds no token.
+std::string kept_token(const std::filesystem::path& file);
+
 /// Compares two secrets in constant time; true when both are equal.
 bool is_same_secret(std::string_view a, std::string_view b) noexcept;
 

@@ -24,6 +24,7 @@ enum class CommandName : std::uint8_t {
   kEmergencyStop,  ///< presses the emergency stop
   kMark,           ///< records an event
   kReleaseStop,    ///< releases the stop pressed by page `value`; 0: by the script
+  kAskForHand,     ///< asks the page that drags to let go
 };
 
 /// Largest number of a page: whole numbers of JavaScript, 2^53.

@@ -8,6 +8,7 @@
 
 #include "hg/viewer_server/command_message.h"
 #include "hg/viewer_server/frame_parts_message.h"
+#include "hg/viewer_server/hand_target_box.h"
 #include "hg/viewer_server/limit_text.h"
 #include "hg/viewer_server/message.h"
 
@@ -18,6 +19,7 @@ struct FrameMessage {
   const View& view;
   const LimitCatalogue& limits;
   std::uint64_t clients = 0;
+  HandHolder holder;
 };
 
 std::vector<double> joined(const Eigen::Ref<const Eigen::VectorXd>& first,
@@ -85,6 +87,8 @@ void fields(Archive& a, T& frame) {
   a("cycle_time_max_us", view.cycle_time_max_us, "maximum since the last frame");
   a("latency", view.latency, "delays of link, drives, sensor and page in words; empty = unknown");
   a("hand", hand_message(view.hand));
+  a("hand_page", frame.holder.page, "page whose hand holds the handle; 0 = none");
+  a("hand_asked_by", frame.holder.asked_by, "page that asks it for the hand; 0 = none");
   a("run_state", view.run_state);
   a("safety", SafetyMessage{view});
   a("clients", frame.clients, "number of connected pages");

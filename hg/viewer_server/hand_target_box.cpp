@@ -20,7 +20,22 @@ bool HandTargetBox::put(std::uint64_t page, const HandTarget& target, double now
   return true;
 }
 
+bool HandTargetBox::ask(std::uint64_t page, double now_s) {
+  const HandHolder now = holder(now_s);
+  if (now.page == 0 || now.page == page) return false;
+  asked_by_ = page;
+  asked_s_ = now_s;
+  return true;
+}
+
+HandHolder HandTargetBox::holder(double now_s) {
+  if (dragging_ != 0 && now_s - heard_s_ > kSilence_s) release();
+  if (now_s - asked_s_ > kAsking_s) asked_by_ = 0;
+  return {dragging_, asked_by_};
+}
+
 void HandTargetBox::leave(std::uint64_t page) {
+  if (asked_by_ == page) asked_by_ = 0;
   if (dragging_ == page) release();
 }
 
@@ -33,7 +48,7 @@ bool HandTargetBox::take(HandTarget& target, double now_s) {
 }
 
 void HandTargetBox::release() {
-  dragging_ = 0;
+  dragging_ = asked_by_ = 0;
   newest_.active = false;
   newest_.press = 0.0;
   is_new_ = true;

@@ -91,7 +91,11 @@ struct Hub {
   /// Ends what the page or client of this number holds.
   void let_go(std::uint64_t number);
   void put_hand(std::uint64_t page, const HandTarget& target);
+  /// Returns why not; empty: the dragging page is asked.
+  std::string ask_for_hand(std::uint64_t page);
+  HandHolder holder();
   void put_wrench(std::uint64_t client, const Vector6& w);
+  bool follows(CommandName name) const;
   /// Queues a command for the program; false when too many are waiting.
   bool put_command(Command command);
   /// Executes a command at the desk, or queues it for the program as far as `rate` allows; a stop

@@ -157,8 +157,9 @@ std::string encode_scene(Scene scene, double update_rate_hz) {
   return to_json(scene);
 }
 
-std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients) {
-  return to_json(FrameMessage{view, limits, clients});
+std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients,
+                         const HandHolder& holder) {
+  return to_json(FrameMessage{view, limits, clients, holder});
 }
 
 std::string encode_event(std::uint64_t run, double time_s, std::string_view name,

@@ -11,6 +11,7 @@
 
 #include "hg/signals/frames.h"
 #include "hg/viewer_server/commands.h"
+#include "hg/viewer_server/hand_target_box.h"
 #include "hg/viewer_server/scene.h"
 #include "hg/viewer_server/view.h"
 
@@ -23,7 +24,8 @@ inline constexpr std::string_view kTwinAddress = "/models/twin.urdf";
 std::string encode_scene(Scene scene, double update_rate_hz);
 
 /// Encodes a view; `clients` is the number of pages connected.
-std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients);
+std::string encode_frame(const View& view, const LimitCatalogue& limits, std::uint64_t clients,
+                         const HandHolder& holder = {});
 
 std::string encode_event(std::uint64_t run, double time_s, std::string_view name,
                          std::string_view text);

@@ -128,7 +128,10 @@ struct Scene {
   std::vector<Setting> settings;
   std::vector<CommandName> commands;  ///< accepted commands
   std::string refusal;                ///< why other commands are refused; empty: all are accepted
-  std::string stopping;               ///< duration and distance of a stop; empty: unknown
+  /// Stiffness of the arm that pulls the hand to its target, along x, y, z of B, N/m
+  Eigen::Vector3d hand_stiffness{250, 150, 200};
+  double hand_force_max = 60.0;  ///< its largest pull, N
+  std::string stopping;          ///< duration and distance of a stop; empty: unknown
 };
 
 /// Throws SetupError unless the files exist, names are given and the box and rate are finite.

@@ -33,6 +33,9 @@ void fields(Archive& a, T& scene) {
   a("settings", scene.settings);
   a("commands", scene.commands, "accepted commands");
   a("refusal", scene.refusal, "reason for refusing other commands; empty = all are accepted");
+  a("hand_stiffness_N_per_m", scene.hand_stiffness,
+    "of the arm that pulls the hand to its target, along x, y, z of B");
+  a("hand_force_max_N", scene.hand_force_max, "largest pull of this arm");
   a("stopping", scene.stopping, "duration and distance of a stop; empty = unknown");
 }
 

@@ -160,6 +160,10 @@ void Hub::put_hand(std::uint64_t page, const HandTarget& target) {
   hand.put(page, target, now_s());
 }
 
+bool Hub::follows(CommandName name) const {
+  return std::ranges::find(followed, name) != followed.end();
+}
+
 bool Hub::put_command(Command command) {
   const std::lock_guard lock(input_mutex);
   if (commands.size() >= (command.is_done ? kMaxDone : kMaxCommands)) return false;
@@ -167,7 +171,20 @@ bool Hub::put_command(Command command) {
   return true;
 }
 
+std::string Hub::ask_for_hand(std::uint64_t page) {
+  const std::lock_guard lock(input_mutex);
+  return hand.ask(page, now_s()) ? "" : "no other page has the hand";
+}
+
+HandHolder Hub::holder() {
+  const std::lock_guard lock(input_mutex);
+  return hand.holder(now_s());
+}
+
 std::optional<std::string> Hub::take(Command command, MessageRate& rate) {
+  if (command.name == CommandName::kAskForHand && follows(command.name)) {
+    return rate.admit(now_s()) ? ask_for_hand(command.page) : "too many commands";
+  }
   if (desk != nullptr) {
     const auto answer = obey_at_desk(command, followed, now_ns(), *desk);
     command.stops = desk->stops();
@@ -384,7 +401,9 @@ struct ViewerServer::Impl {
     if (outbox.view && hub.desk != nullptr) {
       outbox.view->safety.stop_pressed_by = hub.desk->stop_pressed_by();
     }
-    if (outbox.view) hub.show(to_text(encode_frame(*outbox.view, limits, hub.pages.size())));
+    if (outbox.view) {
+      hub.show(to_text(encode_frame(*outbox.view, limits, hub.pages.size(), hub.holder())));
+    }
   }
 
   // With the mutex held.

@@ -27,8 +27,10 @@ export interface Scene {
   checkpoints: SceneCheckpoint[]; // places that the handle is to be brought to, in order
   choices: Choices;
   settings: Setting[];
-  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop")[]; // accepted commands
+  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand")[]; // accepted commands
   refusal: string; // reason for refusing other commands; empty = all are accepted
+  hand_stiffness_N_per_m: Vec3; // of the arm that pulls the hand to its target, along x, y, z of B
+  hand_force_max_N: number; // largest pull of this arm
   stopping: string; // duration and distance of a stop; empty = unknown
 }
 
@@ -180,6 +182,8 @@ export interface Frame {
   cycle_time_max_us: number; // maximum since the last frame
   latency: string; // delays of link, drives, sensor and page in words; empty = unknown
   hand: Hand;
+  hand_page: number; // page whose hand holds the handle; 0 = none
+  hand_asked_by: number; // page that asks it for the hand; 0 = none
   run_state: RunState;
   safety: Safety;
   clients: number; // number of connected pages
@@ -290,7 +294,7 @@ export interface Hold {
 export interface Command {
   type: "command";
   id: number; // any whole number of 0..2^53, comes back in the answer
-  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop";
+  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand";
   name: string; // name of the chosen option or setting; else empty
   value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: run time, set: value, release_stop: page
 }

@@ -131,7 +131,7 @@ void refuse_page_options(const Json& request, const RunPlan& plan) {
       throw SetupError(fmt::format("request: {} excludes {}", by, key));
     }
   };
-  for (const char* key : {"bind", "port", "embedded_in"}) {
+  for (const char* key : {"bind", "port", "token_file", "embedded_in"}) {
     refuse_with(key, plan.timing.is_fast, "fast");
     refuse_with(key, !plan.page.is_served, "viewer: false");
   }

@@ -84,6 +84,7 @@ void visit_options(Plan& plan, Visitor&& v) {
   v("viewer", page.is_served, AnyText{});
   v("bind", page.address, AnyText{});
   v("port", page.port, kPortRule);
+  v("token-file", page.token_file, AnyText{});
   v("embedded-in", page.embedders, AnyText{});
   v("browser", page.opens_browser, AnyText{});
 }

@@ -52,6 +52,7 @@ struct RunPageOptions {
   bool is_served = true;
   std::string address = "127.0.0.1";  ///< address at which the page is served
   std::uint16_t port = 0;             ///< port of the page; 0 = any free one
+  std::string token_file;             ///< keeps the secret of the link; empty: a new one each time
   /// Web origins whose pages may show the page inside themselves; the run is a trial of theirs
   std::vector<std::string> embedders;
   bool opens_browser = true;  ///< for who shows the link: whether to open it

@@ -8,6 +8,7 @@
 #include "hg/scenario/run/plan_options.h"
 #include "hg/scenario/run/run_streams.h"
 #include "hg/scenario/run/single_run.h"
+#include "hg/viewer_server/access.h"
 
 namespace hg::scenario {
 namespace {
@@ -48,6 +49,9 @@ void RunPlayer::open_page(RunObserver& observer) {
   options.address = plan_.page.address;
   options.port = plan_.page.port;
   options.embedders = plan_.page.embedders;
+  if (!plan_.page.token_file.empty()) {
+    options.token = viewer_server::kept_token(plan_.page.token_file);
+  }
   const page::ShownRun first =
       way_.run ? way_.run->shown(kMovesItself) : present_->shown(fixed_by());
   page_ = std::make_unique<page::RunPage>(options, first, [this](const ScenarioOptions& world) {

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <fstream>
 #include <set>
 
 #include "hg/core/error.h"
+#include "hg/core/test/temporary_folder.h"
 
 namespace hg::viewer_server {
 namespace {
@@ -19,6 +21,33 @@ TEST(RandomToken, HasThirtyTwoHexadecimalDigitsAndNeverRepeats) {
     tokens.insert(token);
   }
   EXPECT_EQ(tokens.size(), 100u);
+}
+
+TEST(KeptToken, IsMadeOnceAndStaysItsOwnersOnly) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "token";
+  const std::string token = kept_token(file);
+  EXPECT_EQ(token.size(), 32u);
+  EXPECT_EQ(kept_token(file), token);
+  using std::filesystem::perms;
+  EXPECT_EQ(std::filesystem::status(file).permissions(), perms::owner_read | perms::owner_write);
+  std::filesystem::permissions(file, perms::group_read, std::filesystem::perm_options::add);
+  EXPECT_THROW(kept_token(file), SetupError);
+}
+
+TEST(KeptToken, RefusesFilesThatHoldNone) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "token";
+  for (const char* text : {"", "abc", "0123456789abcdef0123456789abcdeg",
+                           "0123456789abcdef0123456789abcdef0123456789abcdef"}) {
+    std::ofstream(file) << text;
+    std::filesystem::permissions(
+        file, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+    EXPECT_THROW(kept_token(file), SetupError) << text;
+  }
+  std::ofstream(file) << "0123456789abcdef0123456789abcdef\n";
+  EXPECT_EQ(kept_token(file), "0123456789abcdef0123456789abcdef");
+  EXPECT_THROW(kept_token(folder.path() / "missing" / "token"), SetupError);
 }
 
 TEST(IsSameSecret, AgreesWithEquality) {

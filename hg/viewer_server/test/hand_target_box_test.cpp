@@ -64,6 +64,34 @@ TEST(HandTargetBox, OnePageDragsUntilItLetsGoLeavesOrIsSilent) {
   EXPECT_FALSE(second_may_drag([](HandTargetBox& box) { box.leave(2); }, 0.2));
 }
 
+TEST(HandTargetBox, NamesThePageThatDragsAndTheOneThatAsksForTheHand) {
+  HandTargetBox box(kLimits);
+  EXPECT_FALSE(box.ask(2, 0.0));  // it is free
+  EXPECT_TRUE(box.put(1, dragged_to(0.1), 0.0));
+  EXPECT_EQ(box.holder(0.1).page, 1U);
+  EXPECT_EQ(box.holder(0.1).asked_by, 0U);
+  EXPECT_FALSE(box.ask(1, 0.1));
+  EXPECT_TRUE(box.ask(2, 0.1));
+  EXPECT_EQ(box.holder(0.2).asked_by, 2U);
+  box.put(1, {}, 0.2);
+  EXPECT_EQ(box.holder(0.2).page, 0U);
+  EXPECT_EQ(box.holder(0.2).asked_by, 0U);
+}
+
+TEST(HandTargetBox, ARequestForTheHandEndsAfterTenSecondsOrWithItsPage) {
+  HandTargetBox box(kLimits);
+  box.put(1, dragged_to(0.1), 0.0);
+  EXPECT_TRUE(box.ask(2, 0.0));
+  for (double now_s = 0.1; now_s < 10.3; now_s += 0.2) {
+    box.put(1, dragged_to(0.1), now_s);
+    EXPECT_EQ(box.holder(now_s).asked_by, now_s < 10.0 ? 2U : 0U) << now_s;
+  }
+  EXPECT_TRUE(box.ask(2, 10.3));
+  box.leave(2);
+  EXPECT_EQ(box.holder(10.3).asked_by, 0U);
+  EXPECT_EQ(box.holder(10.3).page, 1U);
+}
+
 TEST(HandTargetBox, ClampsTargetsToTheLimitsPlusHalfAMetre) {
   rc::check([] {
     Eigen::Vector3d p;

@@ -232,6 +232,15 @@ TEST(MessagesTs, HasTheFieldsThatAreChosenByName) {
   }
 }
 
+TEST(EncodeFrame, NamesThePageThatHasTheHand) {
+  const Scene scene = make_scene();
+  const Json json =
+      Json::parse(encode_frame(make_view(), scene.limits, 2, {.page = 1, .asked_by = 2}));
+  EXPECT_EQ(json["hand_page"], 1);
+  EXPECT_EQ(json["hand_asked_by"], 2);
+  EXPECT_EQ(frame_of(make_view())["hand_page"], 0);
+}
+
 TEST(EncodeScene, HasTheFieldsOfTheTypeScriptSide) {
   const Json json = Json::parse(encode_scene(make_scene(), 60.0));
   expect_interface(json, "Scene", "scene");

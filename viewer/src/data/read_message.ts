@@ -54,6 +54,8 @@ const FRAME: Record<keyof Omit<Frame, "type">, Test> = {
   cycle_time_max_us: or_null(is_number),
   latency: is_text,
   hand: is_object,
+  hand_page: is_number,
+  hand_asked_by: is_number,
   run_state: is_object,
   safety: is_object,
   clients: is_number,

@@ -70,6 +70,8 @@ export const scene: Scene = {
   settings: [],
   commands: [],
   refusal: "",
+  hand_stiffness_N_per_m: [250, 150, 200],
+  hand_force_max_N: 60,
   stopping: "",
 };
 
@@ -131,6 +133,8 @@ export const frame: Frame = {
   cycle_time_us: 20,
   cycle_time_max_us: 30,
   latency: "",
+  hand_page: 0,
+  hand_asked_by: 0,
   hand: { type: "hand", active: false, p_B_m: [0, 0, 0], quaternion_B_H: null, press: 0 },
   run_state: { is_paused: false, speed: 1, is_over: false, position_s: 1.5, recording: "" },
   safety: {
