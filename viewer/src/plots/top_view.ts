@@ -11,7 +11,6 @@ import {
   css_color,
   hex_color,
   make_card,
-  series_color,
 } from "./plot";
 import { index_at } from "./specs";
 
@@ -44,7 +43,7 @@ export class TopView implements Plot {
     const gantry = scene.device.joints.slice(0, scene.gantry_joints);
     if (gantry.length === 2 && gantry.every(({ type }) => type === "prismatic")) {
       const columns: [string, string] = [`device.${gantry[0]!.name}`, `device.${gantry[1]!.name}`];
-      this.tracks.unshift({ label: "gantry", color: series_color(7), columns });
+      this.tracks.unshift({ label: "gantry", color: css_color("--device"), columns });
     }
     for (const { label, color } of this.tracks) {
       const swatch = make("i");

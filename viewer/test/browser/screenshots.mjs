@@ -80,6 +80,10 @@ const PICTURES = [
   { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: at(13) },
 ];
 
+// Who knows the page needs no first steps.
+const known = (page) =>
+  page.addInitScript(() => localStorage.setItem("hapticgiant.guide", "dismissed"));
+
 const LONG = ["--duration", "3600"]; // the program waits when the script has played
 
 const wanted = process.argv.slice(3);
@@ -88,7 +92,7 @@ for (const { name, args, viewport = laptop, dark, plots, play } of PICTURES) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   const running = await start_program([program, "run", ...args, ...LONG, "--no-recording"]);
   const options = { viewport, colorScheme: dark ? "dark" : "light" };
-  const { page, close } = await open_page(browser, `${running.link}&quality=best`, options);
+  const { page, close } = await open_page(browser, `${running.link}&quality=best`, options, known);
   if (plots) await page.click("#show-plots");
   const path = resolve(root, `docs/images/${name}.png`);
   await play(page, () => page.screenshot({ path }));
