@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <sstream>
@@ -18,31 +19,105 @@ namespace {
 
 constexpr int kBadInput = 2;
 
-// The subcommand of `app` that was missed, and which there are.
-std::string missing_subcommand(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  for (const std::string& word : app.remaining()) {
-    if (word.starts_with('-')) continue;
-    return fmt::format("{}: no such subcommand of {}, did you mean '{}'?", word, app.get_name(),
-                       nearest_name(word, names));
-  }
-  return fmt::format("{}: expected a subcommand: {}", app.get_name(), fmt::join(names, ", "));
+// "hapticgiant new device": the words that lead to a command.
+std::string full_name(const CLI::App& command) {
+  const CLI::App* above = command.get_parent();
+  return above == nullptr ? command.get_name() : full_name(*above) + " " + command.get_name();
 }
 
-int explain(const CLI::App& app, const CLI::ParseError& error) {
-  const CLI::App* last = &app;
-  while (!last->get_subcommands().empty()) last = last->get_subcommands().back();
-  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr ||
-      last->get_require_subcommand_min() == 0) {
-    std::ostringstream out, errors;
-    const int code = app.exit(error, out, errors);
-    print_out(out.str());
-    print_error(errors.str());
-    return code == 0 ? 0 : kBadInput;
+// The name that `word` abbreviates or misspells; empty: none is near enough.
+std::string meant(const std::string& word, const std::vector<std::string>& names) {
+  constexpr std::size_t kShortest = 3;
+  const auto is_part = [&](const std::string& name) {
+    return word.size() >= kShortest && (name.starts_with(word) || word.starts_with(name));
+  };
+  const auto found = std::ranges::find_if(names, is_part);
+  return found != names.end() ? *found : misspelt_name(word, names);
+}
+
+// Names of the options that the help shows, without those of retire_option().
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_positional() || option->get_group().empty()) continue;
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
-  print_error("{}\nRun with --help for more information.\n", missing_subcommand(*last));
-  return kBadInput;
+  return names;
+}
+
+std::string unknown_option(const CLI::App& command, const std::string& word) {
+  std::string name = word.substr(0, word.find('='));
+  std::ranges::replace(name, '_', '-');
+  const std::string near = meant(name, option_names(command));
+  return fmt::format("{}: no such option of {}{}", word.substr(0, word.find('=')),
+                     full_name(command), near.empty() ? "" : ", did you mean '" + near + "'?");
+}
+
+// What an option is for, behind its name; empty: nothing is known of it.
+std::string help_of(const CLI::App& command, const std::string& name) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_name() == name && !option->get_description().empty())
+      return ": " + option->get_description();
+  }
+  return "";
+}
+
+// The subcommand of `app` that was missed, and which there are.
+std::string missing_subcommand(const CLI::App& app, const Advices& advices) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  const std::string all = fmt::format("{}", fmt::join(names, ", "));
+  for (const std::string& word : app.remaining()) {
+    if (word.starts_with('-')) return unknown_option(app, word);
+    const bool is_top = app.get_parent() == nullptr;
+    const auto ask = [&](const Advice& advice) {
+      return is_top && advice ? advice(word) : std::string();
+    };
+    if (const std::string text = ask(advices.meanings); !text.empty()) return text;
+    const std::string unknown = fmt::format("{}: no such subcommand of {}", word, full_name(app));
+    if (const std::string near = meant(word, names); !near.empty())
+      return fmt::format("{}, did you mean '{}'?", unknown, near);
+    if (const std::string text = ask(advices.others); !text.empty()) return text;
+    return fmt::format("{}; there are {}", unknown, all);
+  }
+  return fmt::format("{}: expected a subcommand: {}", full_name(app), all);
+}
+
+// A word that nothing of `command` takes.
+std::string unexpected_word(const CLI::App& command) {
+  const std::vector<std::string> words = command.remaining(true);
+  const auto option = std::ranges::find_if(
+      words, [](const std::string& word) { return word.starts_with('-') && word != "-"; });
+  if (option != words.end()) return unknown_option(command, *option);
+  std::string takes;
+  for (const CLI::Option* positional : command.get_options()) {
+    if (positional->get_positional()) takes += " " + positional->get_name();
+  }
+  return fmt::format("{}: one word too many, {} takes {}", words.empty() ? "" : words.front(),
+                     full_name(command), takes.empty() ? "none" : "only" + takes);
+}
+
+// What is wrong with the command line, of which `command` is the last one named.
+std::string fault_of(const CLI::App& command, const CLI::ParseError& error,
+                     const Advices& advices) {
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    if (command.get_require_subcommand_min() > 0) return missing_subcommand(command, advices);
+    constexpr std::string_view kEnd = " is required";
+    const std::string text = error.what();
+    const std::string name = text.substr(0, text.rfind(kEnd));
+    return fmt::format("{}: {}{}", full_name(command), text, help_of(command, name));
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected_word(command);
+  return error.what();
+}
+
+// The end of a help that names files of docs/, examples/, models/ or tests/.
+std::string where_files_are(const std::string& help, const std::string& folder) {
+  const auto is_named = [&](const char* start) { return help.find(start) != std::string::npos; };
+  const bool names_one = std::ranges::any_of(
+      std::array{"docs/", "examples/", "models/", "tests/reference/"}, is_named);
+  if (folder.empty() || !names_one) return "";
+  return fmt::format("\nFiles that this names are in {}\n", folder);
 }
 
 // An empty text (a variable of a script that is not set) is no file, key or name.
@@ -126,7 +201,14 @@ std::vector<std::string> offered(const Typed& typed, bool is_option) {
 Option Option::check(const OptionCheck& check) const { return Option(self_->check(check)); }
 
 Option Option::one_of(const std::vector<std::string>& values) const {
-  return Option(self_->check(CLI::IsMember(values))).suggest(values);
+  CLI::Validator member = CLI::IsMember(values);
+  member.operation([values](const std::string& text) -> std::string {
+    if (std::ranges::find(values, text) != values.end()) return "";
+    const std::string near = meant(text, values);
+    return fmt::format("expected one of {}, got '{}'{}", fmt::join(values, ", "), text,
+                       near.empty() ? "" : ", did you mean '" + near + "'?");
+  });
+  return Option(self_->check(member)).suggest(values);
 }
 
 Option Option::suggest(const std::vector<std::string>& values) const {
@@ -200,7 +282,19 @@ void Command::retire_option(const std::string& name, const std::string& instead)
 }
 
 void Command::callback(const std::function<void()>& run) const { self_->callback(run); }
+void Command::describe(const std::string& text) const { self_->description(text); }
 void Command::footer(const std::string& text) const { self_->footer(text); }
+
+void Command::group(const std::string& heading, const std::vector<std::string>& names) const {
+  for (const std::string& name : names) self_->get_subcommand(name)->group(heading);
+}
+
+std::vector<std::string> Command::subcommand_names() const {
+  std::vector<std::string> names;
+  for (const CLI::App* command : self_->get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
 void Command::require_subcommand() const { self_->require_subcommand(); }
 void Command::require_subcommand(int count) const { self_->require_subcommand(count); }
 void Command::require_subcommand(int least, int most) const {
@@ -258,8 +352,32 @@ std::optional<int> Program::parse(int argc, char** argv) {
     app_->parse(argc, argv);
     return {};
   } catch (const CLI::ParseError& error) {
-    return explain(*app_, error);
+    return explain(error);
   }
+}
+
+int Program::explain(const CLI::ParseError& error) const {
+  const CLI::App* last = app_.get();
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().back();
+  const bool needs_word = last->get_require_subcommand_min() > 0;
+  const std::vector<std::string> words = last->remaining();
+  const bool has_unknown = needs_word && std::ranges::any_of(words, [](const std::string& word) {
+                             return !word.starts_with('-');
+                           });
+  if (error.get_exit_code() == 0 && !has_unknown) {  // help or version
+    std::ostringstream out, errors;
+    app_->exit(error, out, errors);
+    print_out(out.str() + where_files_are(out.str(), shipped_files_));
+    return 0;
+  }
+  if (needs_word && last->get_parent() == nullptr && words.empty()) {
+    print_out(last->help());
+    return kBadInput;
+  }
+  const std::string fault =
+      has_unknown ? missing_subcommand(*last, advices_) : fault_of(*last, error, advices_);
+  print_error("{}\nMore: {} --help\n", fault, full_name(*last));
+  return kBadInput;
 }
 
 void refuse_option(const std::string& name, const std::string& fault) {

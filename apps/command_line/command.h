@@ -14,6 +14,7 @@
 namespace CLI {
 class App;
 class Option;
+class ParseError;
 }  // namespace CLI
 
 namespace hg::apps {
@@ -74,7 +75,12 @@ class Command {
   void retire_option(const std::string& name, const std::string& instead) const;
   /// Runs when the command line names this command.
   void callback(const std::function<void()>& run) const;
+  /// What the help begins with, above the usage.
+  void describe(const std::string& text) const;
   void footer(const std::string& text) const;
+  /// Lists these subcommands under a heading of the help.
+  void group(const std::string& heading, const std::vector<std::string>& names) const;
+  std::vector<std::string> subcommand_names() const;
   /// At least one subcommand, `count` of them, or between two numbers.
   void require_subcommand() const;
   void require_subcommand(int count) const;
@@ -100,6 +106,15 @@ class Command {
   CLI::App* self_;
 };
 
+/// Says what a word means that is no subcommand, as "FILE is a scenario: ..."; empty = unknown.
+using Advice = std::function<std::string(const std::string& word)>;
+
+/// Words that people try, and what to say of each. `meanings` come before a command that is spelt
+/// alike, `others` after it.
+struct Advices {
+  Advice meanings = {}, others = {};
+};
+
 /// A program: parses its command line and prints what is wrong with it.
 class Program {
  public:
@@ -109,13 +124,21 @@ class Program {
   Command command() const { return Command(app_.get()); }
   /// Prints `version` for --version.
   void set_version(const std::string& version);
+  void set_advices(const Advices& advices) { advices_ = advices; }
+  /// The folder of docs/, examples/ and models/; a help that names one of their files ends with it.
+  void set_shipped_files(const std::string& folder) { shipped_files_ = folder; }
   /// Parses the command line, during which callbacks run. Returns nothing where they have run;
   /// otherwise the exit code after help (0) or a fault on the command line (2), which are printed.
+  /// Without any word that is the help, with exit code 2.
   /// Lets other exceptions of callbacks pass.
   std::optional<int> parse(int argc, char** argv);
 
  private:
+  int explain(const CLI::ParseError& error) const;
+
   std::unique_ptr<CLI::App> app_;
+  Advices advices_;
+  std::string shipped_files_;
 };
 
 /// Inside a callback: ends parsing with "NAME: FAULT".

@@ -28,7 +28,6 @@ int count(const CheckReport& report, Severity severity) {
 
 void print(const CheckReport& report) {
   for (const CheckedFile& file : report.files) print_out("{}: {}\n", file.name, file.kind);
-  for (const check::Datasheet& sheet : report.datasheets) print_datasheet(sheet);
   if (!report.findings.empty()) print_out("\n");
   for (const Finding& finding : report.findings) {
     print_out("{}:{}:{}: {}: {}{}{}\n", finding.file, finding.place.line, finding.place.column,
@@ -36,6 +35,7 @@ void print(const CheckReport& report) {
               finding.what);
     if (!finding.fix.empty()) print_out("    to fix: {}\n", finding.fix);
   }
+  for (const check::Datasheet& sheet : report.datasheets) print_datasheet(sheet);
   const int faults = count(report, Severity::kFault);
   print_out("\n{}: {}, {}, {}\n", counted(static_cast<int>(report.files.size()), "file"),
             counted(faults, "fault"), counted(count(report, Severity::kWarning), "warning"),

@@ -41,6 +41,14 @@ void check_new(const NewArguments& arguments, const fs::path& output) {
   check_writable(output.string());
 }
 
+// What stands where a URDF is expected; empty: it may be one.
+std::string no_urdf(const std::string& file) {
+  const std::string text = read_file(file);
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (first != std::string::npos && text[first] == '<') return "";
+  return file + ": expected a URDF, which is XML, got another kind of file";
+}
+
 fs::path output_of(const NewArguments& arguments, const char* kind) {
   const fs::path output = arguments.output.empty()
                               ? arguments.part.urdf.stem().string() + "_" + kind + ".yaml"
@@ -228,7 +236,8 @@ void add_new(Command app, int& exit_code) {
     const Command what = command.add_subcommand(kind, text);
     what.add_option("urdf", arguments->part.urdf, "URDF of the robot or mechanism")
         .required()
-        .existing_file();
+        .existing_file()
+        .check(no_urdf);
     what.add_option("--root-link", arguments->part.root_link,
                     "first link of the part that is taken");
     what.add_option("--tip-link", arguments->part.tip_link, "last link of the part that is taken");

@@ -11,6 +11,7 @@
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/report.h"
 #include "apps/hapticgiant/run_printer.h"
+#include "apps/hapticgiant/scenario_options.h"
 #include "hg/core/error.h"
 #include "hg/core/open_file.h"
 #include "hg/core/whole_file.h"
@@ -60,6 +61,10 @@ int play(const RunArguments& arguments, std::vector<scenario::RunObserver*> obse
 }  // namespace
 
 int run(const RunArguments& arguments) {
+  if (arguments.is_list) {
+    print_shipped();
+    return 0;
+  }
   check_writable(arguments.summary, kJson);
   if (!arguments.report_to) return play(arguments, {});
   scenario::LineWriter writer(*arguments.report_to);

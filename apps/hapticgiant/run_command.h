@@ -16,6 +16,7 @@ struct RunArguments {
   std::string request;           ///< file of a plan in JSON, "-" = standard input; empty = none
   std::optional<int> report_to;  ///< descriptor for reports as JSON lines
   std::string summary;           ///< JSON file; empty = none
+  bool is_list = false;          ///< prints what is shipped, and runs nothing
 };
 
 /// Exit code: that of scenario::RunOutcome; also 4 if the summary could not be written. Throws

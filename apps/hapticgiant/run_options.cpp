@@ -157,8 +157,11 @@ void add_run(Command app, const std::string& program, int& exit_code) {
   command.footer(
       "Examples:\n"
       "  hapticgiant run                          the door, scripted hand, page in the browser\n"
+      "  hapticgiant run fr3/open_drawer          one of those of run --list\n"
       "  hapticgiant run excavator --fast --summary out.json\n"
       "  hapticgiant run door --user mouse        drag the handle in the page");
+  command.add_flag("--list", arguments->is_list,
+                   "list the scenarios, devices and twins that are ready, and run nothing");
   add_scenario_options(command, plan.world);
   add_machine_address(command, plan.machine);
   add_duration(command, plan.timing);

@@ -7,32 +7,58 @@
 
 #include "apps/command_line/command.h"
 #include "apps/command_line/option_checks.h"
+#include "apps/command_line/output.h"
 #include "hg/config/law_names.h"
+#include "hg/config/shipped_files.h"
 #include "hg/config/simulation/script_schema.h"
+#include "hg/core/error.h"
 #include "hg/scenario/run/plan_options.h"
 
 namespace hg::apps {
 namespace {
 
-std::vector<std::string> shipped_scenarios() {
-  return {"door", "excavator", "free_space", "path", "walk", "surfaces"};
+using config::ShippedFile;
+
+// Names that shells complete; none where there is no models/.
+std::vector<std::string> names_in(std::vector<ShippedFile> (*shipped)()) {
+  std::vector<std::string> names;
+  try {
+    for (const ShippedFile& file : shipped()) names.push_back(file.name);
+  } catch (const SetupError&) {
+    return {};
+  }
+  return names;
+}
+
+void print_list(const char* heading, const std::vector<ShippedFile>& files) {
+  print_out("{}\n", heading);
+  for (const ShippedFile& file : files) print_out("  {:<22} {}\n", file.name, file.title);
 }
 
 }  // namespace
 
+void print_shipped() {
+  print_list("Scenarios: hapticgiant run SCENARIO", config::shipped_scenarios());
+  print_list("\nDevices: hapticgiant run --device DEVICE --twin TWIN", config::shipped_devices());
+  print_list("\nTwins; those of an arm stand where it reaches them", config::shipped_twins());
+}
+
 void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
   command
-      .add_option(
-          "scenario", world.scenario,
-          fmt::format("scenario file, or {}, ARM/SCENARIO", fmt::join(shipped_scenarios(), ", ")))
-      .suggest(shipped_scenarios())
+      .add_option("scenario", world.scenario,
+                  "scenario file, or the name of a shipped one, as door or fr3/open_drawer "
+                  "(run --list)")
+      .suggest(names_in(config::shipped_scenarios))
       .capture_default_str();
-  command.add_option(
-      "--device", world.device,
-      "device.yaml, or the name of a shipped device (fr3), instead of the scenario's");
-  command.add_option(
-      "--twin", world.twin,
-      "twin.yaml, or the name of a shipped one (light, fr3/drawer), instead of the scenario's");
+  command
+      .add_option("--device", world.device,
+                  "device.yaml, or the name of a shipped device (fr3), instead of the scenario's")
+      .suggest(names_in(config::shipped_devices));
+  command
+      .add_option("--twin", world.twin,
+                  "twin.yaml, or the name of a shipped one (light, fr3/drawer), instead of the "
+                  "scenario's")
+      .suggest(names_in(config::shipped_twins));
   command.add_option("--plant", world.plant, "elastic: with springs, friction and delays; or ideal")
       .one_of({"elastic", "ideal"});
   command.add_option("--simulation", world.simulation, kSimulationHelp);

@@ -19,6 +19,9 @@ inline constexpr char kSimulationHelp[] =
 /// parsing.
 void add_scenario_options(Command command, scenario::ScenarioOptions& world);
 
+/// Prints the shipped scenarios, devices and twins.
+void print_shipped();
+
 /// Adds --law, which takes a preset or one of `more`, and refuses the options of earlier versions.
 /// `law` must outlive parsing.
 void add_law_option(Command command, std::string& law, std::vector<std::string> more = {});

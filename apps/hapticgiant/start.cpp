@@ -5,10 +5,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/stack.h"
 #include "apps/hapticgiant/version.h"
+#include "hg/config/shipped_files.h"
 #include "hg/core/error.h"
 
 namespace hg::apps {
@@ -36,7 +38,19 @@ bool is_completion(int argc, char** argv) {
   return argc > 1 && std::string_view(argv[1]) == kComplete;
 }
 
-int start(int argc, char** argv, const std::function<void(Command program, int& exit_code)>& add) {
+std::vector<char*> with_help_as_option(int argc, char** argv) {
+  static char help[] = "--help";
+  std::vector<char*> words(argv, argv + argc);
+  if (argc > 1 && std::string_view(argv[1]) == "help") {
+    words.erase(words.begin() + 1);
+    words.push_back(help);
+  }
+  words.push_back(nullptr);
+  return words;
+}
+
+int start(int argc, char** argv, const std::function<void(Command program, int& exit_code)>& add,
+          const Advices& advices) {
   open_standard_files();
   if (const std::string lack = provide_stack(); !lack.empty()) {
     print_error("{}\n", lack);
@@ -46,6 +60,8 @@ int start(int argc, char** argv, const std::function<void(Command program, int& 
 
   Program program("HapticGiant: feel the digital twin of any serial chain.", "hapticgiant");
   program.set_version(kVersion);
+  program.set_advices(advices);
+  program.set_shipped_files(config::installation_root().string());
   program.command().require_subcommand(1);
   int exit_code = 0;
   add(program.command(), exit_code);

@@ -13,8 +13,12 @@ namespace hg::apps {
 inline constexpr std::string_view kComplete = "__complete";
 bool is_completion(int argc, char** argv);
 
+/// The words of a command line, "help new twin" as "new twin --help", and a null at their end.
+std::vector<char*> with_help_as_option(int argc, char** argv);
+
 /// Parses the command line of a program, to which `add` adds its subcommands; running one sets
 /// `exit_code`. Returns the exit code of the process, after printing what was wrong.
-int start(int argc, char** argv, const std::function<void(Command program, int& exit_code)>& add);
+int start(int argc, char** argv, const std::function<void(Command program, int& exit_code)>& add,
+          const Advices& advices = {});
 
 }  // namespace hg::apps

@@ -17,6 +17,16 @@ constexpr int kMostJoints = 4;  // more do not fit on a line
 // without the sign of a zero
 double rounded(double value) { return std::round(100.0 * value) / 100.0 + 0.0; }
 
+// Whether bearings of the twin carry more than half of what the hand pushes and turns with.
+bool pushes_on_bearings(const CycleRecord& record) {
+  constexpr double kHand = 0.1;  // m; a torque presses on the hand with its force at this distance
+  Vector6 scale;
+  scale << Eigen::Vector3d::Ones(), Eigen::Vector3d::Constant(1.0 / kHand);
+  const Vector6 user = record.robot.w_H.cwiseProduct(scale);
+  const Vector6 carried = record.budget.structure.cwiseProduct(scale);
+  return carried.dot(user) > 0.5 * user.squaredNorm();
+}
+
 std::size_t terminal_width() {
   winsize size{};
   const bool is_known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -35,7 +45,9 @@ std::string status_text(const Sample& sample, const LimitCatalogue& limits,
     if (dof.q_index < 0 || shown++ == kMostJoints || record.twin.q_a.size() == 0) break;
     text += fmt::format("  {} {:.2f}", dof.name, rounded(record.twin.q_a[dof.q_index]));
   }
-  if (record.felt_limit >= 0) {
+  if (pushes_on_bearings(record)) {
+    text += "  on the twin's bearings: it cannot move that way";
+  } else if (record.felt_limit >= 0) {
     const std::size_t felt = record.felt_limit;
     text += "  " + viewer_server::limit_text(limits[felt], record.limits[felt]);
   } else {

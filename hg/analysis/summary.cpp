@@ -345,6 +345,14 @@ std::string Summary::losses_text(const RunFacts& facts) const {
   return text;
 }
 
+std::string Summary::events_text(const RunFacts& facts,
+                                 const std::vector<std::string>& missing) const {
+  if (!missing.empty())
+    return fmt::format("{} happened; missing: {}", events_.size(), fmt::join(missing, ", "));
+  if (!facts.expects_events) return fmt::format("{} seen, none was expected", events_.size());
+  return fmt::format("{} of {} in order", events_.size(), events_.size());
+}
+
 std::string Summary::to_text(const RunFacts& facts, const std::vector<std::string>& missing) const {
   std::string text;
   const Distribution time = cycle_time_us_.distribution();
@@ -360,10 +368,7 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
     text += line("plant", facts.plant);
     text += line("sensors", facts.sensors);
   }
-  text += line("events", missing.empty()
-                             ? fmt::format("{} of {} in order", events_.size(), events_.size())
-                             : fmt::format("{} happened; missing: {}", events_.size(),
-                                           fmt::join(missing, ", ")));
+  text += line("events", events_text(facts, missing));
   text += limits_text();
   text += hand_text();
   if (truth_.is_known()) text += truth_text();

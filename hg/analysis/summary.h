@@ -29,6 +29,7 @@ struct RunFacts {
   std::string braking;  ///< braking before limits, "alone" or "together"
   std::string plant;    ///< what moves the simulated joints; empty = a machine, or one elsewhere
   std::string sensors;  ///< errors of the simulated sensors; empty likewise
+  bool expects_events = false;  ///< the scenario has events in an order; else they are only seen
   double rate_Hz = 0.0;
   Timing timing;
   std::uint64_t dropped = 0;     ///< number of samples neither evaluated nor recorded
@@ -78,6 +79,7 @@ class Summary {
   nlohmann::ordered_json solver_json() const;
   nlohmann::ordered_json shaking_json() const;
   nlohmann::ordered_json touch_json() const;
+  std::string events_text(const RunFacts& facts, const std::vector<std::string>& missing) const;
   std::string truth_text() const;
   std::string limits_text() const;
   std::string hand_text() const;

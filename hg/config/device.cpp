@@ -7,6 +7,7 @@
 
 #include "hg/config/device_collision.h"
 #include "hg/config/device_schema.h"
+#include "hg/config/file_kind.h"
 #include "hg/config/loader.h"
 #include "hg/config/suspected_unit.h"
 #include "hg/config/tool.h"
@@ -242,7 +243,7 @@ DeviceConfig load_device(const std::filesystem::path& path, SourceReader& reader
   std::optional<model::ChainModel> chain;
   std::optional<Tool> tool;
   std::optional<UrdfText> urdf;
-  load_file(file, [&](Loader& loader) {
+  load_file_of_kind(FileKind::kDevice, file, [&](Loader& loader) {
     describe_chain(loader, draft);
     urdf = read_urdf(file, device.urdf);
     if (urdf) draft.link_names = urdf->link_names;

@@ -1,11 +1,14 @@
 #include "hg/config/file_kind.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "hg/config/loader.h"
+#include "hg/core/input_fault.h"
 
 namespace hg::config {
 namespace {
@@ -50,6 +53,37 @@ std::string no_kind(const std::vector<std::string>& given) {
   return message;
 }
 
+std::ptrdiff_t hits_of(const Signature& signature, const std::vector<std::string>& given) {
+  return std::ranges::count_if(given, [&](const std::string& key) {
+    return std::ranges::find(signature.keys, key) != signature.keys.end();
+  });
+}
+
+// What a file is instead of the kind that is wanted; empty: it may be of this kind.
+std::string what_it_is(FileKind wanted, const std::filesystem::path& path, SourceReader reader) {
+  const std::string name = path.generic_string();
+  const std::string text = reader.read(path);
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (first != std::string::npos && text[first] == '<') {
+    const bool is_made_of_it = wanted == FileKind::kDevice || wanted == FileKind::kTwin;
+    return fmt::format(
+        "is a URDF, expected a {0} file{1}", to_string(wanted),
+        is_made_of_it ? fmt::format("; 'hapticgiant new {} {}' makes one", to_string(wanted), name)
+                      : "");
+  }
+  LoaderFile file = {path, reader, Faults(name)};
+  const std::vector<std::string> given = read_keys(file);
+  const auto of_wanted = std::ranges::find(signatures(), wanted, &Signature::kind);
+  if (hits_of(*of_wanted, given) > 0) return "";
+  for (const Signature& other : signatures()) {
+    const bool has_first = std::ranges::find(given, other.keys.front()) != given.end();
+    if (!has_first && hits_of(other, given) < 2) continue;
+    return fmt::format("is a {} file, expected a {} file", to_string(other.kind),
+                       to_string(wanted));
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string_view to_string(FileKind kind) noexcept {
@@ -78,9 +112,7 @@ FileKind kind_of(const std::filesystem::path& path, SourceReader& reader) {
   FileKind best = FileKind::kDevice;
   std::ptrdiff_t most = 0;
   for (const Signature& signature : signatures()) {
-    const auto hits = std::ranges::count_if(given, [&](const std::string& key) {
-      return std::ranges::find(signature.keys, key) != signature.keys.end();
-    });
+    const std::ptrdiff_t hits = hits_of(signature, given);
     if (hits > most) {
       most = hits;
       best = signature.kind;
@@ -91,6 +123,21 @@ FileKind kind_of(const std::filesystem::path& path, SourceReader& reader) {
     file.faults.throw_if_any();
   }
   return best;
+}
+
+void load_file_of_kind(FileKind wanted, LoaderFile& file,
+                       const std::function<void(Loader&)>& read) {
+  try {
+    load_file(file, read);
+  } catch (const InputError&) {
+    std::string other;
+    try {
+      other = what_it_is(wanted, file.path, file.sources);
+    } catch (const InputError&) {  // its own faults say more
+    }
+    if (other.empty()) throw;
+    throw InputError(InputFault{.file = file.path.generic_string(), .what = other});
+  }
 }
 
 }  // namespace hg::config

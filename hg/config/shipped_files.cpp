@@ -5,6 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <fstream>
+#include <initializer_list>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -40,6 +44,12 @@ std::vector<std::string> folders_with(const std::string& file, const fs::path& f
   return names;
 }
 
+void refuse_folder(const std::string& name, std::string_view kind) {
+  std::error_code error;
+  if (!fs::is_directory(name, error)) return;
+  throw SetupError(fmt::format("{}: is a folder, expected a {} file", name, kind));
+}
+
 // A file, or the shipped one of this name in models/KINDs: NAME.yaml, or where `has_folder`
 // NAME/KIND.yaml; or that of a shipped arm, "fr3/drawer". `words` is what the option takes beside.
 fs::path find_shipped(const std::string& name, std::string_view kind, bool has_folder = false,
@@ -53,6 +63,7 @@ fs::path find_shipped(const std::string& name, std::string_view kind, bool has_f
   const fs::path of_arm = models_root() / "models" / "arms" / (name + ".yaml");
   if (fs::is_regular_file(of_arm, error)) return of_arm;
 
+  refuse_folder(name, kind);
   const std::string arm = fs::path(name).parent_path().string();
   if (const auto of_this = names_in(of_arm.parent_path(), ""); !arm.empty() && !of_this.empty()) {
     throw SetupError(fmt::format("{}: no such file, did you mean '{}/{}'? Of {} there are {}", name,
@@ -66,6 +77,35 @@ fs::path find_shipped(const std::string& name, std::string_view kind, bool has_f
   throw SetupError(fmt::format("{}: no such {} file, did you mean '{}'? Shipped are {}", name, kind,
                                nearest_name(fs::path(name).stem().string(), names),
                                fmt::join(shipped, ", ")));
+}
+
+// The first line of a file that gives one of the keys, without the key; empty: none does.
+std::optional<std::string> value_in(const fs::path& file, std::initializer_list<const char*> keys) {
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    for (const char* key : keys) {
+      const std::string begin = fmt::format("{}:", key);
+      if (!line.starts_with(begin)) continue;
+      const std::size_t at = std::min(line.find_first_not_of(' ', begin.size()), line.size());
+      return line.substr(at);
+    }
+  }
+  return {};
+}
+
+std::string title_of(const fs::path& file) {
+  return value_in(file, {"title", "name"}).value_or("");
+}
+
+// The files in models/arms/ARM that have one of the keys, as "ARM/NAME".
+void add_of_arms(std::initializer_list<const char*> keys, std::vector<ShippedFile>& found) {
+  const fs::path arms = models_root() / "models" / "arms";
+  for (const std::string& arm : folders_with("device.yaml", arms)) {
+    for (const std::string& name : names_in(arms / arm, "")) {
+      const fs::path file = arms / arm / (name + ".yaml");
+      if (value_in(file, keys)) found.push_back({fmt::format("{}/{}", arm, name), title_of(file)});
+    }
+  }
 }
 
 // The folder of an installed Python package that holds this code; empty: this is a program.
@@ -103,6 +143,33 @@ fs::path models_root() {
       "installed");
 }
 
+std::vector<ShippedFile> shipped_scenarios() {
+  const fs::path models = models_root() / "models";
+  std::vector<ShippedFile> found;
+  for (const std::string& name : names_in(models / "scenarios", ""))
+    found.push_back({name, title_of(models / "scenarios" / (name + ".yaml"))});
+  add_of_arms({"title"}, found);
+  return found;
+}
+
+std::vector<ShippedFile> shipped_devices() {
+  const fs::path models = models_root() / "models";
+  std::vector<ShippedFile> found = {
+      {"haptic_giant", title_of(models / "haptic_giant" / "device.yaml")}};
+  for (const std::string& arm : folders_with("device.yaml", models / "arms"))
+    found.push_back({arm, title_of(models / "arms" / arm / "device.yaml")});
+  return found;
+}
+
+std::vector<ShippedFile> shipped_twins() {
+  const fs::path twins = models_root() / "models" / "twins";
+  std::vector<ShippedFile> found;
+  for (const std::string& name : folders_with("twin.yaml", twins))
+    found.push_back({name, title_of(twins / name / "twin.yaml")});
+  add_of_arms({"end_effector", "free_body"}, found);
+  return found;
+}
+
 fs::path find_scenario(const std::string& name) { return find_shipped(name, "scenario"); }
 
 fs::path find_script(const std::string& name) {
@@ -121,6 +188,7 @@ fs::path find_device(const std::string& name, const SourceReader& reader) {
         models / "arms" / name / "device.yaml", models / "arms" / (name + ".yaml")}) {
     if (reader.exists(known)) return known;
   }
+  refuse_folder(name, "device");
   // the reader of a file says what is beside it
   if (fs::path(name).extension() == ".yaml") return name;
   std::vector<std::string> names = folders_with("device.yaml", models / "arms");

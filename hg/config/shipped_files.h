@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "hg/config/device.h"
 
@@ -19,6 +20,18 @@ std::filesystem::path installation_root();
 /// The folder that holds models/: the working directory, or the installation. Throws SetupError
 /// when neither has one.
 std::filesystem::path models_root();
+
+/// A file of models/, by the name that options take.
+struct ShippedFile {
+  std::string name;   ///< "door", "fr3/open_drawer", "fr3"
+  std::string title;  ///< its title, or its name in the file
+};
+
+/// Scenarios, devices and twins of models/, those of the arms last. Throw SetupError where there is
+/// no models/.
+std::vector<ShippedFile> shipped_scenarios();
+std::vector<ShippedFile> shipped_devices();
+std::vector<ShippedFile> shipped_twins();
 
 /// Finds a scenario by file name, or by the name of a shipped one ("door", "fr3/open_drawer").
 /// Throws SetupError with the nearest name.

@@ -45,7 +45,11 @@ std::vector<std::string> SourceReader::siblings(const std::filesystem::path& fil
 
 std::string SourceReader::read(const std::filesystem::path& file) {
   const std::string name = name_within(file);
-  if (!exists(file)) throw InputError(InputFault{.file = name, .what = "no such file"});
+  if (!exists(file)) {
+    std::error_code ignored;
+    const bool is_folder = !is_recorded_ && std::filesystem::is_directory(file, ignored);
+    throw InputError(InputFault{.file = name, .what = is_folder ? "is a folder" : "no such file"});
+  }
   std::string content;
   if (is_recorded_) {
     content = std::ranges::find(recorded_, name, &SourceText::name)->content;

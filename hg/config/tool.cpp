@@ -1,5 +1,6 @@
 #include "hg/config/tool.h"
 
+#include "hg/config/file_kind.h"
 #include "hg/config/loader.h"
 #include "hg/config/tool_schema.h"
 #include "hg/core/error.h"
@@ -9,7 +10,7 @@ namespace hg::config {
 Tool load_tool(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   Tool tool;
-  load_file(file, [&](Loader& loader) {
+  load_file_of_kind(FileKind::kTool, file, [&](Loader& loader) {
     describe(loader, tool);
     if (file.faults.count() > 0) return;
     if (tool.body.mass == 0.0) {

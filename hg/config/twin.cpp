@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "hg/config/file_kind.h"
 #include "hg/config/loader.h"
 #include "hg/config/twin_schema.h"
 #include "hg/core/error.h"
@@ -177,7 +178,7 @@ Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   TwinDraft draft;
   std::optional<model::ChainModel> chain;
-  load_file(file, [&](Loader& loader) {
+  load_file_of_kind(FileKind::kTwin, file, [&](Loader& loader) {
     describe_chain(loader, draft);
     chain = make_chain(file, loader, draft);
     if (chain) {

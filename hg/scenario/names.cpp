@@ -103,7 +103,8 @@ analysis::RunFacts facts_of_scenario(const config::Scenario& scenario) {
           .gantry = std::string(rendering::to_string(gantry)),
           .braking = std::string(rendering::to_string(braking)),
           .plant = plant_words(scenario.device),
-          .sensors = sensor_words(scenario.device)};
+          .sensors = sensor_words(scenario.device),
+          .expects_events = !scenario.events.empty()};
 }
 
 }  // namespace hg::scenario

@@ -138,10 +138,13 @@ class MainJob(TemporaryFolder):
         self.assertEqual(code, 1)
         self.assertIn("missing: ", out)
 
-    def test_another_twin_needs_no_scenario(self):
+    def test_another_twin_needs_no_scenario_and_gives_the_run_its_name(self):
         code, out, err = run("run", "--twin", MODELS / "twins/excavator/twin.yaml", "--fast",
-                             "--duration", "1", "--no-recording")
+                             "--duration", "1", "--recordings", self.folder)
         self.assertEqual((code, err), (0, ""), out)
+        file, = (file for file in self.folder.glob("*.mcap") if not file.is_symlink())
+        self.assertTrue(file.name.startswith("excavator_2"), file)
+        self.assertRegex(out, r"events +\d+ seen, none was expected")
 
     def test_ctrl_c_ends_cleanly_with_a_complete_recording(self):
         process = subprocess.Popen(
@@ -515,7 +518,7 @@ class BadInput(TemporaryFolder):
                                    (["experiment", "impedance", "--json", "/no/such/x"],
                                     "/no/such"),
                                    (["new"], "new: expected a subcommand: device, twin"),
-                                   ([], "hapticgiant: expected a subcommand: run, ")):
+                                   (["bridge"], "bridge: expected a subcommand: ros2")):
             code, _, err = run(*arguments)
             self.assertEqual(code, 2)
             self.assertIn(message, err)

@@ -34,7 +34,7 @@ def completed_by_bash(*words):
 class Completion(unittest.TestCase):
     def test_commands_are_those_of_the_help(self):
         text = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
-        commands = re.findall(r"^  ([a-z][\w-]*) ", text.split("Subcommands:")[1], re.MULTILINE)
+        commands = re.findall(r"^  ([a-z][\w-]*)  ", text.split("Options:")[1], re.MULTILINE)
         self.assertEqual(sorted(offered("")), sorted(commands))
         self.assertEqual(offered("expl"), ["explain"])
 
@@ -51,6 +51,10 @@ class Completion(unittest.TestCase):
         self.assertEqual(offered("run", "d"), ["door"])
         self.assertEqual(offered("run", "--seed", "3", "free"), ["free_space"])
         self.assertEqual(offered("run", "door", "d"), [])
+        self.assertEqual(offered("run", "fr3/open_d"), ["fr3/open_drawer"])
+        self.assertEqual(offered("run", "--device", "fr"), ["fr3"])
+        self.assertEqual(offered("run", "--twin", "fr3/draw"), ["fr3/drawer"])
+        self.assertEqual(offered("help", "expl"), ["explain"])
 
     def test_commands_of_other_programs_are_completed_by_them(self):
         self.assertIn("seeds", offered("experiment", ""))

@@ -225,6 +225,7 @@ class Recordings(TemporaryFolder):
         self.assertRegex(out, r"options: none -> --seed 2 --law paper")
         self.assertRegex(out, r"different from cycle \d+ \([\d.]+ s\) on")
         self.assertRegex(out, r"t_[ab] \d+ ms (later|earlier)")
+        self.assertRegex(out, r"(?m)^vibration +above 5 Hz [\d.]+ -> [\d.]+ m/s\^2 rms$")
         three = self.record("three", "door", "--duration", 4)
         code, out, _ = run("compare", one, three)
         self.assertEqual(code, 1)

@@ -26,7 +26,7 @@ def run(*words, code=0):
 def commands(program):
     """Name -> description of the subcommands in the help of a program."""
     out, _ = run(program, "--help")
-    return dict(re.findall(r"^  ([a-z][\w-]*) +(\S.*)$", out.split("Subcommands:")[1], re.MULTILINE))
+    return dict(re.findall(r"^  ([a-z][\w-]*)  +(\S.*)$", out.split("\nOptions:")[1], re.MULTILINE))
 
 
 class Offline(unittest.TestCase):

@@ -237,6 +237,19 @@ TEST(Summary, ReportsATimedOutStop) {
   EXPECT_FALSE(json["real_time"].get<bool>());
 }
 
+TEST(Summary, SaysThatEventsAreInOrderOnlyWhereSomeWereExpected) {
+  Summary summary(catalogue(), {}, 1000.0);
+  summary.add(RunEvent{.name = "upper limit", .time_s = 1.0, .what = ""});
+  const auto text = [&](const RunFacts& facts, const std::vector<std::string>& missing) {
+    return summary.to_text(facts, missing);
+  };
+  EXPECT_NE(text({}, {}).find("events       1 seen, none was expected\n"), std::string::npos);
+  EXPECT_NE(text({.expects_events = true}, {}).find("events       1 of 1 in order\n"),
+            std::string::npos);
+  EXPECT_NE(text({.expects_events = true}, {"shut"}).find("1 happened; missing: shut"),
+            std::string::npos);
+}
+
 TEST(Summary, NamesTheLawThatLeadsTheGantry) {
   const Summary summary(catalogue(), {}, 1000.0);
   RunFacts facts = {.law = "gauss", .bounds = "recoverable", .gantry = "rule"};

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hg/config/bus/machine_schema.h"
+#include "hg/config/file_kind.h"
 #include "hg/config/loader.h"
 
 namespace hg::config {
@@ -106,7 +107,7 @@ ethercat::Machine load_machine(const std::filesystem::path& path, SourceReader& 
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   file.knows_names = !joints.empty();
   ethercat::Machine machine;
-  load_file(file, [&](Loader& loader) {
+  load_file_of_kind(FileKind::kMachine, file, [&](Loader& loader) {
     describe(loader, machine, joints);
     if (file.faults.count() > 0) return;
     loader.rule(!machine.slaves.empty(), "slaves", "must not be empty");

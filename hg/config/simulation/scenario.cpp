@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "hg/config/file_kind.h"
 #include "hg/config/loader.h"
 #include "hg/config/simulation/scenario_schema.h"
 #include "hg/controller/rendering/catalogue.h"
@@ -122,7 +123,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   std::optional<Twin> twin;
   std::optional<Script> script = Script{};
   LimitCatalogue catalogue;
-  load_file(file, [&](Loader& loader) {
+  load_file_of_kind(FileKind::kScenario, file, [&](Loader& loader) {
     describe_parts(loader, draft);
     device = part(file, draft.device, [&] { return load_simulated_device(draft.device, reader); });
     twin = part(file, draft.twin, [&] { return load_twin(draft.twin, reader); });

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "hg/config/file_kind.h"
 #include "hg/config/loader.h"
 #include "hg/config/simulation/script_schema.h"
 #include "hg/core/error.h"
@@ -93,7 +94,7 @@ Script load_script(const std::filesystem::path& path, const rendering::TwinModel
   ScriptDraft draft;
   draft.start[person::kGripChannel] = 1.0;
   for (const model::Joint& joint : twin.chain.joints()) draft.joints.push_back(joint.name);
-  load_file(file, [&](Loader& loader) {
+  load_file_of_kind(FileKind::kScript, file, [&](Loader& loader) {
     describe_frame(loader, draft);
     place_doorway(loader, twin, draft);
     draft.channels = pose_channels(draft.frame);

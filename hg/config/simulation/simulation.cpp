@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "hg/config/file_kind.h"
 #include "hg/config/loader.h"
 #include "hg/config/simulation/simulation_schema.h"
 #include "hg/core/error.h"
@@ -180,7 +181,7 @@ void load_base(LoaderFile& file, const SimulationTarget& device, SimulationDraft
 void load(const std::filesystem::path& path, SourceReader& reader, const SimulationTarget& device,
           bool is_base, SimulationDraft& draft) {
   LoaderFile file = {path, reader, Faults(path.generic_string())};
-  load_file(file, [&](Loader& loader) {
+  load_file_of_kind(FileKind::kSimulation, file, [&](Loader& loader) {
     describe_base(loader, draft);
     const bool has_base = loader.is_given("base");
     loader.rule(!is_base || !has_base, "base", "a base must not have a base itself");

@@ -13,9 +13,11 @@ namespace {
 
 constexpr char kArguments[] = "arguments";  // attachment that holds the options
 
-std::string recording_name(const std::filesystem::path& scenario) {
+// The name of what is felt, as that of a file: of the twin where it is not the scenario's own.
+std::string recording_name(const ScenarioOptions& options, const config::Scenario& scenario) {
   constexpr std::string_view kMarks = "._-";
-  std::string name = scenario.stem().string();
+  std::string name = options.twin.empty() ? std::filesystem::path(options.scenario).stem().string()
+                                          : scenario.twin.name;
   for (char& c : name) {
     const bool is_plain =
         (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
@@ -56,7 +58,7 @@ recording::RecordingInfo recording_info(const config::Scenario& scenario,
                                         const ScenarioOptions& options) {
   recording::RecordingInfo info;
   static_cast<messages::RunNames&>(info) = run_names(scenario);
-  info.name = recording_name(options.scenario);
+  info.name = recording_name(options, scenario);
   info.gantry_units = gantry_units(scenario.device);
   info.manipulator_units = manipulator_units(scenario.device);
   for (const auto& source : scenario.sources) {

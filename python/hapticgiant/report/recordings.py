@@ -10,8 +10,8 @@ from . import pages
 from .runs import Run, label_of
 
 # smallest reported differences: half a cycle, a force that is not felt, a fraction of the allowed
-# excess, a share of a computing time
-TIME_S, FORCE_N, EXCESS, SHARE = 5e-4, 0.05, 5e-5, 0.02
+# excess, an acceleration that is not felt, a share of a computing time
+TIME_S, FORCE_N, EXCESS, VIBRATION, SHARE = 5e-4, 0.05, 5e-5, 5e-3, 0.02
 
 
 class Recorded(dict):
@@ -120,6 +120,16 @@ def motion(first, second):
         yield from change(what, (first[group][key], second[group][key]), least, unit, digits, scale)
 
 
+def vibration(first, second):
+    """Of the handle, where the device is simulated."""
+    before, after = first.get("reality"), second.get("reality")
+    for hertz in (5, 20) if before and after else ():
+        key = f"vibration_above_{hertz}_Hz_m_per_s2"
+        yield from change(f"above {hertz} Hz", (before.get(key), after.get(key)), VIBRATION, "m/s^2 rms", 3)
+    shaken = [each["shaking"]["duration_s"] for each in (first, second)]
+    yield from change("hand and device oscillate for", shaken, TIME_S, "s", 2)
+
+
 def timing(first, second):
     before, after = first["cycle_time_us"], second["cycle_time_us"]
     for key, what in (("median", "median"), ("p99_9", "99.9 %"), ("max", "largest")):
@@ -147,7 +157,7 @@ def compare(first, second):
     findings = {"configuration": list(configuration(first, second)),
                 "state": list(state(first, second)), "events": list(events(first, second)),
                 "forces": list(forces(a, b)), "limits": list(limits(a, b)),
-                "motion": list(motion(a, b))}
+                "motion": list(motion(a, b)), "vibration": list(vibration(a, b))}
     for heading, found in findings.items():
         say(heading, found, "the same in every cycle" if heading == "state" else "nothing changed")
     say("timing", list(timing(a, b)), "nothing changed, or not recorded")
