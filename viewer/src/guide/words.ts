@@ -171,7 +171,7 @@ export const WORDS: Entry[] = [
   {
     word: "person in the field",
     also: ["scanner"],
-    text: "Somebody besides the user stands where the laser scanner watches. The device stops.",
+    text: "A person besides the user stands where the laser scanner watches. The device stops.",
   },
   {
     word: "fault",

@@ -20,11 +20,15 @@ interface Body {
 export class SeeThrough {
   private readonly bodies: Body[] = [];
 
-  // Every shape under `root` fades alone.
-  add_shapes(root: Object3D): void {
+  // All shapes of a link of a chain fade together; those of its root, which stands, each alone.
+  add_links(root: Object3D): void {
+    const links = new Map<Object3D, Mesh[]>();
     root.traverse((part) => {
-      if (part instanceof Mesh) this.add([part]);
+      if (!(part instanceof Mesh)) return;
+      const link = link_of(part, root);
+      links.set(link, [...(links.get(link) ?? []), part]);
     });
+    for (const meshes of links.values()) this.add(meshes);
   }
 
   // Every shape under `root`, but not those under `arm`, fades when it is close to the eye.
@@ -68,6 +72,12 @@ export class SeeThrough {
     const opacities = materials.map(({ opacity }) => opacity);
     this.bodies.push({ meshes, materials, opacities, is_frame, shown: 1 });
   }
+}
+
+function link_of(part: Object3D, root: Object3D): Object3D {
+  let link = part;
+  while (link !== root && link.parent && !("isURDFLink" in link)) link = link.parent;
+  return "isURDFRobot" in link ? part : link;
 }
 
 function box_of({ geometry }: Mesh): Box3 {

@@ -77,7 +77,7 @@ export class World {
     this.root.add(this.handle.pull, this.handle.arrows);
     stage.ground(this.root);
     this.apply_layers();
-    this.see_through.add_shapes(twin.placement);
+    this.see_through.add_links(twin.placement);
     if (this.surroundings.wall) this.see_through.add_whole([this.surroundings.wall]);
     this.see_through.add_whole(this.person.parts);
     if (scene.gantry_joints > 0 && this.shoulder) {

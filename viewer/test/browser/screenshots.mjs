@@ -26,9 +26,9 @@ const tablet = { width: 820, height: 1180 };
 async function open_door(page, take) {
   const { p_B_H_m } = await frame_of(page);
   const { twin } = await scene_of(page);
-  const angles = Array.from({ length: 24 }, (_, i) => 0.05 * (i + 1));
+  const angles = Array.from({ length: 11 }, (_, i) => 0.05 * (i + 1));
   await drag_along(page, arc(p_B_H_m, twin.p_B_root_m, angles), async () => {
-    await comes_true(page, (f) => f.q_twin[0] > 0.95);
+    await comes_true(page, (f) => f.q_twin[0] > 0.4);
     await take();
   });
 }
