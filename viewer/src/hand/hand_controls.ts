@@ -2,6 +2,7 @@
 
 import type { Scene } from "../messages";
 import { element, is_typing, make, make_button, make_check_box, write } from "../page";
+import { offers_hand } from "../part";
 import type { Pixel } from "../scene/stage";
 import type { Drag, DragMode } from "./drag";
 import { hand_words } from "./hand_words";
@@ -73,7 +74,7 @@ export class HandControls {
   load(scene: Scene): void {
     const lever = has_lever(scene);
     this.press_part.hidden = !lever;
-    this.drag.can_hold = scene.source === "run";
+    this.drag.can_hold = scene.source === "run" && offers_hand();
     this.automatic.checked = this.drag.presses_while_dragging = lever;
     write(element("grip-text"), grip_text(scene));
   }

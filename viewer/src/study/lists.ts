@@ -2,7 +2,7 @@
 
 import { element, make, make_button } from "../page";
 import type { Last, OperatorState } from "./messages";
-import { exit_text, number_text, person_text, step_text } from "./operator_text";
+import { exit_text, missing_text, number_text, person_text, step_text } from "./operator_text";
 
 const shown = new Map<string, string>();
 
@@ -24,7 +24,7 @@ function unseen_mark(text: string): HTMLElement {
 export function show_people(state: OperatorState, begin: (code: string) => void): void {
   const { participants, next, participant } = state;
   const can_begin = state.can.includes("begin");
-  refresh("people-list", [participants, next, participant, can_begin], () =>
+  const is_changed = refresh("people-list", [participants, next, participant, can_begin], () =>
     participants.map((person) => {
       const { code, status, conditions } = person;
       const is_open = code === participant;
@@ -48,6 +48,14 @@ export function show_people(state: OperatorState, begin: (code: string) => void)
       return item;
     }),
   );
+  if (is_changed) scroll_to("people-list", "[data-status=open], [data-status=next]");
+}
+
+// Brings the item to the middle of its list.
+function scroll_to(id: string, selector: string): void {
+  const list = element(id);
+  const item = list.querySelector<HTMLElement>(selector);
+  if (item) list.scrollTop = item.offsetTop - list.clientHeight / 2;
 }
 
 export function show_steps({ steps, position, participant }: OperatorState): void {
@@ -68,9 +76,7 @@ export function show_steps({ steps, position, participant }: OperatorState): voi
       return item;
     }),
   );
-  const list = element("steps-list");
-  const present = list.querySelector<HTMLElement>("[aria-current]");
-  if (is_changed && present) list.scrollTop = present.offsetTop - list.clientHeight / 2;
+  if (is_changed) scroll_to("steps-list", "[aria-current]");
 }
 
 export function show_last({ last }: OperatorState): void {
@@ -79,18 +85,27 @@ export function show_last({ last }: OperatorState): void {
 }
 
 function last_content(last: Last): HTMLElement[] {
-  const { condition, repetition, exit_code, excluded, measures } = last;
-  const rows = Object.entries(measures).map(([name, { value, unit }]) =>
-    make("tr", "", row_head(name), make("td", "", number_text(value)), make("td", "unit", unit)),
+  const { condition, repetition, exit_code, excluded, missing_events, measures } = last;
+  const rows = Object.entries(measures).map(([name, { value, unit, why }]) =>
+    value === null
+      ? make("tr", "", row_head(name), none_because(why))
+      : make("tr", "", row_head(name), make("td", "", number_text(value)), make("td", "unit", unit)),
   );
   const verdict = make("p", "verdict", excluded === "" ? "counts" : `left out: ${excluded}`);
   verdict.dataset.counts = String(excluded === "");
   verdict.prepend(unseen_mark(excluded === "" ? "\u2713" : "\u26a0"));
   return [
     make("p", "", `${condition}, ${repetition}: ${exit_text(exit_code)}`),
+    ...(missing_events.length > 0 ? [make("p", "missing", missing_text(missing_events))] : []),
     verdict,
     make("table", "", make("tbody", "", ...rows)),
   ];
+}
+
+function none_because(why: string): HTMLTableCellElement {
+  const cell = make("td", "none", why === "" ? number_text(null) : `${number_text(null)}: ${why}`);
+  cell.colSpan = 2;
+  return cell;
 }
 
 function row_head(name: string): HTMLElement {

@@ -103,6 +103,7 @@ export interface Run {
 export interface Measure {
   value: number | null;
   unit: string;
+  why: string; // there is no value
 }
 
 export interface Last {
@@ -110,6 +111,7 @@ export interface Last {
   repetition: number;
   exit_code: number;
   excluded: string; // why; empty: it counts
+  missing_events: string[];
   measures: Record<string, Measure>;
 }
 

@@ -91,8 +91,8 @@ class OperatorPage {
     write(element("problem"), state.problem ?? "");
     this.show_participant_page(state);
     this.actions.show(state);
+    show_steps(state); // first: what it takes is not left for the people
     show_people(state, (code) => void this.send("begin", { code }));
-    show_steps(state);
     show_last(state);
     show_notes(state);
     show_markers(state);

@@ -105,7 +105,14 @@ export function number_text(value: number | null): string {
   return String(Number(value.toPrecision(4)));
 }
 
+// Events of the task that a trial lacks.
+export function missing_text(names: string[]): string {
+  return `${names.length === 1 ? "Missing event" : "Missing events"}: ${names.join(", ")}`;
+}
+
 // What ended it: exit codes of `hapticgiant run`.
 export function exit_text(exit_code: number): string {
-  return exit_code === 0 ? "ended well" : `exit code ${exit_code}`;
+  if (exit_code === 0) return "ended well";
+  const what = { 1: "an event is missing or a limit was exceeded", 3: "a fault stopped the device" }[exit_code];
+  return what ? `${what} (exit code ${exit_code})` : `exit code ${exit_code}`;
 }

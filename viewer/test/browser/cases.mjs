@@ -85,11 +85,11 @@ export async function hand_alone({ browser, program, expect }) {
   await close();
   const trial = await open_page(browser, cheap(`${program.link}&show=trial`));
   const shown = await trial.page.evaluate(() =>
-    ["emergency-stop", "panel", "vitals", "transport", "scenario-field"].filter((id) =>
+    ["emergency-stop", "panel", "vitals", "transport", "scenario-field", "hand", "grip"].filter((id) =>
       document.getElementById(id).checkVisibility(),
     ),
   );
-  expect(shown.join(" ") === "emergency-stop panel vitals", `a trial without scenario and time: ${shown.join(" ")}`);
+  expect(shown.join(" ") === "emergency-stop panel vitals", `a trial without scenario, time and hand: ${shown.join(" ")}`);
   await trial.close();
 }
 

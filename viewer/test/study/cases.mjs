@@ -159,6 +159,42 @@ export async function escape_stops({ browser, mock, links, expect }) {
   expect(mock.notes[0].text === "seS note" && phase === "ready", "letters of a note are no commands");
 }
 
+export async function operator_sees_what_is_missing({ browser, mock, links, expect }) {
+  const { page } = await open(browser, links.operator);
+  lead_to(mock, "trial");
+  await until(page, () => document.body.dataset.phase === "ready");
+  await page.keyboard.press("s");
+  await until(page, () => document.body.dataset.phase === "running");
+  await page.keyboard.press("e");
+  await until(page, () => !document.getElementById("last").hidden);
+  const text = await page.evaluate(() => document.getElementById("last").innerText);
+  expect(/Missing event: closed/.test(text), "the last trial names the event that is missing");
+  expect(/time_s\s+no value: event 'closed' is missing/.test(text), "and why a measure has no value");
+  const [name, whole] = await page.evaluate(() =>
+    ["#last th", "#last table"].map((part) => document.querySelector(part).getBoundingClientRect().width),
+  );
+  expect(name > 0.3 * whole, `which leaves room for its name: ${name.toFixed(0)} of ${whole.toFixed(0)} px`);
+  expect_none(expect, await violations(page));
+}
+
+export async function the_list_shows_who_is_there({ browser, mock, links, expect }) {
+  const { page } = await open(browser, links.operator, { viewport: { width: 1280, height: 720 } });
+  mock.reset();
+  mock.people = mock.people.flatMap((person, i) =>
+    Array.from({ length: 5 }, (_, k) => ({ ...person, code: `Q${i}${k}`, steps: person.steps.map((each) => ({ ...each })) })),
+  );
+  mock.do_begin({ code: "Q23" });
+  mock.send_state();
+  await until(page, () => document.querySelector('#people-list [data-status="open"]') !== null);
+  const is_seen = await page.evaluate(() => {
+    const [list, item] = ["#people-list", '#people-list [data-status="open"]'].map((each) =>
+      document.querySelector(each).getBoundingClientRect(),
+    );
+    return item.top >= list.top && item.bottom <= list.bottom;
+  });
+  expect(is_seen, "of twenty participants, the one who is there is in view");
+}
+
 export async function operator_sees_loss({ browser, mock, links, expect }) {
   const { page } = await open(browser, links.operator);
   lead_to(mock, "trial");

@@ -372,8 +372,8 @@ export class Mock {
     const { condition, repetition } = this.step;
     this.stop_run();
     this.last = {
-      condition, repetition, exit_code: 0, excluded: "",
-      measures: { time_s: { value: 11.972, unit: "s" }, peak_force_N: { value: 37.74, unit: "N" }, path_length_m: { value: 2.931, unit: "m" }, checkpoints: { value: null, unit: "" } },
+      condition, repetition, exit_code: 1, excluded: "", missing_events: ["closed"],
+      measures: { time_s: { value: null, unit: "s", why: "event 'closed' is missing" }, peak_force_N: { value: 37.74, unit: "N", why: "" }, path_length_m: { value: 2.931, unit: "m", why: "" }, checkpoints: { value: 3, unit: "", why: "" } },
     };
     this.step.is_done = true;
     this.arrive();

@@ -3,7 +3,7 @@ import { afterEach, describe, expect, it, vi } from "vitest";
 import { name_and_question } from "../../src/study/items";
 import { html_of } from "../../src/study/markdown";
 import type { Form, OperatorState, Step } from "../../src/study/messages";
-import { event_rows, hint_text, number_text, person_text, phase_text, step_text } from "../../src/study/operator_text";
+import { event_rows, exit_text, hint_text, missing_text, number_text, person_text, phase_text, step_text } from "../../src/study/operator_text";
 import { clock_text, hand_link } from "../../src/study/screens";
 import { words_of } from "../../src/study/words";
 import { is_stop_of_container } from "../../src/stop_button";
@@ -47,6 +47,20 @@ describe("texts of the operator's page", () => {
       "P02, step 2 of 2: Trial 1, door. Start plays it again.",
     );
     expect(person_text({ code: "P02", conditions: [], status: "begun", done: 3, of: 9 })).toBe("begun, 3 of 9");
+  });
+
+  it("name what ended a trial", () => {
+    expect([0, 1, 3, -9].map(exit_text)).toEqual([
+      "ended well",
+      "an event is missing or a limit was exceeded (exit code 1)",
+      "a fault stopped the device (exit code 3)",
+      "exit code -9",
+    ]);
+  });
+
+  it("name the events that a trial lacks", () => {
+    expect(missing_text(["closed"])).toBe("Missing event: closed");
+    expect(missing_text(["opened", "closed"])).toBe("Missing events: opened, closed");
   });
 
   it("list expected events in their order, each happening once, then the others", () => {
