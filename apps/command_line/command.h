@@ -109,8 +109,7 @@ class Command {
 /// Says what a word means that is no subcommand, as "FILE is a scenario: ..."; empty = unknown.
 using Advice = std::function<std::string(const std::string& word)>;
 
-/// Words that people try, and what to say of each. `meanings` come before a command that is spelt
-/// alike, `others` after it.
+/// `meanings` are asked before a command that is spelt alike is named, `others` after it.
 struct Advices {
   Advice meanings = {}, others = {};
 };
@@ -128,9 +127,8 @@ class Program {
   /// The folder of docs/, examples/ and models/; a help that names one of their files ends with it.
   void set_shipped_files(const std::string& folder) { shipped_files_ = folder; }
   /// Parses the command line, during which callbacks run. Returns nothing where they have run;
-  /// otherwise the exit code after help (0) or a fault on the command line (2), which are printed.
-  /// Without any word that is the help, with exit code 2.
-  /// Lets other exceptions of callbacks pass.
+  /// otherwise the exit code after help (0) or a fault on the command line (2), which are printed;
+  /// without any word, that is the help with 2. Lets other exceptions of callbacks pass.
   std::optional<int> parse(int argc, char** argv);
 
  private:
