@@ -3,7 +3,8 @@
 In docs/**/*.md a block ```yaml NAME or ```hqp NAME is a file, ```yaml +NAME is more of it; a block
 ```sh holds commands. Both are taken in the order of the document, in a folder of its own that
 starts as a copy of models/examples. Every command must end with exit code 0, or with N where its line ends with
-`# exit N`. Lines that a ```text block shows after a command are not compared. The tests that
+`# exit N`. Lines that a ```text block shows after a command are not compared. Pages that belong together
+are run in one folder, as by a reader of both, and write no file twice. The tests that
 docs/concepts/threats_*.csv name must be there, and the pages must not be too long.
 
     docs_test.py PROGRAM
@@ -21,6 +22,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 import docs_size  # noqa: E402
 
+# the second has the mechanism of the first
+TOGETHER = [ROOT / "docs" / "start" / name for name in ("own_device_own_twin.md", "cookbook.md")]
 BLOCK = re.compile(r"^```(sh|yaml|hqp)(?: +(\S+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -39,6 +42,8 @@ def run_document(document, program, folder):
     for kind, name, body in BLOCK.findall(document.read_text()):
         if kind != "sh":
             if name:
+                if name[0] != "+" and (folder / name).exists():
+                    faults.append(f"{document.name}: {name} is there already, of this page or one before it")
                 with open(folder / name.lstrip("+"), "a" if name[0] == "+" else "w") as file:
                     file.write(body)
             continue
@@ -73,12 +78,14 @@ def missing_tests(tables):
 def main():
     program = str(pathlib.Path(sys.argv[1]).resolve())
     total, faults = 0, []
-    for document in sorted((ROOT / "docs").rglob("*.md")):
+    alone = set((ROOT / "docs").rglob("*.md")) - set(TOGETHER)
+    for documents in [TOGETHER, *([document] for document in sorted(alone))]:
         with tempfile.TemporaryDirectory() as folder:
             shutil.copytree(ROOT / "models" / "examples", folder, dirs_exist_ok=True)
-            count, found = run_document(document, program, pathlib.Path(folder))
-        total += count
-        faults += found
+            for document in documents:
+                count, found = run_document(document, program, pathlib.Path(folder))
+                total += count
+                faults += found
     threats = sorted((ROOT / "docs" / "concepts").glob("threats_*.csv"))
     faults += missing_tests(threats)
     if not threats:
