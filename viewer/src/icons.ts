@@ -13,6 +13,7 @@ const PATHS = {
     "M17.6 17.6L19 19M5 19l1.4-1.4M17.6 6.4L19 5",
   dark: "M20 14.5A8.5 8.5 0 0 1 9.5 4 8.5 8.5 0 1 0 20 14.5z",
   headset: "M3 8h18v9h-6l-3-3-3 3H3z",
+  keys: "M3 6h18v12H3zM7 10h.01M11 10h.01M15 10h.01M7 14h10",
   table: "M4 5h16v14H4zM4 10h16M4 14.5h16M10 5v14",
   picture: "M4 5h16v14H4zM4 16l5-5 4 4 3-3 4 4",
 } as const;

@@ -5,7 +5,11 @@ import { Store } from "./data/store";
 import { token, watch_token } from "./data/token";
 import { Drag } from "./hand/drag";
 import { HandControls } from "./hand/hand_controls";
-import type { Event, Frame, Scene, Vec3 } from "./messages";
+import type { Pixel } from "./hand/hand_view";
+import { HolderNote, is_taken } from "./hand/holder_note";
+import { PushKeys } from "./hand/push_keys";
+import { KeysDialog } from "./keys_dialog";
+import type { Frame, Hand, Scene, Vec3 } from "./messages";
 import { element, write } from "./page";
 import { ChangePanel } from "./panels/change";
 import { EventsPanel } from "./panels/events";
@@ -17,19 +21,14 @@ import { Tabs } from "./panels/tabs";
 import { PlotDrawer } from "./plots/drawer";
 import { Glossary } from "./guide/glossary";
 import { show_guide } from "./guide/guide";
-import { Legend } from "./guide/legend";
 import { ReplayBar } from "./replay_bar";
-import { show_part } from "./part";
-import { Cameras } from "./scene/cameras";
-import { FirstView } from "./scene/first_view";
-import { Layers } from "./scene/layers";
-import { type Pixel, Stage } from "./scene/stage";
-import { World } from "./scene/world";
+import { offers_hand, show_part } from "./part";
+import { open_picture } from "./picture/open_picture";
+import type { Picture } from "./picture/picture";
 import { connection_text } from "./text";
 import { StopButton } from "./stop_button";
-import { current_theme, on_theme_change, start_theme } from "./theme";
-import { Toolbar, build_view_tools } from "./toolbar";
-import { Headset } from "./xr/headset";
+import { start_theme } from "./theme";
+import { Toolbar, build_page_tools } from "./toolbar";
 
 const NEWS_S = 1; // a page that is opened later gets earlier events, too
 const PANEL_GAP_MS = 66; // words and bars change 15 times a second
@@ -45,6 +44,7 @@ export interface PageState {
   readonly is_drawn: boolean; // the scene of the newest run
   readonly unreadable: number;
   readonly is_hand_tracked: boolean; // by a headset
+  readonly is_flat: boolean; // without WebGL
   readonly handle_on_screen: Pixel | null;
   on_screen(p_B: Vec3): Pixel;
 }
@@ -57,54 +57,43 @@ declare global {
 
 class Page {
   private readonly store = new Store();
-  private readonly stage = new Stage(element("stage"));
-  private readonly cameras = new Cameras(this.stage.camera, this.stage.canvas);
-  private readonly layers = new Layers(() => {
-    this.world?.apply_layers();
-    this.legend.apply_layers();
-  });
-  private readonly legend = new Legend(this.layers);
-  private readonly drag = new Drag(
-    this.stage,
-    this.cameras,
-    () => this.live_frame,
-    (hand) => this.store.connection.send(hand),
-  );
-  private readonly hand_controls = new HandControls(this.drag);
-  private readonly headset: Headset;
+  private readonly notices = new Notices();
+  private readonly picture: Picture;
+  private readonly drag: Drag;
+  private readonly push_keys: PushKeys;
+  private readonly hand_controls: HandControls;
+  private readonly holder = new HolderNote(this.store.commands, () => this.store.page);
   private readonly tabs = new Tabs();
   private readonly stop = new StopButton(this.store.commands, () => this.tabs.show("safety"));
   private readonly toolbar = new Toolbar(this.store, () => this.tabs.show("safety"));
   private readonly replay = new ReplayBar(this.store);
   private readonly feel = new FeelPanel(element("feel"));
   private readonly joints = new JointsPanel(element("joints"));
-  private readonly change = new ChangePanel(element("change"), this.store.commands);
+  private readonly change = new ChangePanel(element("change"), this.store.commands, (problem) =>
+    this.notices.show("change", problem),
+  );
   private readonly safety = new SafetyPanel(
     element("safety"),
     this.store.commands,
     () => this.store.page,
   );
   private readonly events = new EventsPanel(element("events"));
-  private readonly notices = new Notices();
   private readonly plots = new PlotDrawer(element("plots"), this.store);
-  private world: World | null = null;
-  private has_looked = false; // the first view has been chosen
-  private readonly happened: Event[] = [];
   private frames = 0;
   private panels_ms = 0;
 
   constructor() {
-    build_view_tools(this.cameras, this.layers, () => this.plots.toggle());
-    this.headset = new Headset(
-      this.stage,
-      () => this.live_frame,
-      (hand) => this.store.connection.send(hand),
-      (problem) => this.notices.show("headset", problem),
-    );
-    on_theme_change(() => this.world?.paint(current_theme()));
-    this.stage.on_resize = () => this.cameras.resize();
+    const live_frame = (): Frame | null => this.live_frame;
+    const send = (hand: Hand): void => void this.store.connection.send(hand);
+    this.picture = open_picture({ live_frame, send, report: (key, text) => this.notices.show(key, text) });
+    this.drag = new Drag(this.picture.view, live_frame, send);
+    this.drag.on_refused = () => this.explain_hand();
+    this.hand_controls = new HandControls(this.drag);
+    this.push_keys = new PushKeys(this.drag, this.picture.view);
+    const keys = new KeysDialog();
+    build_page_tools(this.plots, () => keys.toggle());
     this.listen();
-    this.stage.run((now_ms) => this.draw(now_ms));
+    this.picture.run((now_ms) => this.draw(now_ms));
     setInterval(() => this.show_link(), TICK_MS); // also while nothing is drawn
     document.addEventListener("visibilitychange", () => {
       if (document.hidden) this.store.holder.end();
@@ -117,15 +106,14 @@ class Page {
       on_frame: (frame) => this.note(frame),
       on_event: (event) => {
         this.events.add(event);
-        this.happened.push(event);
-        if (event.run === this.world?.scene.run) this.world.happened(event.name);
+        this.picture.happened(event);
         const { scene, frame } = this.store;
         const is_new = scene?.source === "run" && event.time_s > (frame?.time_s ?? Infinity) - NEWS_S;
         if (event.name === "request" && is_new) this.notices.show("request", event.text);
       },
       on_events_cleared: () => {
         this.events.clear();
-        this.happened.length = 0;
+        this.picture.forget_events();
       },
       on_values: (values) => this.change.take(values),
       on_connection: (is_connected) => {
@@ -152,12 +140,19 @@ class Page {
 
   private release(): void {
     this.drag.release();
-    this.headset.release();
+    this.picture.release();
+  }
+
+  // Why it cannot be taken hold of.
+  private explain_hand(): void {
+    const { frame, page } = this.store;
+    if (frame && is_taken(frame, page)) {
+      this.notices.show("hand", `Page ${frame.hand_page} has the hand: ask for it, or wait until it lets go.`);
+    }
   }
 
   private async load(scene: Scene): Promise<void> {
     this.release(); // the handle is elsewhere now
-    const is_other = this.world?.scene.device.name !== scene.device.name; // than seen so far, if any
     this.toolbar.load(scene);
     this.stop.load(scene);
     this.replay.load(scene);
@@ -166,24 +161,10 @@ class Page {
     this.safety.load(scene);
     this.plots.load(scene);
     this.hand_controls.load(scene);
+    this.push_keys.load(scene);
+    this.holder.load(scene);
     document.body.dataset.source = scene.source;
-    this.stage.load(scene.box, scene.floor_z_m);
-    if (is_other) {
-      this.cameras.frame(scene.box);
-      if (document.body.dataset.show === "hand" && scene.checkpoints.length > 0) choose_top_view();
-      this.has_looked = false;
-    }
-    const world = await World.load(scene, this.stage, this.layers).catch((error: unknown) => {
-      this.notices.show("world", error instanceof Error ? error.message : String(error));
-      return null;
-    });
-    if (this.store.scene !== scene) return world?.dispose(); // another one has come meanwhile
-    if (!world) return;
-    this.world?.dispose();
-    this.world = world;
-    for (const { run, name } of this.happened) if (run === scene.run) world.happened(name); // before it was there
-    world.paint(current_theme());
-    this.stage.scene.add(world.root);
+    await this.picture.load(scene, () => this.store.scene === scene);
   }
 
   // What has to be right whatever is drawn: whether it is known, the state, and the stop.
@@ -196,28 +177,26 @@ class Page {
 
   private note(frame: Frame): void {
     this.frames += 1;
-    this.world?.note(frame);
-  }
-
-  private look(world: World, frame: Frame): void {
-    this.has_looked = true;
-    const first = new FirstView(world.sights(frame));
-    this.cameras.begin_with(() => first.sight(this.stage.camera));
+    const { scene, page } = this.store;
+    if (!scene) return;
+    this.picture.note(frame);
+    const is_ours = scene.source === "run" && offers_hand() && !is_taken(frame, page);
+    if (!is_ours && this.drag.can_hold) this.drag.release(); // another page was faster
+    this.drag.can_hold = is_ours;
+    document.body.dataset.hand = is_ours ? "free" : "taken";
   }
 
   private draw(now_ms: number): void {
     const { scene, frame } = this.store;
-    if (!scene || !frame || this.world?.scene !== scene) return;
-    if (!this.has_looked) this.look(this.world, frame);
-    this.legend.show(frame.ghost !== null);
-    const target = this.drag.target_m ?? this.headset.target_m ?? seen_target(frame);
-    this.world.show(frame, target, this.drag.axis);
-    const is_first_person = this.cameras.current === "first person" || this.headset.is_worn;
-    this.world.person.hide_body(is_first_person);
-    if (!this.headset.is_worn) this.cameras.update(frame.p_B_H_m, this.world.person.eyes);
-    const follows = frame.mode === "running" && !frame.run_state.is_over;
-    const handle_px = follows && !this.headset.is_worn ? this.stage.on_screen(frame.p_B_H_m) : null;
-    this.hand_controls.show(handle_px, Math.hypot(...frame.force_N));
+    if (!scene || !frame) return;
+    const { picture } = this;
+    if (picture.scene === scene) {
+      const target = this.drag.target_m ?? picture.target_m ?? seen_target(frame);
+      picture.show(frame, target, this.drag.axis);
+      const follows = frame.mode === "running" && !frame.run_state.is_over && this.drag.can_hold;
+      const handle_px = follows && !picture.is_worn ? picture.on_screen(frame.p_B_H_m) : null;
+      this.hand_controls.show(handle_px, Math.hypot(...frame.force_N));
+    }
     if (now_ms - this.panels_ms < PANEL_GAP_MS) return;
     this.panels_ms = now_ms;
     this.show_panels(scene, frame);
@@ -227,6 +206,7 @@ class Page {
     this.show_link();
     this.toolbar.show(frame);
     this.replay.show(scene, frame);
+    this.holder.show(frame);
     if (!element("feel").hidden) this.feel.show(scene, frame);
     if (!element("joints").hidden) this.joints.show(scene, frame);
     if (!element("safety").hidden) this.safety.show(frame);
@@ -238,8 +218,8 @@ class Page {
   }
 
   state(): PageState {
-    const { store, stage, headset } = this;
-    const is_drawn = (): boolean => this.world !== null && this.world.scene === store.scene;
+    const { store, picture } = this;
+    const is_drawn = (): boolean => picture.scene !== null && picture.scene === store.scene;
     const count = (): number => this.frames;
     return Object.freeze({
       get scene() {
@@ -267,12 +247,13 @@ class Page {
         return store.unreadable;
       },
       get is_hand_tracked() {
-        return headset.is_tracked;
+        return picture.is_hand_tracked;
       },
+      is_flat: element("stage").classList.contains("is-flat"),
       get handle_on_screen() {
-        return store.frame && stage.on_screen(store.frame.p_B_H_m);
+        return store.frame && picture.on_screen(store.frame.p_B_H_m);
       },
-      on_screen: (p_B: Vec3) => stage.on_screen(p_B),
+      on_screen: (p_B: Vec3) => picture.on_screen(p_B),
     });
   }
 }
@@ -280,13 +261,6 @@ class Page {
 // Where another page drags the handle to.
 function seen_target(frame: Frame): Vec3 | null {
   return frame.hand.active ? frame.hand.p_B_m : null;
-}
-
-// From where a person who drags the handle to places on the floor sees them.
-function choose_top_view(): void {
-  const views = element<HTMLSelectElement>("view");
-  views.value = "top";
-  views.dispatchEvent(new globalThis.Event("change"));
 }
 
 function show_connection(is_connected: boolean): void {

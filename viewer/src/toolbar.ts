@@ -6,11 +6,9 @@ import type { Store } from "./data/store";
 import { hand_words } from "./hand/hand_words";
 import { type Icon, icon } from "./icons";
 import type { Frame, Scene } from "./messages";
-import { element, is_typing, make, make_button, make_check_box, write } from "./page";
+import { element, is_typing, make, make_button, write } from "./page";
 import { fill_choice } from "./panels/change";
-import type { Cameras, View } from "./scene/cameras";
-import { VIEWS } from "./scene/cameras";
-import { LAYERS, LAYER_NAMES, type Layers } from "./scene/layers";
+import type { PlotDrawer } from "./plots/drawer";
 import { heading_text, mode_text, note_text, time_text } from "./text";
 import { choose_theme, current_theme, on_theme_change } from "./theme";
 
@@ -49,6 +47,7 @@ export class Toolbar {
     const stop = icon_button("stop", "Controlled stop", () => send("stop"));
     this.speed.id = "speed";
     this.speed.title = "Speed of time";
+    this.speed.setAttribute("aria-label", this.speed.title);
     this.speed.addEventListener("change", () => send("speed", Number(this.speed.value)));
     element("transport").append(this.pause, step, restart, stop, this.speed);
     this.by_command = [
@@ -68,6 +67,7 @@ export class Toolbar {
   load(scene: Scene): void {
     const heading = heading_text(scene);
     document.title = heading;
+    write(element("title"), heading);
     const { scenario, scenarios } = scene.choices;
     fill_choice(this.scenario, scenarios, scenario);
     this.scenario.selectedOptions[0]!.text = this.scenario.title = heading;
@@ -126,6 +126,7 @@ export class Toolbar {
     this.is_paused = is_paused;
     this.pause.replaceChildren(icon(is_paused ? "play" : "pause"));
     this.pause.title = is_paused ? "Continue (P)" : "Pause (P)";
+    this.pause.setAttribute("aria-label", this.pause.title);
     this.pause.setAttribute("aria-pressed", String(is_paused));
   }
 
@@ -147,28 +148,12 @@ export class Toolbar {
   }
 }
 
-// Buttons at the right: camera, layers, plots, theme.
-export function build_view_tools(
-  cameras: Cameras,
-  layers: Layers,
-  toggle_plots: () => boolean,
-): void {
-  const views = make("select");
-  views.id = "view";
-  views.title = "Camera (1 to 4)";
-  views.append(...VIEWS.map((view) => new Option(hand_words()[view], view)));
-  const choose = (view: View): void => {
-    views.value = view;
-    cameras.choose(view);
-  };
-  views.addEventListener("change", () => choose(views.value as View));
-  addEventListener("keydown", (event) => {
-    const view = VIEWS[Number(event.key) - 1];
-    if (view && !is_typing(event)) choose(view);
-  });
+// Buttons at the right that every picture has: plots, theme, keys.
+export function build_page_tools(drawer: PlotDrawer, toggle_keys: () => void): void {
   const plots = icon_button("plots", "Plots", () => {
-    plots.setAttribute("aria-pressed", String(toggle_plots()));
+    plots.setAttribute("aria-pressed", String(drawer.toggle()));
   });
+  plots.setAttribute("aria-pressed", String(drawer.is_shown));
   plots.id = "show-plots";
   const theme = icon_button("dark", "Light or dark", () => {
     choose_theme(current_theme().is_dark ? "light" : "dark");
@@ -177,26 +162,7 @@ export function build_view_tools(
   const paint = (): void => theme.replaceChildren(icon(current_theme().is_dark ? "light" : "dark"));
   on_theme_change(paint);
   paint();
-  element("view-tools").append(views, layers_menu(layers), plots, theme);
-}
-
-function layers_menu(layers: Layers): HTMLElement {
-  const list = make("div", "menu");
-  for (const name of LAYER_NAMES) {
-    const box = make_check_box(LAYERS[name].title, layers.is_shown(name), (is_shown) =>
-      layers.show(name, is_shown),
-    );
-    box.querySelector("input")!.id = `show-${name}`;
-    list.append(box);
-  }
-  const head = make("summary", "icon-button");
-  head.title = "What is shown";
-  head.setAttribute("aria-label", head.title);
-  head.append(icon("layers"));
-  const menu = make("details", "menu-box", head, list);
-  menu.id = "layers";
-  addEventListener("pointerdown", (event) => {
-    if (!menu.contains(event.target as Node)) menu.open = false;
-  });
-  return menu;
+  const keys = icon_button("keys", "Keys (?)", toggle_keys);
+  keys.id = "show-keys";
+  element("view-tools").append(plots, theme, keys);
 }

@@ -1,22 +1,10 @@
 // The user's hand: pointer, keys and buttons become hand targets. Works with mouse, pen and touch.
 
-import { Raycaster, Vector2, Vector3 } from "three";
-
 import type { Frame, Hand, Quaternion, Vec3 } from "../messages";
-import type { Cameras } from "../scene/cameras";
-import type { Stage } from "../scene/stage";
-import {
-  type Ray,
-  add,
-  drag_normal,
-  meet_axis,
-  meet_plane,
-  subtract,
-  within_reach,
-} from "./drag_plane";
+import { add, drag_normal, meet_axis, meet_plane, subtract, within_reach } from "./drag_plane";
+import type { HandView, Pixel } from "./hand_view";
 import { turned } from "./turn";
 
-const GRAB_RADIUS_PX = 40;
 const RESEND_MS = 33; // the program takes half a second of silence for a closed page
 const SPIN_PX = 8; // that a notch of the wheel or a key turns by: 3.7 degrees
 const REACH = 1.2; // m; a target never leads the handle by more
@@ -30,7 +18,8 @@ export class Drag {
   chosen_mode: DragMode = "plane"; // by button
   key_mode: DragMode | null = null; // by a key that is held
   presses_while_dragging = false;
-  can_hold = true; // false: it is a recording
+  can_hold = true; // false: it is a recording, or another page has the hand
+  on_refused = (): void => {}; // the hand was reached for and cannot be held
   private pointer: number | null = null; // that holds the handle
   private readonly others = new Set<number>(); // pointers that move the camera
   private target: Vec3 | null = null; // null = the hand is off the handle
@@ -38,19 +27,18 @@ export class Drag {
   private anchor: Vec3 = [0, 0, 0]; // plane or axis of the drag go through it
   private offset: Vec3 = [0, 0, 0]; // from where the pointer meets the plane to the target
   private turn_start: Quaternion = [0, 0, 0, 1];
-  private last_pointer = new Vector2();
-  private turn_pointer = new Vector2();
+  private last_pointer: Pixel = { x: 0, y: 0 };
+  private turn_pointer: Pixel = { x: 0, y: 0 };
+  private push: (() => Vec3) | null = null; // by keys: from the handle to the target
   private last_mode: DragMode = "plane";
   private is_pressing = false; // by key or button
 
   constructor(
-    private readonly stage: Stage,
-    private readonly cameras: Cameras,
+    private readonly view: HandView,
     private readonly frame: () => Frame | null,
     private readonly send: (hand: Hand) => void,
   ) {
-    // on the parent and first, so that the orbit controls find themselves switched off
-    const area = stage.canvas.parentElement!;
+    const { area } = view;
     area.addEventListener("pointerdown", (event) => this.grab(event), { capture: true });
     area.addEventListener("pointermove", (event) => this.move(event));
     area.addEventListener("wheel", (event) => this.take_wheel(event), { passive: false });
@@ -63,11 +51,15 @@ export class Drag {
     });
     document.addEventListener("visibilitychange", () => document.hidden && this.release());
     addEventListener("pagehide", () => this.release());
-    setInterval(() => this.target && this.send_hand(), RESEND_MS);
+    setInterval(() => this.resend(), RESEND_MS);
   }
 
   get is_dragging(): boolean {
     return this.pointer !== null;
+  }
+
+  get is_pushing(): boolean {
+    return this.push !== null;
   }
 
   get target_m(): Vec3 | null {
@@ -85,14 +77,29 @@ export class Drag {
   }
 
   get press(): number {
-    return this.is_pressing || (this.is_dragging && this.presses_while_dragging) ? 1 : 0;
+    const is_moving = this.is_dragging || this.is_pushing;
+    return this.is_pressing || (is_moving && this.presses_while_dragging) ? 1 : 0;
   }
 
   // Pressing alone takes hold of the handle where it is.
   set_pressing(is_pressing: boolean): void {
-    if (this.is_pressing === is_pressing || !this.can_hold) return;
+    if (this.is_pressing === is_pressing) return;
+    if (!this.can_hold) return is_pressing ? this.on_refused() : undefined;
     this.is_pressing = is_pressing;
-    if (!this.is_dragging) this.target = is_pressing ? this.handle : null;
+    if (!this.is_dragging && !this.is_pushing) this.target = is_pressing ? this.handle : null;
+    this.send_hand();
+  }
+
+  // Keys push the handle towards `offset` from where it is; null: the last key is released. A
+  // pointer that drags goes first.
+  set_push(offset: (() => Vec3) | null): void {
+    if (this.is_dragging) return;
+    if (offset !== null && !this.can_hold) return this.on_refused();
+    const was_pushing = this.is_pushing;
+    this.push = offset;
+    if (offset !== null) return this.resend();
+    if (!was_pushing) return;
+    this.target = this.is_pressing ? this.handle : null;
     this.send_hand();
   }
 
@@ -100,7 +107,7 @@ export class Drag {
   spin(notches: number): void {
     const start = this.turn ?? this.frame()?.quaternion_B_H;
     if (!this.is_dragging || !start) return;
-    this.turn = turned(start, SPIN_PX * notches, 0, this.view);
+    this.turn = turned(start, SPIN_PX * notches, 0, this.view.direction());
     if (this.mode === "turn") this.restart();
     this.send_hand();
   }
@@ -113,12 +120,12 @@ export class Drag {
 
   release(): void {
     this.is_pressing = false;
+    this.push = null;
     if (this.target === null) return;
     this.pointer = null;
     this.target = null;
     this.turn = null;
-    this.cameras.controls.enabled = this.cameras.current !== "first person";
-    this.stage.canvas.style.cursor = "";
+    this.view.release();
     this.send_hand();
   }
 
@@ -129,16 +136,18 @@ export class Drag {
   private grab(event: PointerEvent): void {
     const handle = this.handle;
     if (this.is_dragging) return event.stopPropagation(); // a second finger
-    const is_free = handle !== null && this.can_hold && this.others.size === 0;
-    if (!is_free || event.button !== 0 || !this.is_near(event, handle)) {
+    const is_meant =
+      handle !== null && this.others.size === 0 && event.button === 0 && this.is_near(event, handle);
+    if (is_meant && !this.can_hold) this.on_refused();
+    if (!is_meant || !this.can_hold) {
       this.others.add(event.pointerId); // also the second finger of two that pinch
       return;
     }
     event.stopPropagation();
+    this.push = null;
     this.pointer = event.pointerId;
-    this.cameras.controls.enabled = false;
-    this.stage.canvas.setPointerCapture(event.pointerId);
-    this.last_pointer.set(event.clientX, event.clientY);
+    this.view.capture(event.pointerId);
+    this.last_pointer = pixel_of(event);
     this.target = handle;
     this.restart();
     this.send_hand();
@@ -148,15 +157,16 @@ export class Drag {
     const handle = this.handle;
     if (event.pointerId !== this.pointer) {
       const can_grab = this.can_hold && !this.is_dragging && handle && this.is_near(event, handle);
-      this.stage.canvas.style.cursor = can_grab ? "grab" : "";
+      this.view.show_cursor(can_grab ? "grab" : "");
       return;
     }
-    this.stage.canvas.style.cursor = "grabbing";
-    this.last_pointer.set(event.clientX, event.clientY);
+    this.view.show_cursor("grabbing");
+    this.last_pointer = pixel_of(event);
     if (this.mode !== this.last_mode) this.restart();
     if (this.mode === "turn") {
-      const move = this.last_pointer.clone().sub(this.turn_pointer);
-      this.turn = turned(this.turn_start, move.x, move.y, this.view);
+      const { x, y } = this.turn_pointer;
+      const [right, down] = [this.last_pointer.x - x, this.last_pointer.y - y];
+      this.turn = turned(this.turn_start, right, down, this.view.direction());
       return;
     }
     const met = this.meet();
@@ -173,33 +183,26 @@ export class Drag {
     this.last_mode = this.mode;
     this.anchor = this.target ?? [0, 0, 0];
     this.turn_start = this.turn ?? this.frame()?.quaternion_B_H ?? [0, 0, 0, 1];
-    this.turn_pointer.copy(this.last_pointer);
+    this.turn_pointer = this.last_pointer;
     const met = this.meet();
     this.offset = met ? subtract(this.anchor, met) : [0, 0, 0];
   }
 
   private meet(): Vec3 | null {
     if (this.mode === "turn") return null;
-    if (this.axis) return meet_axis(this.ray(), this.anchor, this.axis);
-    return meet_plane(this.ray(), this.anchor, drag_normal(this.view));
-  }
-
-  private get view(): Vec3 {
-    return this.stage.camera.getWorldDirection(new Vector3()).toArray();
-  }
-
-  private ray(): Ray {
-    const area = this.stage.canvas.getBoundingClientRect();
-    const caster = new Raycaster();
-    const x = (2 * (this.last_pointer.x - area.left)) / area.width - 1;
-    const y = 1 - (2 * (this.last_pointer.y - area.top)) / area.height;
-    caster.setFromCamera(new Vector2(x, y), this.stage.camera);
-    return { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() };
+    const ray = this.view.ray(this.last_pointer);
+    if (this.axis) return meet_axis(ray, this.anchor, this.axis);
+    return meet_plane(ray, this.anchor, drag_normal(this.view.direction()));
   }
 
   private is_near(event: PointerEvent, handle: Vec3): boolean {
-    const { x, y } = this.stage.on_screen(handle);
-    return Math.hypot(event.clientX - x, event.clientY - y) <= GRAB_RADIUS_PX;
+    return this.view.is_near(pixel_of(event), handle);
+  }
+
+  private resend(): void {
+    const { handle } = this;
+    if (this.push && handle) this.target = add(handle, this.push());
+    if (this.target) this.send_hand();
   }
 
   private send_hand(): void {
@@ -207,4 +210,8 @@ export class Drag {
     const active = this.target !== null;
     this.send({ type: "hand", active, p_B_m, quaternion_B_H: this.turn, press: this.press });
   }
+}
+
+function pixel_of({ clientX, clientY }: PointerEvent): Pixel {
+  return { x: clientX, y: clientY };
 }

@@ -2,9 +2,8 @@
 
 import type { Scene } from "../messages";
 import { element, is_typing, make, make_button, make_check_box, write } from "../page";
-import { offers_hand } from "../part";
-import type { Pixel } from "../scene/stage";
 import type { Drag, DragMode } from "./drag";
+import type { Pixel } from "./hand_view";
 import { hand_words } from "./hand_words";
 
 const MODES: ["plane" | "z" | "turn", string][] = [
@@ -74,7 +73,6 @@ export class HandControls {
   load(scene: Scene): void {
     const lever = has_lever(scene);
     this.press_part.hidden = !lever;
-    this.drag.can_hold = scene.source === "run" && offers_hand();
     this.automatic.checked = this.drag.presses_while_dragging = lever;
     write(element("grip-text"), grip_text(scene));
   }
@@ -89,8 +87,9 @@ export class HandControls {
       grip.dataset.side = label_side(x, element("grip-text").offsetWidth, area.width);
       grip.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     }
-    grip.dataset.held = String(this.drag.is_dragging);
-    if (this.drag.is_dragging) {
+    const is_held = this.drag.is_dragging || this.drag.is_pushing;
+    grip.dataset.held = String(is_held);
+    if (is_held) {
       grip.dataset.known = "true"; // the label has done its work
       write(element("grip-text"), `${force_N.toFixed(0)} N`);
     }

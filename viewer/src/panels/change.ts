@@ -1,18 +1,19 @@
 // What of the run can be changed: twin, law, person, and a form field for each Setting of the
-// scene.
+// scene; undo, reset and save.
 
 import type { Commands, Refusal } from "../data/commands";
 import type { Choice, Scene, Setting, Values } from "../messages";
-import { make } from "../page";
-import { twin_text, unit_text } from "../text";
-import { limited, number_text, place_of, value_at } from "./slider";
+import { download, make, make_button } from "../page";
+import { twin_text } from "../text";
+import { UndoList, changed, changes_yaml } from "./changed_values";
+import { SettingField } from "./setting_field";
 
 const CHOICES = [
   ["twin", "Twin", "twins"],
   ["law", "Law", "laws"],
   ["person", "Who holds the handle", "people"],
 ] as const;
-const SLIDER_STEPS = 1000;
+const UNLIMITED = "had no limit; start the run again (R) to put that back";
 const PLAYED = "A recording is played: its twin, law and person cannot be changed.";
 
 export function fill_choice(select: HTMLSelectElement, choices: Choice[], chosen: string): void {
@@ -40,16 +41,28 @@ export function headings(settings: Setting[]): string[] {
 }
 
 export class ChangePanel {
-  private fields: Field[] = [];
+  private fields: SettingField[] = [];
   private scene: Scene | null = null;
+  private values: (number | null)[] = []; // as the program said last
+  private readonly steps = new UndoList();
+  private readonly undo = make_button("Undo", "Takes the last change back", () => this.take_back());
+  private readonly reset = make_button("Reset", "All values as in the files of the run", () =>
+    this.put_back_all(),
+  );
+  private readonly save = make_button("Save YAML", "The changed values, for a scenario file", () =>
+    this.save_yaml(),
+  );
 
   constructor(
     private readonly section: HTMLElement,
     private readonly commands: Commands,
+    private readonly report: (problem: string) => void,
   ) {}
 
   load(scene: Scene): void {
     this.scene = scene;
+    this.steps.clear();
+    this.values = scene.settings.map(({ value }) => value);
     this.section.replaceChildren();
     const refusal = scene.source === "recording" ? PLAYED : scene.refusal;
     if (refusal !== "") this.section.append(make("p", "quiet", refusal));
@@ -64,7 +77,15 @@ export class ChangePanel {
       this.section.append(make("label", "field", make("span", "", title), select));
     }
     const can_set = scene.commands.includes("set");
-    this.fields = scene.settings.map((setting) => new Field(setting, this.commands, can_set));
+    const set = (setting: Setting, value: number, before: number | null): void => {
+      this.steps.note(setting.name, before, performance.now());
+      this.commands.set(setting.name, value);
+    };
+    this.fields = scene.settings.map((setting) => new SettingField(setting, set, can_set));
+    if (can_set && this.fields.length > 0) {
+      this.section.append(make("div", "buttons", this.undo, this.reset, this.save));
+    }
+    this.show_tools();
     for (const heading of headings(scene.settings)) {
       const fields = this.fields.filter(({ setting }) => heading_of(setting) === heading);
       this.section.append(make("h2", "", heading), ...fields.map(({ part }) => part));
@@ -72,6 +93,8 @@ export class ChangePanel {
   }
 
   take(values: Values): void {
+    this.values = values.values;
+    this.show_tools();
     for (const [i, field] of this.fields.entries()) field.take(values.values[i] ?? null);
   }
 
@@ -79,6 +102,8 @@ export class ChangePanel {
   refuse(refusal: Refusal): void {
     if (!this.scene) return;
     if (refusal.command === "set") {
+      this.steps.forget_last(refusal.name);
+      this.show_tools();
       this.fields.find(({ setting }) => setting.name === refusal.name)?.refuse(refusal.reason);
       return;
     }
@@ -87,79 +112,35 @@ export class ChangePanel {
       if (command === refusal.command && select) select.value = this.scene.choices[command];
     }
   }
-}
 
-class Field {
-  readonly part: HTMLElement;
-  private readonly slider = make("input");
-  private readonly box = make("input");
-  private readonly note = make("small", "problem");
-  private value: number | null;
-
-  constructor(
-    readonly setting: Setting,
-    private readonly commands: Commands,
-    can_set: boolean,
-  ) {
-    this.slider.type = "range";
-    this.slider.min = "0";
-    this.slider.max = String(SLIDER_STEPS);
-    this.slider.setAttribute("aria-label", setting.label);
-    this.box.type = "text";
-    this.box.inputMode = "decimal";
-    this.box.placeholder = "unlimited";
-    this.box.dataset.setting = setting.name;
-    this.slider.disabled = this.box.disabled = !can_set;
-    this.value = setting.value;
-    const unit = make("span", "unit", unit_text(setting.unit));
-    const head = make("label", "", make("span", "", setting.label), this.box, unit);
-    this.part = make("div", "setting", head, this.slider, this.note);
-    this.part.title = setting.help;
-    this.note.hidden = true;
-    this.slider.addEventListener("input", () => {
-      this.send(value_at(Number(this.slider.value) / SLIDER_STEPS, setting));
-    });
-    this.box.addEventListener("change", () => this.read_box());
-    this.part.addEventListener("focusout", () => this.show()); // what came meanwhile
-    this.show();
+  private show_tools(): void {
+    const has_changes = changed(this.scene?.settings ?? [], this.values).length > 0;
+    this.undo.disabled = this.steps.is_empty;
+    this.reset.disabled = this.save.disabled = !has_changes;
   }
 
-  take(value: number | null): void {
-    this.value = value;
-    const is_in_use = this.part.contains(document.activeElement);
-    if (!is_in_use) this.show();
+  private take_back(): void {
+    const step = this.steps.take();
+    if (step) this.put_back(step.name, step.from);
+    this.show_tools();
   }
 
-  refuse(reason: string): void {
-    this.note.textContent = reason;
-    this.note.hidden = false;
-    this.show();
-  }
-
-  private read_box(): void {
-    const value = Number(this.box.value.trim().replace(",", "."));
-    const { min, max } = this.setting;
-    if (
-      this.box.value.trim() === "" ||
-      !Number.isFinite(value) ||
-      value !== limited(value, this.setting)
-    ) {
-      this.refuse(`a number from ${number_text(min)} to ${number_text(max)} is expected`);
-    } else {
-      this.send(value);
+  private put_back_all(): void {
+    this.steps.clear();
+    for (const { setting } of changed(this.scene?.settings ?? [], this.values)) {
+      this.put_back(setting.name, setting.value);
     }
   }
 
-  private send(value: number): void {
-    this.note.hidden = true;
-    this.value = value;
-    this.commands.set(this.setting.name, value);
-    this.show();
+  private put_back(name: string, value: number | null): void {
+    if (value === null) this.report(`${name} ${UNLIMITED}`);
+    else this.commands.set(name, value);
   }
 
-  private show(): void {
-    this.box.value = this.value === null ? "" : number_text(this.value);
-    const place = this.value === null ? 1 : place_of(this.value, this.setting);
-    this.slider.value = String(Math.round(SLIDER_STEPS * place));
+  private save_yaml(): void {
+    if (!this.scene) return;
+    const { choices, settings } = this.scene;
+    const text = changes_yaml(choices.scenario, settings, this.values);
+    download(new Blob([text], { type: "application/yaml" }), "changes.yaml");
   }
 }

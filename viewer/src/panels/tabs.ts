@@ -1,6 +1,7 @@
-// Tabs above the sections of the panel.
+// Tabs above the sections of the panel: by click, or by arrows from the one that has the focus.
 
 import { element, make_button } from "../page";
+import { remember, remembered } from "../remembered";
 
 const TABS = [
   ["feel", "Feel", "Why do I feel this?"],
@@ -12,24 +13,47 @@ const TABS = [
 
 type Tab = (typeof TABS)[number][0];
 
+const STORED_AS = "hapticgiant.tab";
+const NAMES = TABS.map(([tab]) => tab);
+const STEPS: Record<string, number> = { ArrowLeft: -1, ArrowRight: 1 };
+
 export class Tabs {
   private readonly buttons = new Map<Tab, HTMLButtonElement>();
 
   constructor() {
+    const list = element("tabs");
     for (const [tab, text, title] of TABS) {
       const button = make_button(text, title, () => this.show(tab));
       button.setAttribute("role", "tab");
+      button.setAttribute("aria-controls", tab);
       button.id = `tab-${tab}`;
       this.buttons.set(tab, button);
-      element("tabs").append(button);
+      list.append(button);
+      const part = element(tab);
+      part.setAttribute("role", "tabpanel");
+      part.setAttribute("aria-labelledby", button.id);
+      part.tabIndex = 0; // it scrolls by keys
     }
-    this.show("feel");
+    list.addEventListener("keydown", (event) => this.step(event));
+    this.show(remembered(STORED_AS, NAMES, "feel"));
   }
 
   show(shown: Tab): void {
     for (const [tab, button] of this.buttons) {
       button.setAttribute("aria-selected", String(tab === shown));
+      button.tabIndex = tab === shown ? 0 : -1;
       element(tab).hidden = tab !== shown;
     }
+    remember(STORED_AS, shown);
+  }
+
+  private step(event: KeyboardEvent): void {
+    const step = STEPS[event.key];
+    const from = NAMES.findIndex((tab) => !element(tab).hidden);
+    if (step === undefined || from < 0) return;
+    const next = NAMES[(from + step + NAMES.length) % NAMES.length]!;
+    event.preventDefault();
+    this.show(next);
+    this.buttons.get(next)!.focus();
   }
 }

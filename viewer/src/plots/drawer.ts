@@ -4,6 +4,7 @@ import type { Store } from "../data/store";
 import { icon } from "../icons";
 import type { Scene } from "../messages";
 import { download, make, make_button } from "../page";
+import { remember, remembered } from "../remembered";
 import { on_theme_change } from "../theme";
 import { Histogram } from "./histogram";
 import { LimitLines } from "./limit_lines";
@@ -13,6 +14,7 @@ import { TimePlot } from "./time_plot";
 import { TopView } from "./top_view";
 
 const STORED_AS = "hapticgiant.plots";
+const OPEN_AS = "hapticgiant.plots_are";
 const FIRST_SHOWN = ["force", "twin", "twin-position", "limits", "top-view"];
 const LIVE_S = 20;
 const [SHORTEST_S, LONGEST_S] = [1, 120];
@@ -39,6 +41,7 @@ export class PlotDrawer {
     private readonly part: HTMLElement,
     private readonly store: Store,
   ) {
+    part.hidden = remembered(OPEN_AS, ["shown", "hidden"], "hidden") === "hidden";
     this.pause_button = make_button("pause", "Plots are paused; double click continues", () => {
       this.hold(this.held ? null : this.range);
     });
@@ -57,10 +60,15 @@ export class PlotDrawer {
     on_theme_change(() => this.rebuild());
   }
 
+  get is_shown(): boolean {
+    return !this.part.hidden;
+  }
+
   toggle(): boolean {
     this.part.hidden = !this.part.hidden;
+    remember(OPEN_AS, this.part.hidden ? "hidden" : "shown");
     this.rebuild();
-    return !this.part.hidden;
+    return this.is_shown;
   }
 
   load(scene: Scene): void {

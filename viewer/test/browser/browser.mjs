@@ -10,10 +10,9 @@ const FLAGS = [
   "--disable-quic",
   "--disable-sync",
   "--no-first-run",
-  "--use-gl=angle",
-  "--use-angle=swiftshader", // WebGL without graphics hardware
-  "--enable-unsafe-swiftshader",
 ];
+const SPACE = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]; // without graphics hardware
+export const NO_SPACE = ["--disable-gpu", "--disable-webgl", "--disable-3d-apis"];
 export const PATIENCE = { timeout: 180_000 }; // a machine may be slow; nothing is timed
 
 // Starts `command` and waits for the link of its page.
@@ -38,11 +37,12 @@ export function start_program(command) {
   });
 }
 
-export function start_browser() {
+// `graphics`: WebGL, or NO_SPACE for none.
+export function start_browser(graphics = SPACE) {
   const is_root = process.getuid?.() === 0;
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: is_root ? [...FLAGS, "--no-sandbox"] : FLAGS,
+    args: [...FLAGS, ...graphics, ...(is_root ? ["--no-sandbox"] : [])],
   });
 }
 

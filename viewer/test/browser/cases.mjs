@@ -1,7 +1,7 @@
 // What the page does, in a browser, with the program. Each case gets {browser, program, command,
 // expect}; none depends on how fast the machine is.
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -234,9 +234,40 @@ export async function changes_reach_the_program({ browser, program, expect }) {
   await first.page.press(box, "Enter");
   const note = await first.page.locator(".setting .problem:visible").first().textContent();
   expect(/is expected/.test(note), `out of range is refused: ${note}`);
-  expect((await first.page.inputValue(box)) === wanted, "and put back");
+  const kept = await first.page.inputValue(box);
+  expect(kept === String(10 * max + 1), `and stays in the box to be corrected: ${kept}`);
+  await first.page.fill(box, String(10 * max + 2));
+  await first.page.press(box, "Enter");
+  const still = await first.page.getAttribute(box, "aria-invalid");
+  expect(still === "true", "another one that is out of range is refused, too");
+  await first.page.getByRole("button", { name: `keep ${wanted}`, exact: true }).click();
+  expect((await first.page.inputValue(box)) === wanted, "it is put back by its button");
+  await undo_reset_save({ page: first.page, box, wanted, value, expect });
   await first.close();
   await second.close();
+}
+
+// The tools above the values: the box holds `wanted`, the files `value`.
+async function undo_reset_save({ page, box, wanted, value, expect }) {
+  const says = (text) =>
+    page_comes_to(page, ([field, wish]) => Number(document.querySelector(field).value) === Number(wish), [box, text]);
+  const press = (name) => page.getByRole("button", { name, exact: true }).click();
+  const other = String(Number((0.25 * value).toPrecision(3)));
+  await page.waitForTimeout(1600); // not the same drag of a slider
+  await page.fill(box, other);
+  await page.press(box, "Enter");
+  expect(await says(other), `another value is taken: ${other}`);
+  const [download] = await Promise.all([page.waitForEvent("download"), press("Save YAML")]);
+  const text = readFileSync(await download.path(), "utf8");
+  expect(text.includes("changes:") && text.includes(other), `it is saved: ${text.split("\n").at(-2)}`);
+  await press("Undo");
+  expect(await says(wanted), `undo goes back to ${wanted}`);
+  await press("Reset");
+  expect(await says(String(Number(value.toPrecision(4)))), `reset goes back to the files' ${value}`);
+  const is_off = await page_comes_to(page, () =>
+    [...document.querySelectorAll("#change .buttons button")].slice(1).every((button) => button.disabled),
+  );
+  expect(is_off, "with nothing changed there is nothing to reset or save");
 }
 
 export async function operator_stops_it_and_starts_it_again({ browser, program, expect }) {
@@ -498,4 +529,25 @@ export async function program_is_restarted({ browser, program, command, expect }
   expect(true, "the new link works in the same tab");
   await again.stop();
   await close();
+}
+
+export async function link_survives_a_restart({ browser, program, command, expect }) {
+  const asking = await open_page(browser, cheap(program.link));
+  const is_program = await follows(asking.page, "restart");
+  await asking.close();
+  if (!is_program) return;
+  const folder = mkdtempSync(join(tmpdir(), "hapticgiant-"));
+  const kept = [...command, "--token-file", join(folder, "token"), "--port"];
+  const first = await start_program([...kept, "0"]);
+  const { page, close } = await open_page(browser, cheap(first.link));
+  await first.stop();
+  await page.waitForFunction(() => document.body.dataset.connected === "false", null, PATIENCE);
+  const again = await start_program([...kept, new URL(first.link).port]);
+  expect(again.link === first.link, "the program started again prints the same link");
+  await drawn(page);
+  const { time_s } = await frame_of(page);
+  expect(await comes_true(page, (f) => f.time_s > time_s), "and the open page continues by itself");
+  await close();
+  await again.stop();
+  rmSync(folder, { recursive: true });
 }

@@ -10,6 +10,7 @@ import { fileURLToPath } from "node:url";
 
 import { start_browser, start_program } from "./browser.mjs";
 import * as cases from "./cases.mjs";
+import * as everyone from "./everyone_cases.mjs";
 import * as guide from "./guide_cases.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -34,7 +35,7 @@ function expect(is_true, text) {
 
 const browser = await start_browser();
 const stopping = [];
-for (const [name, run] of Object.entries({ ...cases, ...guide })) {
+for (const [name, run] of Object.entries({ ...cases, ...everyone, ...guide })) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   console.log(`-- ${name.replaceAll("_", " ")}`);
   const program = await start_program(command);

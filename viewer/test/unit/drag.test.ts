@@ -1,6 +1,7 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
+import { CameraView } from "../../src/hand/camera_view";
 import { Drag } from "../../src/hand/drag";
 import type { Hand, Vec3 } from "../../src/messages";
 import { frame } from "./examples";
@@ -35,9 +36,9 @@ describe("Drag", () => {
       setPointerCapture: () => {},
       getBoundingClientRect: () => ({ left: 0, top: 0, width: 200, height: 200 }),
     };
+    const stage = { canvas, camera, on_screen: () => HANDLE_PX } as never;
     drag = new Drag(
-      { canvas, camera, on_screen: () => HANDLE_PX } as never,
-      { controls, current: "orbit" } as never,
+      new CameraView(stage, { controls, current: "orbit" } as never),
       () => ({ ...frame, p_B_H_m, quaternion_B_H: [0, 0, 0, 1] }),
       (hand) => sent.push(hand),
     );

@@ -1,0 +1,74 @@
+// All keys of the page: opened by ? or its button. It does not cover the stop or take keys away from
+// the page, so it is no modal dialog; Esc stops, as everywhere, and closes it.
+
+import { LARGEST_N, RISE_N_PER_S } from "./hand/key_push";
+import { element, is_typing, make, make_button } from "./page";
+
+const PUSH = `${RISE_N_PER_S} N more for each second that the key is held, up to ${LARGEST_N} N; a released key lets go at once`;
+
+const GROUPS: [string, [string, string][]][] = [
+  [
+    "Stop",
+    [["Esc", "emergency stop, always"]],
+  ],
+  [
+    "Hand",
+    [
+      ["W A S D or arrows", `push: away, left, towards you, right (${PUSH})`],
+      ["Q E", "push down, up; while the mouse drags: turn left, right"],
+      ["Space", "press the lever"],
+      ["Shift or Z, X, Y, Alt", "while the mouse drags: up and down, along x, along y, turn"],
+    ],
+  ],
+  [
+    "Time and view",
+    [
+      ["P", "pause, continue"],
+      [".", "one step"],
+      ["R", "from the start"],
+      ["1 2 3 4", "camera: orbit, follow, top, first person"],
+      ["?", "these keys"],
+    ],
+  ],
+];
+
+export class KeysDialog {
+  private readonly dialog = element<HTMLDialogElement>("keys");
+  private opened_from: Element | null = null;
+
+  constructor() {
+    const close = make_button("Close", "Esc stops the device as well", () => this.close());
+    close.id = "close-keys";
+    const title = make("h2", "", "Keys");
+    title.id = "keys-title";
+    const lists = GROUPS.flatMap(([name, keys]) => [
+      make("h3", "", name),
+      make("dl", "", ...keys.flatMap(([key, what]) => [make("dt", "", key), make("dd", "", what)])),
+    ]);
+    const touch = make(
+      "p",
+      "quiet",
+      "By touch: drag the ring at the handle; drag elsewhere to look around, two fingers to move and zoom.",
+    );
+    this.dialog.append(title, ...lists, touch, close);
+    addEventListener("keydown", (event) => this.take_key(event));
+  }
+
+  toggle(): void {
+    if (this.dialog.open) return this.close();
+    this.opened_from = document.activeElement;
+    this.dialog.show();
+    element("close-keys").focus();
+  }
+
+  private close(): void {
+    if (!this.dialog.open) return;
+    this.dialog.close();
+    if (this.opened_from instanceof HTMLElement) this.opened_from.focus();
+  }
+
+  private take_key(event: KeyboardEvent): void {
+    if (event.key === "Escape") this.close();
+    else if (event.key === "?" && !is_typing(event)) this.toggle();
+  }
+}

@@ -1,0 +1,75 @@
+// The bodies of a run for flat pictures: where their outer points are now.
+
+import { type Material, Mesh, type Object3D, Vector3 } from "three";
+
+import type { Frame, Scene, Vec3 } from "../messages";
+import { type ChainView, load_chain } from "../scene/chain_view";
+import { SurfacesView } from "../scene/surfaces";
+import { surroundings_of } from "../scene/surroundings";
+import { outer_points } from "./outline";
+
+export type Kind = "device" | "twin" | "surface" | "wall";
+
+export interface Body {
+  kind: Kind;
+  is_touched: boolean; // a surface that pushes
+  points: Vec3[]; // outer ones, in B
+}
+
+const as_is = (): void => {};
+
+export class Bodies {
+  private readonly groups: [Kind, Object3D][];
+  private fixed: Body[] | null = null; // what does not move
+
+  private constructor(
+    readonly scene: Scene,
+    private readonly device: ChainView,
+    private readonly twin: ChainView,
+  ) {
+    const surfaces = new SurfacesView(scene.surfaces);
+    surfaces.show([0, 0, 0], null);
+    this.groups = [
+      ["wall", surroundings_of(scene, scene.floor_z_m).group],
+      ["surface", surfaces.group],
+    ];
+  }
+
+  static async load(scene: Scene): Promise<Bodies> {
+    const [device, twin] = await Promise.all([
+      load_chain(scene.device, as_is),
+      load_chain(scene.twin, as_is),
+    ]);
+    return new Bodies(scene, device, twin);
+  }
+
+  pose(frame: Frame): void {
+    this.device.pose(frame.q_device);
+    this.twin.pose(frame.q_twin);
+  }
+
+  // What lies behind first.
+  list(contact: Frame["contact"]): Body[] {
+    this.fixed ??= this.groups.flatMap(([kind, group]) => bodies_of(kind, group));
+    const surfaces = this.fixed.filter(({ kind }) => kind === "surface");
+    for (const [i, body] of surfaces.entries()) body.is_touched = contact?.surface === i;
+    return [
+      ...this.fixed,
+      ...bodies_of("twin", this.twin.placement),
+      ...bodies_of("device", this.device.placement),
+    ];
+  }
+}
+
+function bodies_of(kind: Kind, root: Object3D): Body[] {
+  root.updateMatrixWorld(true);
+  const bodies: Body[] = [];
+  root.traverseVisible((part) => {
+    if (!(part instanceof Mesh) || (part.material as Material).visible === false) return;
+    const points = outer_points(part.geometry).map((point) =>
+      new Vector3().copy(point).applyMatrix4(part.matrixWorld).toArray(),
+    );
+    bodies.push({ kind, is_touched: false, points: points as Vec3[] });
+  });
+  return bodies;
+}
