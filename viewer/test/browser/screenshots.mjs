@@ -80,6 +80,16 @@ const PICTURES = [
   { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: at(13) },
 ];
 
+// A busy machine may have no data for a moment: not in a picture.
+async function take_fresh(page, path) {
+  const is_stale = () => page.evaluate(() => document.body.dataset.stale === "true");
+  for (let is_fresh = false; !is_fresh;) {
+    await page.waitForFunction(() => document.body.dataset.stale === "false");
+    await page.screenshot({ path });
+    is_fresh = !(await is_stale());
+  }
+}
+
 // Who knows the page needs no first steps.
 const known = (page) =>
   page.addInitScript(() => localStorage.setItem("hapticgiant.guide", "dismissed"));
@@ -95,7 +105,7 @@ for (const { name, args, viewport = laptop, dark, plots, play } of PICTURES) {
   const { page, close } = await open_page(browser, `${running.link}&quality=best`, options, known);
   if (plots) await page.click("#show-plots");
   const path = resolve(root, `docs/images/${name}.png`);
-  await play(page, () => page.screenshot({ path }));
+  await play(page, () => take_fresh(page, path));
   console.log(path);
   await close();
   await running.stop();
