@@ -1,6 +1,8 @@
 #include "hg/simulator/simulation.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -25,6 +27,15 @@ CommandFrame silence(const Truth& truth) {
   command.tau_m = VectorM::Zero(truth.theta_m.size());
   command.dq_p = VectorP::Zero(truth.q_p.size());
   return command;
+}
+
+// The encoder of a joint that turns without end shows one turn: its drive goes the short way.
+void go_short_way(const SensedDevice& device, const VectorM& q_m, VectorM& command) noexcept {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  for (Eigen::Index i = 0; i < std::min(q_m.size(), command.size()); ++i) {
+    if (!device.is_endless[static_cast<std::size_t>(i)]) continue;
+    command[i] += kTurn * std::nearbyint((q_m[i] - command[i]) / kTurn);
+  }
 }
 
 }  // namespace
@@ -53,6 +64,9 @@ void Simulation::step(const CommandFrame& command, const HardwareFaults& faults)
   faults_ = faults;
   const std::size_t slot = (first_waiting_ + waiting_count_) % waiting_.size();
   waiting_[slot] = {command, steps_ + latency_steps_};
+  if (config_.sensed.has_position_drives) {
+    go_short_way(config_.sensed, truth_.q_m, waiting_[slot].command.q_m);
+  }
   ++waiting_count_;
   const bool is_new = command.sequence == 0 || command.sequence != last_number_;
   silent_s_ = is_new ? 0.0 : silent_s_ + config_.sensed.period;

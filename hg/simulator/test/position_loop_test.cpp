@@ -151,5 +151,21 @@ TEST(Simulation, PositionDrivesAreAsLateAsTheirCommands) {
   EXPECT_EQ(moved_after(8e-3) - moved_after(0.0), 8);
 }
 
+// A joint without ends where its encoder begins a new turn: the answer to what it shows holds it.
+TEST(Simulation, PositionDrivesGoTheShortWayToWhatEncodersShow) {
+  SimulatorConfig config = elastic_world();
+  elastic(config).position_loop = PositionLoopConfig{};
+  elastic(config).q_m_start[0] = M_PI + 1e-4;
+  config.sensed.has_position_drives = true;
+  Simulation device = make(config);
+  EXPECT_NEAR(device.sensors().q_m[0], -M_PI, 1e-3);
+  for (int k = 0; k < 200; ++k) {
+    CommandFrame command = hold(device);
+    command.q_m = device.sensors().q_m;
+    device.step(command);
+  }
+  EXPECT_NEAR(device.truth().q_m[0], M_PI, 1e-3);
+}
+
 }  // namespace
 }  // namespace hg::simulator
