@@ -1,12 +1,15 @@
 #include "hg/check/device_inspection.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "hg/check/cartesian_rule.h"
 #include "hg/check/collision_inspection.h"
@@ -16,7 +19,11 @@
 #include "hg/check/unit_comparison.h"
 #include "hg/check/unit_inspection.h"
 #include "hg/check/wall_force.h"
+#include "hg/core/linear_algebra.h"
+#include "hg/core/unit_doubt.h"
 #include "hg/model/chain_data.h"
+#include "hg/model/urdf.h"
+#include "hg/workspace/postures.h"
 #include "hg/workspace/workspace.h"
 
 namespace hg::check {
@@ -191,30 +198,6 @@ void inspect_room(const config::DeviceConfig& device, const workspace::Survey& s
   }
 }
 
-// The joint whose motion leads away from the singularity fastest.
-std::string joint_out_of_singularity(const config::DeviceConfig& device,
-                                     const workspace::Survey& survey) {
-  constexpr double kStep = 1e-2;
-  const DeviceModel& model = device.model;
-  model::ChainData chain(model.chain);
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.chain.nv());
-  double best = 0.0;
-  int joint = 0;
-  for (int i = 0; i < model.n_m; ++i) {
-    for (const double step : {-kStep, kStep}) {
-      Eigen::VectorXd q = survey.most_singular.q;
-      q[model.n_p + i] += step;
-      chain.update_kinematics(q, zero);
-      const model::Jacobian J = workspace::manipulator_jacobian(model, chain, model.handle);
-      const double value = model::conditioning(J, survey.length).smallest;
-      if (value <= best) continue;
-      best = value;
-      joint = i;
-    }
-  }
-  return model.manipulator_joint(joint);
-}
-
 std::string posture_text(const config::DeviceConfig& device, const Eigen::VectorXd& q) {
   std::string text;
   for (int i = 0; i < device.model.n_m; ++i) {
@@ -224,20 +207,120 @@ std::string posture_text(const config::DeviceConfig& device, const Eigen::Vector
   return text;
 }
 
+// Masses that a joint and the fixed joints beyond it carry.
+double mass_beyond(const model::Urdf& urdf, int link) {
+  double mass = urdf.links[link].inertial ? urdf.links[link].inertial->mass : 0.0;
+  for (const model::UrdfJoint& joint : urdf.joints) {
+    if (joint.parent == link && joint.type == model::UrdfJointType::kFixed)
+      mass += mass_beyond(urdf, joint.child);
+  }
+  return mass;
+}
+
+// What the hand holds is on the last link.
+void inspect_last_link(const config::DeviceConfig& device, Collector& out) {
+  constexpr double kMost = 50.0;  // kg; a person moves no more
+  const std::string& last = device.model.chain.joints().back().name;
+  for (const model::Urdf& urdf : urdfs_among(device.sources)) {
+    const auto joint = std::ranges::find(urdf.joints, last, &model::UrdfJoint::name);
+    if (joint == urdf.joints.end()) continue;
+    const double mass = mass_beyond(urdf, joint->child);
+    if (mass <= kMost) continue;
+    const std::string grams = suspected_unit(mass, {0.0, kMost}, kOtherMasses, "kg");
+    out.add_at_urdf(
+        Severity::kWarning, "link", urdf.links[joint->child].name,
+        fmt::format("{:.4g} kg beyond the last joint, where a person holds it, are more "
+                    "than a person moves{}",
+                    mass, after_semicolon(grams)),
+        "give <mass> in kg");
+  }
+}
+
+// The value near which a posture is singular wherever the other joints are; none: it takes several
+// joints.
+std::optional<workspace::SingularValue> singular_value_at(const config::DeviceConfig& device,
+                                                          const Eigen::VectorXd& q) {
+  constexpr double kNear = 0.05;  // rad
+  const DeviceModel& model = device.model;
+  const workspace::JointRanges reached = workspace::joint_ranges(device);
+  std::vector<Interval> ranges;
+  for (int i = 0; i < model.chain.nv(); ++i) ranges.push_back({reached.lower[i], reached.upper[i]});
+  std::optional<workspace::SingularValue> nearest;
+  double distance = kNear;
+  for (const workspace::SingularValue& singular :
+       workspace::singular_values(model.chain, model.handle, model.n_p, ranges)) {
+    const double value = q[singular.joint] + (singular.other < 0 ? 0.0 : q[singular.other]);
+    if (std::abs(value - singular.value) > distance) continue;
+    distance = std::abs(value - singular.value);
+    nearest = singular;
+  }
+  return nearest;
+}
+
+// "the handle cannot move along (0.00, 1.00, 0.00)": the direction in which `J` moves it least.
+std::string lost_direction(const model::Jacobian& J, double length) {
+  Eigen::MatrixXd scaled = J;
+  scaled.bottomRows<3>() *= length;
+  const Eigen::VectorXd lost = symmetric_eigen(scaled * scaled.transpose()).vectors.col(0);
+  const bool turns = lost.tail<3>().norm() > lost.head<3>().norm();
+  const Eigen::Vector3d along = (turns ? lost.tail<3>() : lost.head<3>()).normalized();
+  return fmt::format("the handle cannot {} ({:.2f}, {:.2f}, {:.2f})",
+                     turns ? "turn about" : "move along", along.x(), along.y(), along.z());
+}
+
+// Joints of a manipulator of six that move together there while the handle stands still.
+std::vector<std::string> joints_of_self_motion(const DeviceModel& model, const model::Jacobian& J) {
+  constexpr double kShare = 0.3;  // of the joint that moves most
+  const Eigen::VectorXd motion = symmetric_eigen(J.transpose() * J).vectors.col(0).cwiseAbs();
+  std::vector<std::string> names;
+  for (int i = 0; i < model.n_m; ++i) {
+    if (motion[i] > kShare * motion.maxCoeff()) names.push_back(model.manipulator_joint(i));
+  }
+  return names;
+}
+
+// What a posture that takes several joints is like.
+std::string posture_of_several(const DeviceModel& model, const workspace::Survey& survey) {
+  model::ChainData chain(model.chain);
+  chain.update_kinematics(survey.most_singular.q, Eigen::VectorXd::Zero(model.chain.nv()));
+  const model::Jacobian J = workspace::manipulator_jacobian(model, chain, model.handle);
+  std::string text = lost_direction(J, survey.length);
+  if (model.n_m > 6) return text;
+  return text + fmt::format(", and {} can move without it",
+                            fmt::join(joints_of_self_motion(model, J), ", "));
+}
+
 void inspect_singularities(const config::DeviceConfig& device, const workspace::Survey& survey,
                            Collector& out) {
   constexpr double kSingular = 5e-3;  // of the scaled Jacobian: 1 rad/s at the handle takes 200
   if (survey.postures.empty()) return;
   const workspace::Posture& worst = survey.most_singular;
   if (worst.conditioning.smallest >= kSingular) return;
-  const std::string joint = joint_out_of_singularity(device, survey);
-  out.add(Severity::kWarning, "joints." + joint,
-          fmt::format("the limits do not exclude a singular posture, {} (smallest singular value "
-                      "{:.2g}, expected at least {:g}): near it the handle cannot follow the twin",
-                      posture_text(device, worst.q), worst.conditioning.smallest, kSingular),
-          fmt::format("keep {} away from this value by q_min or q_max, or a sum of joints by "
-                      "virtual_joints",
-                      joint));
+  const DeviceModel& model = device.model;
+  const auto name = [&](int joint) { return model.chain.joints()[joint].name; };
+  const std::string posture = fmt::format(
+      "{} (smallest singular value {:.2g}, expected at least {:g}): near it the handle "
+      "cannot follow the twin",
+      posture_text(device, worst.q), worst.conditioning.smallest, kSingular);
+  if (const auto singular = singular_value_at(device, worst.q); !singular) {
+    out.add(Severity::kWarning, "manipulator",
+            fmt::format("the limits do not exclude a singular posture, {}", posture),
+            fmt::format("no joint alone makes it: there {}; keep the handle away from there by "
+                        "cartesian_limits",
+                        posture_of_several(model, survey)));
+  } else if (singular->other < 0) {
+    out.add(Severity::kWarning, "joints." + name(singular->joint),
+            fmt::format("the arm is singular wherever {} is at {:.2f}, which the limits do not "
+                        "exclude: {}",
+                        name(singular->joint), singular->value, posture),
+            "keep it to one side of this value, 0.2 away, by q_min or q_max");
+  } else {
+    out.add(Severity::kWarning, "joints." + name(singular->other),
+            fmt::format("the arm is singular wherever {} + {} is {:.2f}, which the limits do not "
+                        "exclude: {}",
+                        name(singular->joint), name(singular->other), singular->value, posture),
+            "keep this sum to one side of the value, 0.2 away, by virtual_joints");
+  }
 }
 
 }  // namespace
@@ -261,6 +344,7 @@ Findings inspect(const config::DeviceConfig& device, const workspace::Survey& su
   inspect_singularities(device, survey, out);
   inspect_collisions(device, out);
   inspect_bodies(device.sources, joint_names(device.model.chain), out);
+  inspect_last_link(device, out);
   inspect_units(device.sources, joint_names(device.model.chain), out);
   compare_units(device, survey, out);
   inspect_ignored(device.sources, UrdfUse::kDevice, out);

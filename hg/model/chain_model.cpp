@@ -176,12 +176,15 @@ class Builder {
     fail(urdf_.joints.front().line, "robot", "joints form a loop, a chain has a root and a tip");
   }
 
-  // Exporters give a frame a mass of nearly nothing, and an inertia that is none: it is left out.
+  // Exporters give a frame a mass of nearly nothing and an inertia that is none, or no mass and any
+  // inertia: it is left out.
   bool is_frame(const UrdfLink& link) const {
     constexpr double kMassShare = 1e-6;  // of the body that it is fixed to
     constexpr double kInertia = 1e-6;    // kg m^2
-    return link.inertial_fault && std::abs(link.inertial->mass) <= kMassShare * mass_ &&
-           link.inertial->mass != 0.0 && link.inertial->inertia.norm() <= kInertia;
+    if (!link.inertial_fault) return false;
+    if (link.inertial->mass == 0.0) return true;
+    return std::abs(link.inertial->mass) <= kMassShare * mass_ &&
+           link.inertial->inertia.norm() <= kInertia;
   }
 
   // Collects the links that are fixed to `first`, gives them to the body of `joint` and lists

@@ -92,8 +92,8 @@ std::string reason_of(std::string_view text, tinyxml2::XMLError error) {
 
 // The rule of a body that an inertia breaks, and what it has; empty: none.
 std::string broken_rule(const Inertial& inertial) {
-  // exported files carry six digits; a flat plate has I3 = I1 + I2
-  constexpr double kRounding = 1e-5;
+  // files carry three digits, and tensors are turned after that; a flat plate has I3 = I1 + I2
+  constexpr double kRounding = 1e-2;
   if (!(inertial.mass >= kLeastMass && inertial.mass <= kMass.ub)) {
     return "mass must be " + to_text(kLeastMass) + " .. " + to_text(kMass.ub) + " kg, got " +
            to_text(inertial.mass);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -198,48 +197,78 @@ std::vector<std::pair<workspace::SingularValue, Interval>> sums(const DeviceDraf
 struct Reach {
   Eigen::Vector3d lower = Eigen::Vector3d::Constant(kInfinity);
   Eigen::Vector3d upper = Eigen::Vector3d::Constant(-kInfinity);
-  double speed = 0.0, acceleration = 0.0;
+  double speed = 1.5, acceleration = 5.0;
 };
 
-Reach reach_of(DeviceDraft& d, const std::string& source) {
+// What half of the joints' ratings give the handle along x, y, z in one posture.
+struct Ability {
+  Eigen::Vector3d p, speed = Eigen::Vector3d::Zero(), acceleration = Eigen::Vector3d::Zero();
+};
+
+std::vector<Ability> abilities(DeviceDraft& d) {
   workspace::PostureSampler sampler(d.ranges);
-  Reach reach;
-  std::array<std::vector<double>, 3> speeds, accelerations;
+  std::vector<Ability> found;
   for (int k = 0; k < kPostures; ++k) {
     const Eigen::VectorXd q = sampler.draw();
     d.chain.update_kinematics(q, Eigen::VectorXd::Zero(q.size()));
     if (!is_usable(d)) continue;
-    const Eigen::Vector3d p = d.chain.pose(d.handle).p;
-    reach.lower = reach.lower.cwiseMin(p);
-    reach.upper = reach.upper.cwiseMax(p);
+    Ability ability = {.p = d.chain.pose(d.handle).p};
     const model::Jacobian J = d.chain.jacobian(d.handle);
-    for (int axis = 0; axis < 3; ++axis) {
-      double speed = 0.0, acceleration = 0.0;
-      for (int i = d.n_p; i < q.size(); ++i) {
-        speed += 0.5 * std::abs(J(axis, i)) * speed_of(joint(d, i));
-        acceleration += 0.5 * std::abs(J(axis, i)) * acceleration_of(joint(d, i));
-      }
-      speeds[axis].push_back(speed);
-      accelerations[axis].push_back(acceleration);
+    for (int i = d.n_p; i < q.size(); ++i) {
+      const Eigen::Vector3d lever = 0.5 * J.col(i).head<3>().cwiseAbs();
+      ability.speed += lever * speed_of(joint(d, i));
+      ability.acceleration += lever * acceleration_of(joint(d, i));
     }
+    found.push_back(ability);
   }
-  const auto fifth_percentile = [](std::vector<double>& values) {
-    if (values.empty()) return 0.0;
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
-    std::ranges::nth_element(values, place);
-    return *place;
-  };
-  reach.speed = 1.5;
-  reach.acceleration = 5.0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    reach.speed = std::min(reach.speed, fifth_percentile(speeds[axis]));
-    reach.acceleration = std::min(reach.acceleration, fifth_percentile(accelerations[axis]));
+  return found;
+}
+
+// Such a share of the values is smaller; 0 without any.
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::ranges::nth_element(values, values.begin() + at);
+  return values[at];
+}
+
+// Near a face of the box the hand is braked, which takes more there than elsewhere: as `check` has
+// it, from the distance in which it comes to rest.
+void lower_to_what_faces_allow(const std::vector<Ability>& all, Reach& reach) {
+  constexpr double kWeak = 0.1;  // share of the postures there that may give less
+  const double distance = reach.speed * reach.speed / (2.0 * reach.acceleration);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> near;
+    for (const Ability& ability : all) {
+      const double p = ability.p[axis];
+      if (std::min(p - reach.lower[axis], reach.upper[axis] - p) < distance)
+        near.push_back(ability.acceleration[axis]);
+    }
+    if (!near.empty()) reach.acceleration = std::min(reach.acceleration, quantile(near, kWeak));
+  }
+}
+
+Reach reach_of(DeviceDraft& d, const std::string& source) {
+  constexpr double kFifth = 0.05;
+  const std::vector<Ability> all = abilities(d);
+  Reach reach;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> speeds, accelerations;
+    for (const Ability& ability : all) {
+      reach.lower[axis] = std::min(reach.lower[axis], ability.p[axis]);
+      reach.upper[axis] = std::max(reach.upper[axis], ability.p[axis]);
+      speeds.push_back(ability.speed[axis]);
+      accelerations.push_back(ability.acceleration[axis]);
+    }
+    reach.speed = std::min(reach.speed, quantile(speeds, kFifth));
+    reach.acceleration = std::min(reach.acceleration, quantile(accelerations, kFifth));
     if (reach.speed > 0.0) continue;
     throw SetupError(fmt::format(
         "{}: the joints hardly move '{}' along {}; a device needs an end that moves in all three "
         "directions: choose the arm with --root-link and --tip-link",
         source, d.chain.model().frame_names()[d.handle], "xyz"[axis]));
   }
+  lower_to_what_faces_allow(all, reach);
   return reach;
 }
 
@@ -284,8 +313,7 @@ std::string posture_lines(const DeviceDraft& d) {
 std::string virtual_joint_lines(const DeviceDraft& d) {
   const auto found = sums(d);
   if (found.empty()) return "";
-  std::string text =
-      "\nvirtual_joints:  # [V] sums of joints that are singular at a quarter turn\n";
+  std::string text = "\nvirtual_joints:  # [V] sums of joints that are singular at one value\n";
   for (const auto& [sum, range] : found) {
     const model::Joint& a = joint(d, sum.joint);
     const model::Joint& b = joint(d, sum.other);
@@ -314,7 +342,8 @@ std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   text += fmt::format(
       "    dq_max_m_per_s: {}  # [V] half of what the joints give in 95 % of the postures\n",
       rounded(reach.speed));
-  text += fmt::format("    ddq_max_m_per_s2: {}  # [V] the same\n", rounded(reach.acceleration));
+  text += fmt::format("    ddq_max_m_per_s2: {}  # [V] the same, and near the faces\n",
+                      rounded(reach.acceleration));
   return text;
 }
 

@@ -8,8 +8,10 @@
 #include <ranges>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "hg/check/scenario_inspection.h"
 #include "hg/config/twin.h"
 #include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/error.h"
@@ -41,6 +43,11 @@ struct Mechanism {
 };
 
 constexpr std::array kMassScales = {1.5, 2.0, 3.0, 5.0};  // tried against shaking
+
+/// The largest speed and acceleration of a joint of the twin, as they are written down.
+struct JointRating {
+  double speed = 0.0, braking = 0.0;
+};
 
 struct Placement {
   Pose T_B_root;
@@ -188,44 +195,116 @@ std::vector<Eigen::Vector3d> offsets() {
   return grid;
 }
 
-// Upright, turned and moved: placements at which the device reaches the start, best first. Those
-// with room at the start come before the others, then the share of other postures that it reaches
-// counts. Without any, one that is tilted. Ends early with as many good ones as are tried.
-std::vector<Placement> find_placements(Mechanism& d, const config::DeviceConfig& device) {
-  Reach reach(device);
-  const Pose nominal = nominal_handle(device);
-  const Pose T_root_start = tip(d, d.start);
-  std::vector<Pose> others;
-  workspace::PostureSampler sampler(d.ranges);
-  for (int k = 0; k < kPostures; ++k) others.push_back(tip(d, sampler.draw()));
+// Where the end effector of an upright twin starts: its position, and the yaw of the twin.
+struct Candidate {
+  Eigen::Vector3d p;
+  double yaw = 0.0;
+};
 
-  std::vector<Placement> found;
-  int good = 0;
+std::vector<Candidate> around(const Eigen::Vector3d& nominal) {
+  std::vector<Candidate> candidates;
   for (const Eigen::Vector3d& offset : offsets()) {
-    for (int turn = 0; turn < 12; ++turn) {
-      if (std::ssize(found) >= kPlacements || good >= kTrials) break;
-      const double yaw = turn * M_PI / 6.0;
-      const Eigen::Matrix3d R(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
-      const Pose T_B_root{nominal.p + offset - R * T_root_start.p, R};
-      const std::optional<scenario::Start> start = reach.start_at(T_B_root * T_root_start);
-      const bool is_roomy = start && has_room(device.model, *start);
-      if (!start || (!is_roomy && !found.empty())) continue;  // one without room is enough
-      const auto count = std::ranges::count_if(others, [&](const Pose& T_root_E) {
-        return reach.start_at(T_B_root * T_root_E).has_value();
+    for (int turn = 0; turn < 12; ++turn)
+      candidates.push_back({nominal + offset, turn * M_PI / 6.0});
+  }
+  return candidates;
+}
+
+// Where the device holds its handle nearly as an upright twin needs it, in dexterous postures: a
+// small arm has few such places, which a coarse grid misses.
+std::vector<Candidate> where_it_is_held_so(const config::DeviceConfig& device,
+                                           const Eigen::Matrix3d& R_root_start) {
+  constexpr int kDrawn = 20000;
+  constexpr std::size_t kMost = 20;
+  constexpr double kTilt = 0.3;  // rad
+  model::ChainData chain(device.model.chain);
+  std::vector<Interval> ranges = workspace::joint_ranges(device.model.chain);
+  for (int i = 0; i < device.model.n_m; ++i) {
+    const limits::JointLimits& limits = device.model.joint_limits[i];
+    Interval& range = ranges[device.model.n_p + i];
+    range = intersect(range, {limits.q_min, limits.q_max});
+  }
+  workspace::PostureSampler sampler(ranges);
+  std::vector<std::pair<double, Candidate>> found;
+  for (int k = 0; k < kDrawn; ++k) {
+    const Eigen::VectorXd q = sampler.draw();
+    chain.update_poses(q);
+    const Pose handle = chain.pose(device.model.handle);
+    const double upright = handle.R.row(2).dot(R_root_start.row(2));
+    if (upright < std::cos(kTilt)) continue;
+    const Eigen::Matrix3d turned = handle.R * R_root_start.transpose();
+    const double yaw = std::atan2(turned(1, 0) - turned(0, 1), turned(0, 0) + turned(1, 1));
+    found.emplace_back(workspace::dexterity(chain, device.model.handle, device.model.n_p, q),
+                       Candidate{handle.p, yaw});
+  }
+  std::ranges::stable_sort(found, std::greater(), [](const auto& entry) { return entry.first; });
+  std::vector<Candidate> candidates;
+  for (const auto& entry : found | std::views::take(kMost)) candidates.push_back(entry.second);
+  return candidates;
+}
+
+// Placements of an upright twin at which the device reaches its start.
+class PlacementSearch {
+ public:
+  PlacementSearch(Mechanism& d, const config::DeviceConfig& device)
+      : device_(device), reach_(device), T_root_start_(tip(d, d.start)) {
+    workspace::PostureSampler sampler(d.ranges);
+    for (int k = 0; k < kPostures; ++k) others_.push_back(tip(d, sampler.draw()));
+  }
+
+  // Ends early with as many good ones as are tried.
+  void look_at(const std::vector<Candidate>& candidates) {
+    const std::size_t most = found_.size() + kPlacements;
+    for (const Candidate& candidate : candidates) {
+      if (found_.size() >= most || is_enough()) return;
+      const Eigen::Matrix3d R(Eigen::AngleAxisd(candidate.yaw, Eigen::Vector3d::UnitZ()));
+      const Pose T_B_root{candidate.p - R * T_root_start_.p, R};
+      const std::optional<scenario::Start> start = reach_.start_at(T_B_root * T_root_start_);
+      const bool is_roomy = start && has_room(device_.model, *start);
+      if (!start || (!is_roomy && !found_.empty())) continue;  // one without room is enough
+      const auto count = std::ranges::count_if(others_, [&](const Pose& T_root_E) {
+        return reach_.start_at(T_B_root * T_root_E).has_value();
       });
-      found.push_back({.T_B_root = T_B_root,
-                       .yaw = yaw,
-                       .share = static_cast<double>(count) / kPostures,
-                       .has_room = is_roomy});
-      if (is_roomy && count == kPostures) ++good;
+      found_.push_back({.T_B_root = T_B_root,
+                        .yaw = candidate.yaw,
+                        .share = static_cast<double>(count) / kPostures,
+                        .has_room = is_roomy});
+      if (is_roomy && count == kPostures) ++good_;
     }
   }
-  std::ranges::stable_sort(found, std::greater(), [](const Placement& placement) {
-    return std::tuple(placement.has_room, placement.share);
-  });
+
+  bool is_enough() const { return good_ >= kTrials; }
+
+  // Best first: those with room at the start come before the others, then the share of other
+  // postures that the device reaches counts.
+  std::vector<Placement> take() {
+    std::ranges::stable_sort(found_, std::greater(), [](const Placement& placement) {
+      return std::tuple(placement.has_room, placement.share);
+    });
+    return std::move(found_);
+  }
+
+  const Pose& T_root_start() const { return T_root_start_; }
+
+ private:
+  const config::DeviceConfig& device_;
+  Reach reach_;
+  Pose T_root_start_;
+  std::vector<Pose> others_;
+  std::vector<Placement> found_;
+  int good_ = 0;
+};
+
+// Upright, turned and moved, best first; without any, one that is tilted.
+std::vector<Placement> find_placements(Mechanism& d, const config::DeviceConfig& device) {
+  const Pose nominal = nominal_handle(device);
+  PlacementSearch search(d, device);
+  search.look_at(around(nominal.p));
+  if (!search.is_enough()) search.look_at(where_it_is_held_so(device, search.T_root_start().R));
+  std::vector<Placement> found = search.take();
   if (found.empty()) {
     found.push_back(
-        {.T_B_root = nominal * inverse(T_root_start), .share = 0.0, .is_upright = false});
+        {.T_B_root = nominal * inverse(search.T_root_start()), .share = 0.0, .is_upright = false});
   }
   return found;
 }
@@ -272,7 +351,44 @@ TipRatings tip_ratings(const config::DeviceConfig& device) {
   return ratings;
 }
 
-std::string joint_lines(Mechanism& d, const TipRatings& ratings, double mass_scale) {
+// Two digits, downwards: values that may not be exceeded.
+double rounded_down(double value) {
+  const double near = std::stod(rounded(value));
+  return near <= value ? near : std::stod(rounded(0.95 * value));
+}
+
+std::vector<JointRating> joint_ratings(const Mechanism& d, const config::DeviceConfig& device) {
+  const TipRatings tip = tip_ratings(device);
+  std::vector<JointRating> ratings;
+  for (int i = 0; i < d.chain.model().nv(); ++i) {
+    const bool turns = !joint(d, i).is_slide();
+    const double lever = std::max(d.lever[i], 1e-6);
+    JointRating rating = {.speed = tip.speed, .braking = tip.braking};
+    if (turns) {
+      rating.speed = std::min(tip.turn_speed, tip.speed / lever);
+      rating.braking = std::min(tip.turn_braking, tip.braking / lever);
+    }
+    rating.speed = std::min(rating.speed, joint(d, i).velocity_max);
+    ratings.push_back(rating);
+  }
+  return ratings;
+}
+
+// What a device can follow and brake where the twin stands, in all its postures: as `check` says.
+void lower(const Mechanism& d, const check::Match& match, std::vector<JointRating>& ratings) {
+  for (std::size_t i = 0; i < ratings.size(); ++i) {
+    JointRating& rating = ratings[i];
+    const check::Demand& demand = match.demands[i];
+    const double braking = std::max(demand.acceleration, demand.joint_acceleration);
+    if (braking > 1.0) rating.braking = rounded_down(rating.braking / braking);
+    if (demand.speed > 1.0) rating.speed = rounded_down(rating.speed / demand.speed);
+    const double range = d.ranges[i].ub - d.ranges[i].lb;
+    const double fastest = std::sqrt(rating.braking * range);  // braked within half the range
+    if (rating.speed > fastest) rating.speed = rounded_down(fastest);
+  }
+}
+
+std::string joint_lines(Mechanism& d, const std::vector<JointRating>& ratings, double mass_scale) {
   const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(d.chain.model().nv());
   d.chain.update(d.start, at_rest);
   const Eigen::MatrixXd M = d.chain.M();
@@ -282,19 +398,15 @@ std::string joint_lines(Mechanism& d, const TipRatings& ratings, double mass_sca
     const model::Joint& j = joint(d, i);
     const bool turns = !j.is_slide();
     const std::string unit = turns ? "rad" : "m";
-    const double lever = std::max(d.lever[i], 1e-6);
-    const double speed =
-        turns ? std::min(ratings.turn_speed, ratings.speed / lever) : ratings.speed;
-    const double braking =
-        turns ? std::min(ratings.turn_braking, ratings.braking / lever) : ratings.braking;
-    text += fmt::format("  {}:\n", quoted(j.name));
-    const std::string where = !turns          ? "moves the end effector along"
-                              : lever > kNear ? rounded(lever) + " m from the end effector"
-                                              : "turns the end effector";
-    text += fmt::format("    ddq_max_{}_per_s2: {}  # [V] {}\n", unit, rounded(braking), where);
-    if (j.velocity_max > speed) {
+    const std::string where = !turns ? "moves the end effector along"
+                              : d.lever[i] > kNear
+                                  ? rounded(d.lever[i]) + " m from the end effector"
+                                  : "turns the end effector";
+    text += fmt::format("  {}:\n    ddq_max_{}_per_s2: {}  # [V] {}\n", quoted(j.name), unit,
+                        rounded(ratings[i].braking), where);
+    if (j.velocity_max > ratings[i].speed) {
       text += fmt::format("    dq_max_{}_per_s: {}  # [V] the hand of the device is no faster\n",
-                          unit, rounded(speed));
+                          unit, rounded(ratings[i].speed));
     }
     if (j.damping > 0.0 || j.friction > 0.0) {
       text += fmt::format("    # damping {} and friction {} are those of the URDF\n",
@@ -308,7 +420,8 @@ std::string joint_lines(Mechanism& d, const TipRatings& ratings, double mass_sca
   return text;
 }
 
-std::string yaml_of(Mechanism& d, const Placement& placement, double mass_scale,
+std::string yaml_of(Mechanism& d, const Placement& placement,
+                    const std::vector<JointRating>& ratings, double mass_scale,
                     const ChainPart& part, const std::filesystem::path& folder,
                     const config::DeviceConfig& device) {
   return fmt::format(
@@ -326,7 +439,7 @@ std::string yaml_of(Mechanism& d, const Placement& placement, double mass_scale,
               ? ""
               : fmt::format("mass_scale: {:g}  # [V] lighter it shakes in a hand on this device\n",
                             mass_scale)) +
-         joint_lines(d, tip_ratings(device), mass_scale);
+         joint_lines(d, ratings, mass_scale);
 }
 
 // A trial of a draft. The worst is one that cannot begin.
@@ -337,16 +450,52 @@ struct Trial {
   std::string problem() const { return refusal.empty() ? workspace::problem_of(way) : refusal; }
 };
 
-// Leads a hand through the twin of a draft that stands beside its URDF.
-Trial try_out(const std::string& yaml, const std::string& urdf, const std::string& urdf_name,
-              const config::SimulatedDeviceConfig& device) {
-  config::SourceReader reader({{"twin.yaml", yaml}, {urdf_name, urdf}});
-  try {
-    return {.way = workspace::lead(device, config::load_twin("twin.yaml", reader)), .refusal = {}};
-  } catch (const SetupError& error) {
-    return {.way = {.share = -1.0}, .refusal = error.what()};
+// Drafts of one mechanism for one device, in different places.
+class Drafts {
+ public:
+  Drafts(Mechanism& mechanism, const ChainPart& part, const config::SimulatedDeviceConfig& device)
+      : d_(mechanism),
+        part_(part),
+        device_(device),
+        beside_(part.urdf.parent_path()),
+        urdf_(config::SourceReader().read(part.urdf)),
+        urdf_name_(urdf_in(part, beside_)) {}
+
+  // Ratings for a place that `check` accepts; as they are where it cannot be looked at.
+  std::vector<JointRating> ratings_at(const Placement& placement) {
+    std::vector<JointRating> ratings = joint_ratings(d_, device_);
+    for (JointRating& rating : ratings) rating.braking = std::stod(rounded(rating.braking));
+    try {
+      lower(d_, check::match(device_, load(placement, ratings, 1.0)), ratings);
+    } catch (const SetupError&) {
+    }
+    return ratings;
   }
-}
+
+  // Leads a hand through the twin.
+  Trial try_out(const Placement& placement, const std::vector<JointRating>& ratings,
+                double mass_scale) {
+    try {
+      return {.way = workspace::lead(device_, load(placement, ratings, mass_scale)), .refusal = {}};
+    } catch (const SetupError& error) {
+      return {.way = {.share = -1.0}, .refusal = error.what()};
+    }
+  }
+
+ private:
+  config::Twin load(const Placement& placement, const std::vector<JointRating>& ratings,
+                    double mass_scale) {
+    const std::string yaml = yaml_of(d_, placement, ratings, mass_scale, part_, beside_, device_);
+    config::SourceReader reader({{"twin.yaml", yaml}, {urdf_name_, urdf_}});
+    return config::load_twin("twin.yaml", reader);
+  }
+
+  Mechanism& d_;
+  const ChainPart& part_;
+  const config::SimulatedDeviceConfig& device_;
+  std::filesystem::path beside_;
+  std::string urdf_, urdf_name_;
+};
 
 // Whether `a` went better than `b`: farther, then without a fault, then with fewer limits in the
 // way.
@@ -373,33 +522,32 @@ TwinDraft draft_twin(const ChainPart& part, const std::filesystem::path& folder,
                      const std::function<void(std::size_t, std::size_t)>& progress) {
   Mechanism d = make_mechanism(part);
   std::vector<Placement> placements = find_placements(d, device);
-  const std::string urdf = config::SourceReader().read(part.urdf);
-  const std::filesystem::path beside = part.urdf.parent_path();
-  const std::string urdf_name = urdf_in(part, beside);
+  Drafts drafts(d, part, device);
   Trial best;
   const Placement* chosen = nullptr;
+  std::vector<JointRating> ratings;
   const std::size_t most = std::min<std::size_t>(kTrials, placements.size());
   std::size_t trials = 0;
   for (const Placement& placement : placements | std::views::take(most)) {
-    const Trial trial =
-        try_out(yaml_of(d, placement, 1.0, part, beside, device), urdf, urdf_name, device);
+    const std::vector<JointRating> tried = drafts.ratings_at(placement);
+    const Trial trial = drafts.try_out(placement, tried, 1.0);
     if (progress) progress(++trials, most);
     if (chosen != nullptr && !is_better(trial.way, best.way)) continue;
     chosen = &placement;
     best = trial;
+    ratings = tried;
     if (best.problem().empty()) break;
   }
   double mass_scale = 1.0;
   for (const double scale : kMassScales) {
     if (!is_only_shaken(best)) break;
-    const Trial trial =
-        try_out(yaml_of(d, *chosen, scale, part, beside, device), urdf, urdf_name, device);
+    const Trial trial = drafts.try_out(*chosen, ratings, scale);
     if (!trial.problem().empty()) continue;
     best = trial;
     mass_scale = scale;
   }
   if (progress) progress(most, most);
-  return {.yaml = yaml_of(d, *chosen, mass_scale, part, folder, device),
+  return {.yaml = yaml_of(d, *chosen, ratings, mass_scale, part, folder, device),
           .problem = best.problem(),
           .note = mass_scale == 1.0
                       ? ""

@@ -14,19 +14,88 @@ namespace {
 constexpr double kWrist = 0.3;      // m, makes rotations comparable with translations
 constexpr double kSingular = 1e-6;  // m/rad
 constexpr int kWitnesses = 12;      // random postures that must all be singular
+constexpr int kSteps = 120;         // in which a range is searched
+constexpr double kSame = 1e-5;      // rad, between two values that are one
 
-// whether every posture with this value is singular; the value is put in by `set`
+// Searches the singular values of what `set` moves: a joint or a sum of joints.
 template <class Set>
-bool is_always_singular(model::ChainData& chain, int frame, int first,
-                        const std::vector<Interval>& ranges, Set set) {
-  PostureSampler sampler(ranges);
-  for (int i = 0; i < kWitnesses; ++i) {
-    Eigen::VectorXd q = sampler.draw();
-    set(q);
-    if (dexterity(chain, frame, first, q) > kSingular) return false;
+class SingularSearch {
+ public:
+  SingularSearch(const model::ChainModel& chain, int frame, int first,
+                 const std::vector<Interval>& ranges, Set set)
+      : chain_(chain), frame_(frame), first_(first), set_(set) {
+    PostureSampler sampler(ranges);
+    for (int i = 0; i < kWitnesses; ++i) witnesses_.push_back(sampler.draw());
   }
-  return true;
-}
+
+  std::vector<double> in(const Interval& range) {
+    constexpr std::array<double, 9> kQuarters = {-2 * M_PI, -1.5 * M_PI, -M_PI,      -M_PI_2, 0,
+                                                 M_PI_2,    M_PI,        1.5 * M_PI, 2 * M_PI};
+    std::vector<double> found;
+    for (const double value : kQuarters) {
+      if (range.contains(value) && is_always_singular(value)) found.push_back(value);
+    }
+    for (const double value : lowest(range)) {
+      const bool is_known =
+          std::ranges::any_of(found, [&](double f) { return std::abs(f - value) < kSame; });
+      if (!is_known && is_always_singular(value)) found.push_back(value);
+    }
+    return found;
+  }
+
+ private:
+  double dexterity_at(double value, const Eigen::VectorXd& witness) {
+    Eigen::VectorXd q = witness;
+    set_(q, value);
+    return dexterity(chain_, frame_, first_, q);
+  }
+
+  bool is_always_singular(double value) {
+    return std::ranges::all_of(witnesses_, [&](const Eigen::VectorXd& witness) {
+      return dexterity_at(value, witness) <= kSingular;
+    });
+  }
+
+  // Values at which the first witness is singular: the ends of its dips.
+  std::vector<double> lowest(const Interval& range) {
+    const Eigen::VectorXd& witness = witnesses_.front();
+    const double step = (range.ub - range.lb) / kSteps;
+    const auto at = [&](int i) { return dexterity_at(range.lb + i * step, witness); };
+    std::vector<double> found;
+    double before = at(0), here = at(1);
+    for (int i = 1; i < kSteps; ++i) {
+      const double next = at(i + 1);
+      if (here <= before && here <= next) {
+        const double value = bottom(range.lb + (i - 1) * step, range.lb + (i + 1) * step);
+        if (dexterity_at(value, witness) <= kSingular) found.push_back(value);
+      }
+      before = here;
+      here = next;
+    }
+    return found;
+  }
+
+  // The value between `lb` and `ub` at which the first witness is the least dexterous, by golden
+  // sections.
+  double bottom(double lb, double ub) {
+    constexpr int kSections = 50;
+    constexpr double kGolden = 0.6180339887498949;
+    for (int i = 0; i < kSections; ++i) {
+      const double low = ub - kGolden * (ub - lb), high = lb + kGolden * (ub - lb);
+      if (dexterity_at(low, witnesses_.front()) < dexterity_at(high, witnesses_.front())) {
+        ub = high;
+      } else {
+        lb = low;
+      }
+    }
+    return 0.5 * (lb + ub);
+  }
+
+  model::ChainData chain_;
+  int frame_, first_;
+  Set set_;
+  std::vector<Eigen::VectorXd> witnesses_;
+};
 
 }  // namespace
 
@@ -60,30 +129,21 @@ double dexterity(model::ChainData& chain, int frame, int first, const Eigen::Vec
 
 std::vector<SingularValue> singular_values(const model::ChainModel& chain, int frame, int first,
                                            const std::vector<Interval>& ranges) {
-  constexpr std::array<double, 9> kQuarters = {-2 * M_PI, -1.5 * M_PI, -M_PI,      -M_PI_2, 0,
-                                               M_PI_2,    M_PI,        1.5 * M_PI, 2 * M_PI};
-  model::ChainData probe(chain);
   const int n = chain.nv();
   std::vector<SingularValue> found;
   const auto turns = [&](int joint) { return !chain.joints()[joint].is_slide(); };
-  const auto range = [&](int joint) { return ranges[joint]; };
-
   for (int i = first; i < n; ++i) {
     if (!turns(i)) continue;
-    for (double value : kQuarters) {
-      if (!range(i).contains(value)) continue;
-      const auto set = [&](Eigen::VectorXd& q) { q[i] = value; };
-      if (is_always_singular(probe, frame, first, ranges, set)) found.push_back({i, -1, value});
-    }
+    SingularSearch search(chain, frame, first, ranges,
+                          [i](Eigen::VectorXd& q, double value) { q[i] = value; });
+    for (const double value : search.in(ranges[i])) found.push_back({i, -1, value});
   }
   for (int i = first; i + 1 < n; ++i) {
     if (!turns(i) || !turns(i + 1)) continue;
-    const Interval sums = {range(i).lb + range(i + 1).lb, range(i).ub + range(i + 1).ub};
-    for (double value : kQuarters) {
-      if (!sums.contains(value)) continue;
-      const auto set = [&](Eigen::VectorXd& q) { q[i + 1] = value - q[i]; };
-      if (is_always_singular(probe, frame, first, ranges, set)) found.push_back({i, i + 1, value});
-    }
+    SingularSearch search(chain, frame, first, ranges,
+                          [i](Eigen::VectorXd& q, double value) { q[i + 1] = value - q[i]; });
+    const Interval sums = {ranges[i].lb + ranges[i + 1].lb, ranges[i].ub + ranges[i + 1].ub};
+    for (const double value : search.in(sums)) found.push_back({i, i + 1, value});
   }
   return found;
 }

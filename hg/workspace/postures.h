@@ -39,8 +39,9 @@ struct SingularValue {
   double value = 0.0;
 };
 
-/// Finds singular values among multiples of a quarter turn of the joints from `first` on; earlier
-/// joints are ignored.
+/// Finds the singular values of joints, and of sums of neighbours, from `first` on, in their
+/// ranges: multiples of a quarter turn, and others, as that of an elbow beside a forearm that is
+/// offset. Earlier joints are ignored.
 std::vector<SingularValue> singular_values(const model::ChainModel& chain, int frame, int first,
                                            const std::vector<Interval>& ranges);
 

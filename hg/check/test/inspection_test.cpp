@@ -97,6 +97,58 @@ void PrintTo(const Case& tried, std::ostream* out) { *out << tried.name; }
 
 std::string name_of(const testing::TestParamInfo<Case>& info) { return info.param.name; }
 
+// The example arm with other lines for its joints, and a wrist beside the line of its forearm.
+Findings findings_of_arm(const std::string& joints) {
+  config::SourceReader reader =
+      reader_of("models/examples/arm.yaml", "models/examples/arm.urdf",
+                {"  shoulder: {ddq_max_rad_per_s2: 20}\n  elbow: {ddq_max_rad_per_s2: 20}\n"
+                 "  wrist_roll: {ddq_max_rad_per_s2: 20}\n  wrist_bend: {ddq_max_rad_per_s2: 20}\n",
+                 joints, "<origin xyz=\"0 0 0.45\"/>", "<origin xyz=\"0.1 0 0.45\"/>"});
+  const config::DeviceConfig device = config::load_device("f.yaml", reader);
+  return inspect(device, workspace::survey(device, kFew));
+}
+
+// An elbow is singular where shoulder, elbow and wrist are in line: here at no quarter of a turn.
+TEST(Singularity, IsNamedAfterTheJointThatMakesIt) {
+  const Findings findings = findings_of_arm(
+      "  shoulder: {q_min_rad: 0.5, ddq_max_rad_per_s2: 20}\n"
+      "  elbow: {q_min_rad: -0.6, q_max_rad: 0.6, ddq_max_rad_per_s2: 20}\n"
+      "  wrist_roll: {ddq_max_rad_per_s2: 20}\n"
+      "  wrist_bend: {q_min_rad: 0.3, ddq_max_rad_per_s2: 20}\n");
+  EXPECT_NE(find(findings, "joints.elbow", "singular wherever elbow is at -0.22"), nullptr)
+      << all_of(findings);
+}
+
+TEST(Singularity, ThatTakesSeveralJointsIsNamedAfterNone) {
+  const Findings findings = findings_of_arm(
+      "  shoulder: {ddq_max_rad_per_s2: 20}\n"
+      "  elbow: {q_min_rad: 0.3, q_max_rad: 2.2, ddq_max_rad_per_s2: 20}\n"
+      "  wrist_roll: {ddq_max_rad_per_s2: 20}\n"
+      "  wrist_bend: {q_min_rad: 0.3, ddq_max_rad_per_s2: 20}\n");
+  const Finding* finding = find(findings, "manipulator", "a singular posture");
+  ASSERT_NE(finding, nullptr) << all_of(findings);
+  EXPECT_NE(finding->fix.find("the handle cannot move along"), std::string::npos) << finding->fix;
+  EXPECT_NE(finding->fix.find("turn, "), std::string::npos) << finding->fix;
+}
+
+TEST(LastLink, OfMoreThanAPersonMovesIsDoubted) {
+  const auto findings_with = [](const char* mass) {
+    config::SourceReader reader = reader_of(
+        "models/examples/arm.yaml", "models/examples/arm.urdf",
+        {"", "",
+         "<mass value=\"0.4\"/>\n      <inertia ixx=\"0.0005\" iyy=\"0.0005\" izz=\"0.0005\"",
+         std::string("<mass value=\"") + mass +
+             "\"/>\n      <inertia ixx=\"0.75\" iyy=\"0.75\" izz=\"0.75\""});
+    const config::DeviceConfig device = config::load_device("f.yaml", reader);
+    return inspect(device, workspace::survey(device, kFew));
+  };
+  const Findings heavy = findings_with("600");
+  const Finding* finding = find(heavy, "link flange", "600 kg beyond the last joint");
+  ASSERT_NE(finding, nullptr) << all_of(heavy);
+  EXPECT_NE(finding->what.find("suspected grams: 0.6 kg"), std::string::npos) << finding->what;
+  EXPECT_EQ(find(findings_with("40"), "link flange", "beyond the last joint"), nullptr);
+}
+
 class BadDevice : public testing::TestWithParam<Case> {};
 class BadTwin : public testing::TestWithParam<Case> {};
 
@@ -239,9 +291,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"SingularPosture",
              {"q_min_rad: 0.26", "q_min_rad: -0.3", "", ""},
              Severity::kWarning,
-             "joints.m4",
-             "singular posture",
-             "  m4:"},
+             "joints.m5",
+             "singular wherever m4 + m5 is 0.00",
+             "  m5:"},
         Case{"DistanceThatAnOrdinaryStopExceeds",
              {"stop_distance_rad: 0.8", "stop_distance_rad: 0.5", "", ""},
              Severity::kFault,

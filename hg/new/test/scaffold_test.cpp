@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "hg/check/scenario_inspection.h"
 #include "hg/config/actuator_library.h"
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/safety/collision/nearest.h"
@@ -36,6 +37,35 @@ TEST(Scaffold, DeviceOfAnArmLoadsAndLeavesItsSingularities) {
   }
   model::ChainData chain(device.model.chain);
   EXPECT_GT(workspace::dexterity(chain, device.model.handle, 0, device.model.posture), 0.05);
+}
+
+// The example arm, its wrist beside the line of the forearm.
+ChainPart arm_with_offset(const TemporaryFolder& folder, double offset) {
+  std::string urdf = read_file(kArm.urdf);
+  const std::string wrist = "<origin xyz=\"0 0 0.45\"/>";
+  urdf.replace(urdf.find(wrist), wrist.size(), fmt::format("<origin xyz=\"{} 0 0.45\"/>", offset));
+  return {folder.write("arm.urdf", urdf), "", ""};
+}
+
+// Its elbow is singular where shoulder, elbow and wrist are in line: at no quarter of a turn.
+TEST(Scaffold, TheElbowOfAForearmWithAnOffsetIsFoundAndLeft) {
+  for (const double offset : {0.05, 0.1, -0.08, 0.3}) {
+    const TemporaryFolder folder;
+    const ChainPart part = arm_with_offset(folder, offset);
+    const model::ChainModel chain = read_part(part);
+    const double stretched = -std::atan2(offset, 0.45);
+    const auto found =
+        workspace::singular_values(chain, chain.frame("handle"), 0, workspace::joint_ranges(chain));
+    const auto elbow = std::ranges::find_if(found, [&](const workspace::SingularValue& s) {
+      return s.joint == 2 && s.other < 0 && std::abs(s.value - stretched) < 1e-6;
+    });
+    EXPECT_NE(elbow, found.end()) << offset;
+    const config::DeviceConfig device = config::load_device(
+        folder.write("arm.yaml", draft_device(part, folder.path(), Drives::kIdeal, "").device));
+    const limits::JointLimits& range = device.model.joint_limits[2];
+    EXPECT_FALSE(Interval({range.q_min - 0.15, range.q_max + 0.15}).contains(stretched)) << offset;
+    EXPECT_TRUE(Interval({range.q_min, range.q_max}).contains(device.model.posture[2])) << offset;
+  }
 }
 
 // The shapes may be meshes or stand in the URDF: runs begin where no parts are near.
@@ -160,6 +190,22 @@ TEST(Scaffold, TwinIsPlacedWhereTheDeviceReachesIt) {
     EXPECT_LT(0.45 * scenario.twin.model.dofs[0].limits.ddq_max, 5.0);
     EXPECT_LT(0.45 * scenario.twin.model.dofs[0].limits.dq_max, 1.5);
   }
+}
+
+// The box of the hand promises more than the first joint of this arm can give.
+TEST(Scaffold, TheTwinAsksNoMoreThanEveryJointCanGive) {
+  const TemporaryFolder folder;
+  auto device = config::load_simulated_device(
+      folder.write("arm.yaml", draft_device(kArm, folder.path(), Drives::kIdeal, "").device));
+  device.model.joint_limits[0].ddq_max = 1.0;
+  const config::Twin twin =
+      config::load_twin(folder.write("gate.yaml", draft_twin(kGate, folder.path(), device).yaml));
+  const check::Match match = check::match(device, twin);
+  ASSERT_EQ(match.demands.size(), 1u);
+  EXPECT_LE(match.demands[0].acceleration, 1.0);
+  EXPECT_LE(match.demands[0].speed, 1.0);
+  EXPECT_LE(match.demands[0].joint_acceleration, 1.0);
+  EXPECT_GT(match.demands[0].joint_acceleration, 0.8);  // and not much less
 }
 
 // A handle at the end of a light bar shakes in a hand on this arm, whose sensor and drives are
