@@ -4,13 +4,15 @@
 #   make test    sets up, builds and runs every test
 #   make build   sets up and builds all programs: build/release/hapticgiant and those behind its
 #                offline commands (experiment, export, identify, design, bridge ros2, ...)
-#   make wheel   packs what `make build` has made for pip, into build/wheel
+#   make wheel   builds all programs and packs them for pip, into build/wheel: one file for every Python
+#                from 3.10 on
 #   make deb     the same for apt, into build/deb
 #   make test-wheel
-#                builds the wheel twice, installs it into a fresh environment and uses it there
+#                packs the wheel twice, installs it into fresh environments of every Python that is at hand
+#                and uses it there
 #   make test-packages
-#                that, the same with the Debian package in a bare Debian (as root, with mmdebstrap), and
-#                pip install from a clean copy; minutes
+#                that, the same with the Debian package, and with the wheel, in a bare Debian (as root,
+#                with mmdebstrap), and pip install from a clean copy; minutes
 #   make bench   measures solver, cycle and laws beside the paper's solver into build/bench, and refreshes
 #                docs/reports/benchmarks.md; minutes
 #   make experiments
@@ -126,12 +128,16 @@ define pack
 @cmake --build $(BUILD) --target hg_programs _core_stubs $(if $(filter deb,$(1)),programs)
 @tools/make_$(1).sh build/$(1)
 endef
-# test_package,wheel or deb,FILES: packs it again, compares, and uses it as its user does
+# use_package,wheel, bare or deb,FILES: uses it as its user does
+define use_package
+@PATH="$(CURDIR)/.venv/bin:$$PATH" .venv/bin/python tests/packages/installed_test.py $(1) \
+  $(BUILD)/hapticgiant $(2) build/$(1)_installed || [ $$? = 77 ]
+endef
+# test_package,wheel or deb,FILES: packs it again, compares, and uses it
 define test_package
 @tools/make_$(1).sh build/$(1)_again
 @cmp build/$(1)/$(2) build/$(1)_again/$(2)
-@PATH="$(CURDIR)/.venv/bin:$$PATH" .venv/bin/python tests/packages/installed_test.py $(1) \
-  $(BUILD)/hapticgiant build/$(1)/$(2) build/$(1)_installed || [ $$? = 77 ]
+$(call use_package,$(1),build/$(1)/$(2))
 endef
 
 wheel:
@@ -145,6 +151,7 @@ test-wheel: wheel
 
 test-packages: test-wheel deb
 	$(call test_package,deb,*.deb)
+	$(call use_package,bare,build/wheel/*.whl)
 	@tools/check_pip_install.sh
 
 bench:

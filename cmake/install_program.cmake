@@ -1,5 +1,6 @@
-# The programs with what they look for below their prefix, as component `program`; the wheel
-# (pyproject.toml, tools/make_wheel.sh) and the Debian package (tools/make_deb.sh) are made of it.
+# The programs with what they look for below their prefix and what their users read, as component
+# `program`; the wheel (pyproject.toml, tools/make_wheel.sh) and the Debian package (tools/make_deb.sh)
+# are made of it.
 # A program that is to be in both says so before this file is included:
 # set_property(GLOBAL APPEND PROPERTY HG_PROGRAMS target).
 #
@@ -8,16 +9,22 @@ include(GNUInstallDirs)
 get_property(programs GLOBAL PROPERTY HG_PROGRAMS)
 add_custom_target(hg_programs)
 add_dependencies(hg_programs ${programs})
-# where the Debian package has its libraries, or the wheels beside ours theirs
 foreach(program IN LISTS programs)
-  hg_library_path(${program} ${PROJECT_BINARY_DIR} ../lib/hapticgiant/lib ../../cmeel.prefix/lib)
+  hg_library_path(${program} ${PROJECT_BINARY_DIR} ../${HG_LIBRARIES})
 endforeach()
 install(TARGETS ${programs} RUNTIME_DEPENDENCY_SET hg_libraries
   RUNTIME DESTINATION ${HG_PROGRAM_PREFIX}bin COMPONENT program)
+include(cmake/install_libraries.cmake)
 set(share ${HG_PROGRAM_PREFIX}share/hapticgiant)
 set(in_program COMPONENT program PATTERN __pycache__ EXCLUDE PATTERN ".*" EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${share} ${in_program})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/driver DESTINATION ${share}/examples ${in_program})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${share} ${in_program})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${share} COMPONENT program
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.csv" PATTERN images EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${share} COMPONENT program)
+# the problem file of examples in docs and helps
+install(FILES ${PROJECT_SOURCE_DIR}/tests/reference/exc_two.hqp.gz DESTINATION ${share}/tests/reference
+  COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/viewer/dist DESTINATION ${share}/viewer OPTIONAL ${in_program})
 install(FILES ${PROJECT_SOURCE_DIR}/THIRD_PARTY.md DESTINATION ${HG_PROGRAM_PREFIX}share/doc/hapticgiant
   COMPONENT program)
@@ -32,9 +39,6 @@ endif()
 if(TARGET hapticgiant-ros2)  # not in a wheel, which would have to bring Fast DDS and OpenSSL, 15 MB
   install(TARGETS hapticgiant-ros2 RUNTIME DESTINATION bin COMPONENT debian)
 endif()
-install(RUNTIME_DEPENDENCY_SET hg_libraries PRE_EXCLUDE_REGEXES "^ld-linux"
-  POST_INCLUDE_REGEXES "/cmeel[.]prefix/" POST_EXCLUDE_REGEXES "."
-  LIBRARY DESTINATION lib/hapticgiant/lib COMPONENT debian)
 install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/as_folder.py
   ${PROJECT_SOURCE_DIR}/python/hapticgiant/command_line.py
   ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
@@ -47,7 +51,7 @@ install(DIRECTORY ${python_parts}
   DESTINATION ${share}/python/hapticgiant COMPONENT debian PATTERN __pycache__ EXCLUDE)
 
 set(CPACK_GENERATOR DEB)
-set(CPACK_COMPONENTS_ALL program debian)
+set(CPACK_COMPONENTS_ALL program libraries debian)
 set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

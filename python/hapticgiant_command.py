@@ -8,7 +8,7 @@ import importlib.util
 import os
 import sys
 
-# the package itself is not imported, which takes longer than all of this
+# the package itself is not imported, which takes longer than all of this, and needs numpy
 package = importlib.util.find_spec("hapticgiant")
 folder = os.path.dirname(package.origin) if package and package.origin else ""
 program = os.path.join(folder, "bin", "hapticgiant")

@@ -6,8 +6,7 @@
 set -euo pipefail
 cd -P "$(dirname "$0")/.."
 folder=$PWD/${1:-build/deb}
-SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)  # the same commit gives the same bytes
-export SOURCE_DATE_EPOCH
+. tools/source_date.sh
 export PATH="$PWD/.venv/bin:$PATH"
 umask 022
 

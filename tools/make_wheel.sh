@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Packs what `make build` has made as a wheel for the Python of .venv into FOLDER, for computers with a
+# Packs what `make build` has made as a wheel for Python 3.10 and later into FOLDER, for computers with a
 # C library as old as the symbols need that are used: auditwheel finds that out, puts it into the
 # wheel's name, and bundles the system libraries that a wheel may not expect.
 #
@@ -7,8 +7,7 @@
 set -euo pipefail
 cd -P "$(dirname "$0")/.."
 folder=${1:-build/wheel}
-SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)  # the same commit gives the same bytes
-export SOURCE_DATE_EPOCH
+. tools/source_date.sh
 export PATH="$PWD/.venv/bin:$PATH"
 
 .venv/bin/python tools/third_party.py --texts build/release/copyright
@@ -16,12 +15,12 @@ rm -rf "$folder"
 mkdir -p "$folder"
 .venv/bin/python -m pip wheel --quiet --disable-pip-version-check --no-deps --no-build-isolation \
   --wheel-dir "$folder/unaudited" .
-# what other wheels bring, which this one requires
+# those of wheels are in it, cmake/install_libraries.cmake
 excluded=()
 for library in .venv/lib/python3*/site-packages/cmeel.prefix/lib/*.so*; do
   excluded+=(--exclude "${library##*/}")
 done
-if ! auditwheel repair "${excluded[@]}" --wheel-dir "$folder" "$folder"/unaudited/*.whl \
+if ! auditwheel repair --strip "${excluded[@]}" --wheel-dir "$folder" "$folder"/unaudited/*.whl \
     >"$folder/auditwheel.log" 2>&1; then
   cat "$folder/auditwheel.log" >&2
   exit 1

@@ -6,7 +6,7 @@
 #   tools/setup.sh test     that, and what the tests need; fails where anything is missing
 #   tools/setup.sh bench    as build, and what `hapticgiant bench` is compared with
 #   tools/setup.sh count    as build, and what counts instructions
-#   tools/setup.sh wheel    as build, and what packs a wheel
+#   tools/setup.sh wheel    as build, and what packs a wheel or a Debian package
 #   tools/setup.sh sanitize as build, and a compiler with all sanitizers: SANITIZER_CXX, or clang++-22
 #
 # Works without root when the system packages are there, and names them otherwise.
@@ -61,6 +61,7 @@ if [ "$purpose" = test ] || [ "$purpose" = wheel ]; then
 os.stat(sysconfig.get_path("include") + "/Python.h")' >/dev/null 2>&1 || need python3-dev
 fi
 
+[ "$purpose" != wheel ] || need dpkg-dev dpkg-shlibdeps
 [ "$purpose" != count ] || need valgrind valgrind
 sanitizers_work() {
   echo 'int main() {}' |

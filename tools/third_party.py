@@ -292,7 +292,7 @@ def write_texts(file):
     rows = [*system_rows(), *wheel_rows(), *crate_rows(), *npm_rows(), *protocol_rows()]
     for source, name, version, licence, how, _ in rows:
         if (source == "Debian" and name in UNPACKED | {"g++", "libc6"} or how == "while compiling" or
-                re.match(r"windows|winapi", name)):
+                re.match(r"windows|winapi", name) or source == "npm" and not (ROOT / "viewer/dist").exists()):
             continue  # not in it
         if source == "Debian":
             text = system_text(name, licence)

@@ -65,14 +65,16 @@ std::string python_interpreter() {
 
 std::vector<std::string> python_program(const std::string& part) {
   const fs::path home = config::installation_root();
-  const fs::path script = home / "python" / "hapticgiant" / part;
-  std::error_code error;
   std::vector<std::string> words = {python_interpreter(), "-B"};
-  if (!home.empty() && fs::exists(script, error)) {
-    words.push_back(script.string());
-  } else {
-    words.insert(words.end(), {"-m", "hapticgiant." + part});
+  // of sources or a system package, or the Python package that home, share/hapticgiant, is in
+  for (const fs::path& package :
+       {home / "python" / "hapticgiant", home.parent_path().parent_path()}) {
+    std::error_code error;
+    if (home.empty() || !fs::exists(package / part / "__main__.py", error)) continue;
+    words.push_back((package / part).string());
+    return words;
   }
+  words.insert(words.end(), {"-m", "hapticgiant." + part});
   return words;
 }
 

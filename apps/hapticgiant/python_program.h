@@ -32,7 +32,8 @@ Ended run_program(std::vector<std::string> words);
 /// closed here; returns its process, 0 where it does not start. Without input it reads nothing.
 pid_t start_program(std::vector<std::string>& words, int end, int stream);
 
-/// Words that start python/hapticgiant/`part`, or its module where the package is installed.
+/// Words that start hapticgiant/`part` of the installation (shipped_files.h) as a program, without
+/// the package's own imports; without one the module of that name.
 std::vector<std::string> python_program(const std::string& part);
 
 /// The same; sets HAPTICGIANT_PROGRAM, which names hapticgiant to parts that run it, and

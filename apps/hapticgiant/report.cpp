@@ -29,7 +29,7 @@ std::vector<std::string> export_program(const std::string& format) {
 [[noreturn]] void refuse(const std::string& interpreter) {
   throw SetupError(fmt::format(
       "{} cannot write the report: it needs scipy, matplotlib and jinja2; tools/setup.sh build, "
-      "pip install scipy matplotlib jinja2, or apt install python3-scipy python3-matplotlib "
+      "pip install 'hapticgiant[report]', or apt install python3-scipy python3-matplotlib "
       "python3-jinja2, then the same command again",
       interpreter));
 }
@@ -94,10 +94,9 @@ void check_export_program(const std::string& format) {
   const Ended ended = run_program(check);
   if (ended.code == kMissing) {
     throw SetupError(
-        fmt::format("--format {}: {} lacks {}; pip install {} there, or set HAPTICGIANT_PYTHON to "
-                    "a Python that "
-                    "has it. --format csv needs nothing",
-                    format, words[0], ended.said, ended.said));
+        fmt::format("--format {}: {} lacks {}; pip install 'hapticgiant[export]' there, or set "
+                    "HAPTICGIANT_PYTHON to a Python that has it. --format csv needs nothing",
+                    format, words[0], ended.said));
   }
   if (ended.code != 0) {
     throw SetupError(fmt::format(

@@ -79,10 +79,10 @@ void check_sweep_program(const CampaignOptions& options) {
   std::vector<std::string> words = python_program_that_runs_us("sweep");
   words.emplace_back("--check");
   if (run_program(words).code == 0) return;
-  throw SetupError(fmt::format(
-      "{} cannot play many runs: it needs PyYAML; tools/setup.sh build, pip install pyyaml, or apt "
-      "install python3-yaml, then the same command again",
-      words[0]));
+  throw SetupError(
+      fmt::format("{} cannot play many runs: it needs PyYAML; tools/setup.sh build, pip install "
+                  "'hapticgiant[sweep]', or apt install python3-yaml, then the same command again",
+                  words[0]));
 }
 
 bool play_campaign(const Campaign& campaign, const CampaignOptions& options) {

@@ -4,6 +4,11 @@ SI units. Chains: p = gantry, m = manipulator, a = twin. Frames: B = base, H = h
 come out are read-only copies.
 """
 
+try:
+    import numpy  # noqa: F401
+except ModuleNotFoundError:
+    raise ModuleNotFoundError("import hapticgiant needs numpy: pip install 'hapticgiant[arrays]'", name="numpy") from None
+
 from hapticgiant import haptic_giant, hqp, limits, model
 from hapticgiant._core import (
     Bounds,

@@ -7,6 +7,8 @@ from __future__ import annotations
 import argparse
 import difflib
 import os
+import pathlib
+import re
 import sys
 
 BAD_INPUT = 2  # exit code
@@ -18,8 +20,22 @@ def nearest(name: str, names) -> str:
     return max(names, key=lambda known: difflib.SequenceMatcher(None, name, known).ratio())
 
 
+def shipped_files() -> pathlib.Path | None:
+    """The folder of docs/, examples/ and models/: of the sources, of a system package, or within this one."""
+    package = pathlib.Path(__file__).resolve().parent
+    found = (folder for folder in (package.parents[1], package / "share" / "hapticgiant") if (folder / "docs/start").is_dir())
+    return next(found, None)
+
+
 class Parser(argparse.ArgumentParser):
-    """argparse's, with the nearest subcommand, option or choice."""
+    """argparse's, with the nearest subcommand, option or choice, and where the files are that a help names."""
+
+    def format_help(self):
+        text = super().format_help()
+        folder = shipped_files()
+        if folder and re.search(r"\b(docs|examples|models)/", text):
+            text += f"\nFiles that this names are in {folder}\n"
+        return text
 
     def wrong(self, word: str, what: str, names) -> None:
         """Ends the program: this word is no such thing as these names."""

@@ -345,7 +345,7 @@ def read(file: str | os.PathLike, columns=None) -> Samples:
     try:
         import mcap  # noqa: F401
     except ImportError as error:
-        raise ImportError("recordings need: pip install mcap") from error
+        raise ImportError("recordings need mcap: pip install 'hapticgiant[arrays]'") from error
     try:
         with open(file, "rb") as stream:
             found = _Reader(columns).read(stream)

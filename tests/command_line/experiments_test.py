@@ -131,7 +131,7 @@ class Experiments(TemporaryFolder):
         walk = ("experiment", "seeds", "walk", "--count", 1)
         code, out, err = run_without_python(*walk)
         self.assertEqual((code, out), (2, ""))
-        self.assertIn("pip install scipy matplotlib jinja2", err)
+        self.assertIn("pip install 'hapticgiant[report]'", err)
         code, _, err = run_without_python(*walk, "--json", self.folder / "seeds.json")
         self.assertEqual(code, 4)
         self.assertIn("has the results", err)

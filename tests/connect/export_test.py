@@ -204,7 +204,7 @@ class BadInput(Export):
                                self.folder / "door"], capture_output=True, text=True, timeout=60,
                               env={**os.environ, "HAPTICGIANT_PYTHON": str(python)})
         self.assertEqual(done.returncode, 2)
-        self.assertIn("lacks pyarrow; pip install pyarrow", done.stderr)
+        self.assertIn("lacks pyarrow; pip install 'hapticgiant[export]'", done.stderr)
         python.unlink()
         self.is_empty()
 

@@ -39,13 +39,13 @@ def open_folders(file):
     """Entries of its RUNPATH that depend on the working directory: empty or relative ones."""
     found = re.search(r"\((?:RUNPATH|RPATH)\).*\[(.*)\]", readelf("--dynamic", file))
     entries = found[1].split(":") if found else []
-    return [entry for entry in entries if not entry.startswith(("/", "$ORIGIN/"))]
+    return [entry for entry in entries if not re.match(r"/|\$ORIGIN(/|$)", entry)]
 
 
 def linked_files(folder):
     """Programs and libraries below `folder`."""
     for path in sorted(pathlib.Path(folder).rglob("*")):
-        if path.is_file() and not path.is_symlink() and (path.suffix == ".so" or path.stat().st_mode & 1):
+        if path.is_file() and not path.is_symlink() and (".so" in path.suffixes or path.stat().st_mode & 1):
             with path.open("rb") as file:
                 if file.read(4) == b"\x7fELF":
                     yield str(path)

@@ -6,6 +6,7 @@ import pathlib
 import re
 import sys
 import tempfile
+import tomllib
 import unittest
 from unittest import mock
 
@@ -51,6 +52,25 @@ class Licences(unittest.TestCase):
             third_party.write_texts(pathlib.Path(folder) / "copyright")
         self.assertIn("libsodium-dev", asked)
         self.assertFalse(only_for_tests() & set(asked))
+
+
+class Extras(unittest.TestCase):
+    def test_every_extra_that_is_named_exists(self):
+        project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+        extras = project["optional-dependencies"]
+        named = {}
+        for folder in ("apps", "hg", "python", "docs/start", "pyproject.toml"):
+            for file in [ROOT / folder] if (ROOT / folder).is_file() else (ROOT / folder).rglob("*.*"):
+                if file.suffix in (".cpp", ".h", ".py", ".md", ".toml"):
+                    for words in re.findall(r"hapticgiant(?:-[\w.-]*whl)?\[([a-z,]+)\]", file.read_text()):
+                        named |= dict.fromkeys(words.split(","), file)
+        self.assertLessEqual({"arrays", "report", "sweep", "study", "export"}, set(named))
+        for name, file in named.items():
+            self.assertIn(name, extras, file)
+
+    def test_a_run_needs_no_package_but_that_of_the_extensions(self):
+        project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+        self.assertEqual([re.match(r"[\w-]+", needed)[0] for needed in project["dependencies"]], ["nanobind-backend"])
 
 
 if __name__ == "__main__":

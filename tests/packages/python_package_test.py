@@ -1,7 +1,7 @@
 """The Python package as pip installs it: its tests, then the examples.
 
-Arguments: the build folder, and the program, to make a recording; the package is put beside the
-wheels first. Or --installed: the package that this Python has, without a recording, and of the tests
+Arguments: the build folder, and the program, to make a recording; the package is installed
+first. Or --installed: the package that this Python has, without a recording, and of the tests
 those that an installation can break.
 """
 
@@ -39,11 +39,10 @@ def run(*command, **options):
 
 
 def install(tree, site):
-    """The package and, beside it, the wheels' libraries that it looks for there."""
+    """The package with the libraries that a wheel has."""
     shutil.rmtree(site, ignore_errors=True)
-    run("cmake", "--install", tree, "--prefix", site, "--component", "python")
-    (wheels,) = (path for path in map(pathlib.Path, sys.path) if (path / "cmeel.prefix").is_dir())
-    (site / "cmeel.prefix").symlink_to(wheels / "cmeel.prefix")
+    for component, prefix in (("python", site), ("libraries", site / "hapticgiant")):
+        run("cmake", "--install", tree, "--prefix", prefix, "--component", component)
 
 
 def prepare(tree, program):

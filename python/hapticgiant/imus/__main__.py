@@ -279,8 +279,8 @@ def main(words):
         if options.picture:
             import matplotlib  # noqa: F401
     except ImportError as error:
-        print(f"imus: {sys.executable}: {error}: tools/setup.sh build, or pip install numpy pyyaml "
-              "matplotlib", file=sys.stderr)
+        print(f"imus: {sys.executable}: {error}: tools/setup.sh build, or pip install "
+              "'hapticgiant[report]'", file=sys.stderr)
         return 2
     try:
         return exit_code_of("imus", lambda: run(options), (InputError,))

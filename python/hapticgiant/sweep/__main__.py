@@ -200,8 +200,8 @@ def main(words):
     if words == ["--check"]:  # who asks says what is missing
         return 0 if has_yaml else 2
     if not has_yaml:
-        print(f"sweep: {sys.executable} needs PyYAML: tools/setup.sh build, or pip install pyyaml "
-              "scipy pyarrow", file=sys.stderr)
+        print(f"sweep: {sys.executable} needs PyYAML: tools/setup.sh build, or pip install "
+              "'hapticgiant[sweep]'", file=sys.stderr)
         return 2
     from hapticgiant.command_line import exit_code_of
     from hapticgiant.sweep import campaign, reader

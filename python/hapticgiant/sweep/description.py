@@ -177,7 +177,7 @@ class _Reader(Reader):
         try:
             from scipy.stats import qmc
         except ImportError:
-            self.fault(node, "samples", "needs scipy: pip install scipy")
+            self.fault(node, "samples", "needs scipy: pip install 'hapticgiant[sweep]'")
         engine = {"latin_hypercube": qmc.LatinHypercube, "sobol": qmc.Sobol}[method]
         points = engine(len(ranges), rng=seed).random(count)
         return [{key: _number_words(key, *ends, share) for (key, ends), share
