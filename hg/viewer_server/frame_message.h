@@ -52,8 +52,7 @@ void fields(Archive& a, T& frame) {
   a("dq_device", joined(robot.dq_p, record.reference.dq_m), "velocities of q_device",
     unit::kJointSpeed);
   a("dq_measured", joined(robot.dq_p, robot.dq_m), "velocities of q_measured", unit::kJointSpeed);
-  a("tau_measured_Nm", list(robot.tau_m),
-    "torque sensors of the manipulator's joints; empty = none");
+  a("tau_measured_Nm", list(robot.tau_m), "torque sensors of the joints; empty = none");
   a("q_twin", list(record.twin.q_a), "coordinates of the twin", unit::kJointPosition);
   a("dq_twin", list(record.twin.dq_a),
     "velocities of the twin; a floating joint has 6, in its own frame", unit::kJointSpeed);

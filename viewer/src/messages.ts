@@ -155,7 +155,7 @@ export interface Frame {
   q_measured: number[]; // [rad or m] gantry, then manipulator
   dq_device: number[]; // [rad/s or m/s] velocities of q_device
   dq_measured: number[]; // [rad/s or m/s] velocities of q_measured
-  tau_measured_Nm: number[]; // torque sensors of the manipulator's joints; empty = none
+  tau_measured_Nm: number[]; // torque sensors of the joints; empty = none
   q_twin: number[]; // [rad or m] coordinates of the twin
   dq_twin: number[]; // [rad/s or m/s] velocities of the twin; a floating joint has 6, in its own frame
   q_gantry_target_m: number[]; // gantry target of prepositioning

@@ -35,7 +35,7 @@ export function push_of(held: ReadonlyMap<string, number>, now_ms: number): Vec3
   return [sum[0] * scale, sum[1] * scale, sum[2] * scale];
 }
 
-// The same in B, for someone who looks along `direction`.
+// The same in B, for a viewer who looks along `direction`.
 export function in_base([away, right, up]: Vec3, direction: Vec3): Vec3 {
   const level = Math.hypot(direction[0], direction[1]);
   const [x, y] = level > 1e-3 ? [direction[0] / level, direction[1] / level] : [0, 1];

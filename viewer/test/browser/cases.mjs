@@ -409,7 +409,7 @@ export async function a_hidden_page_holds_nothing({ browser, program, expect }) 
   if (!(await follows(page, "panel"))) return close();
   expect(holds === 0, "a page that holds nothing says nothing");
   await page.click("#tab-safety");
-  await page.getByText("Override key").click();
+  await page.getByText("Override key", { exact: true }).click();
   const many = async (count) => {
     for (let i = 0; i < 600 && holds < count; i++) await page.waitForTimeout(50);
     return holds >= count;
@@ -546,7 +546,7 @@ export async function link_survives_a_restart({ browser, program, command, expec
   expect(again.link === first.link, "the program started again prints the same link");
   await drawn(page);
   const { time_s } = await frame_of(page);
-  expect(await comes_true(page, (f) => f.time_s > time_s), "and the open page continues by itself");
+  expect(await comes_true(page, (f) => f.time_s > time_s), "and the open page continues without a click");
   await close();
   await again.stop();
   rmSync(folder, { recursive: true });
