@@ -371,7 +371,7 @@ int Program::explain(const CLI::ParseError& error) const {
     return 0;
   }
   if (needs_word && last->get_parent() == nullptr && words.empty()) {
-    print_out(last->help());
+    print_out(last->help() + where_files_are(last->help(), shipped_files_));
     return kBadInput;
   }
   const std::string fault =

@@ -215,7 +215,7 @@ std::vector<Candidate> around(const Eigen::Vector3d& nominal) {
 std::vector<Candidate> where_it_is_held_so(const config::DeviceConfig& device,
                                            const Eigen::Matrix3d& R_root_start) {
   constexpr int kDrawn = 20000;
-  constexpr std::size_t kMost = 20;
+  constexpr std::size_t kMost = 120;
   constexpr double kTilt = 0.3;  // rad
   model::ChainData chain(device.model.chain);
   std::vector<Interval> ranges = workspace::joint_ranges(device.model.chain);
