@@ -232,22 +232,6 @@ double quantile(std::vector<double> values, double share) {
   return values[at];
 }
 
-// Near a face of the box the hand is braked, which takes more there than elsewhere: as `check` has
-// it, from the distance in which it comes to rest.
-void lower_to_what_faces_allow(const std::vector<Ability>& all, Reach& reach) {
-  constexpr double kWeak = 0.1;  // share of the postures there that may give less
-  const double distance = reach.speed * reach.speed / (2.0 * reach.acceleration);
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> near;
-    for (const Ability& ability : all) {
-      const double p = ability.p[axis];
-      if (std::min(p - reach.lower[axis], reach.upper[axis] - p) < distance)
-        near.push_back(ability.acceleration[axis]);
-    }
-    if (!near.empty()) reach.acceleration = std::min(reach.acceleration, quantile(near, kWeak));
-  }
-}
-
 Reach reach_of(DeviceDraft& d, const std::string& source) {
   constexpr double kFifth = 0.05;
   const std::vector<Ability> all = abilities(d);
@@ -268,7 +252,6 @@ Reach reach_of(DeviceDraft& d, const std::string& source) {
         "directions: choose the arm with --root-link and --tip-link",
         source, d.chain.model().frame_names()[d.handle], "xyz"[axis]));
   }
-  lower_to_what_faces_allow(all, reach);
   return reach;
 }
 
@@ -342,8 +325,7 @@ std::string box_lines(const DeviceDraft& d, const Reach& reach) {
   text += fmt::format(
       "    dq_max_m_per_s: {}  # [V] half of what the joints give in 95 % of the postures\n",
       rounded(reach.speed));
-  text += fmt::format("    ddq_max_m_per_s2: {}  # [V] the same, and near the faces\n",
-                      rounded(reach.acceleration));
+  text += fmt::format("    ddq_max_m_per_s2: {}  # [V] the same\n", rounded(reach.acceleration));
   return text;
 }
 
