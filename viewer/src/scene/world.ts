@@ -157,7 +157,7 @@ export class World {
       frame: frame_points,
       twin: points_on(this.twin.placement),
       person: this.person.parts.flatMap((part) => points_on(part)),
-      around: points_on(this.surroundings.group),
+      around: [this.surroundings.group, this.surfaces.group].flatMap((part) => points_on(part)),
       handle: new Vector3(...frame.p_B_H_m),
       to_user: new Vector3(0, 0, 1).applyQuaternion(attitude_of(frame)),
       arrow: this.arrow.longest_m,
