@@ -58,6 +58,8 @@ std::string_view to_string(LimitCause cause) noexcept {
       return "weight";
     case LimitCause::kTorqueRate:
       return "torque_rate";
+    case LimitCause::kBraking:
+      return "braking";
   }
   return "unknown";
 }

@@ -52,6 +52,7 @@ enum class LimitCause : std::uint8_t {
   kTorque = 8,         ///< the motor is at the largest torque available to the law
   kTorqueRate = 9,     ///< the motor's torque cannot change faster, while there is more of it
   kWeight = 10,        ///< further out the motor could not hold the weight of the arm and a hand
+  kBraking = 11,       ///< any faster, the device could not stop before this and its other limits
 };
 
 std::string_view to_string(LimitKind kind) noexcept;

@@ -47,6 +47,8 @@ std::string reason(const LimitReport& report) {
       return "its torque is building up";
     case LimitCause::kWeight:
       return "carries its share of the arm's weight";
+    case LimitCause::kBraking:
+      return "slower here, at this speed it could not stop before its end";
     case LimitCause::kNone:
     case LimitCause::kPosition:
       break;

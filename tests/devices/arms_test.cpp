@@ -215,6 +215,46 @@ TEST(PushedDrawer, NeverMovesAgainstTheHand) {
   EXPECT_LT(fastest, 1e-3);  // m/s
 }
 
+// A stroke of 1.5 m along one slide ends at walls of hand and elbow, and every 0.2 s or so the
+// other slide meets its own end, 50 mm from its middle: walls and ends brake with the same motors.
+TEST(PushedSlides, KeepTheirEndsWhereTheDeviceMeetsItsWalls) {
+  const TemporaryFolder folder;
+  const std::string device = std::filesystem::absolute("models/haptic_giant/device.yaml").string();
+  const std::string body =
+      "<inertial><mass value='3'/><inertia ixx='0.05' iyy='0.05' izz='0.05' ixy='0' ixz='0' "
+      "iyz='0'/></inertial></link>";
+  folder.write("slides.urdf",
+               "<robot name='slides'><link name='base'/><link name='rail'>" + body +
+                   "<link name='handle'>" + body +
+                   "<joint name='long' type='prismatic'><parent link='base'/><child link='rail'/>"
+                   "<axis xyz='1 0 0'/><limit lower='-2.5' upper='2.5' effort='0' velocity='1.5'/>"
+                   "</joint><joint name='short' type='prismatic'><parent link='rail'/>"
+                   "<child link='handle'/><axis xyz='0 1 0'/>"
+                   "<limit lower='-0.05' upper='0.05' effort='0' velocity='1.5'/></joint></robot>");
+  folder.write("twin.yaml",
+               "name: slides\nurdf: slides.urdf\nend_effector: handle\n"
+               "placement: {x_m: 0.6, y_m: 0.2, z_m: -0.8, roll_rad: 1.5708}\njoints:\n"
+               "  long: {ddq_max_m_per_s2: 5, damping_Ns_per_m: 2}\n"
+               "  short: {ddq_max_m_per_s2: 5, damping_Ns_per_m: 2}\n");
+  folder.write("throw.yaml",
+               "frame: base\nhand:\n  stiffness_N_per_m: [600, 600, 600]\n"
+               "  damping_Ns_per_m: [40, 40, 40]\n  grip_stiffness_N_per_m: 3000\n"
+               "  grip_damping_Ns_per_m: 40\n  force_max_N: 100\n"
+               "segments:\n  - {start_s: 1, duration_s: 1.2, x_m: 2.2, y_m: 0.6}\n"
+               "  - {start_s: 3, duration_s: 1.5, x_m: -2.2, y_m: -0.4}\nduration_s: 6\n");
+  ScenarioRun run(config::load_scenario(folder.write(
+      "slides.yaml", "title: Slides\ndescription: A stroke into walls.\ndevice: " + device +
+                         "\ntwin: twin.yaml\nperson: throw.yaml\nduration_s: 6\n")));
+  double farthest = 0.0;
+  run.play([&](const Sample& sample) {
+    if (sample.record.twin.q_a.size() == 0) return;
+    farthest = std::max(farthest, std::abs(sample.record.twin.q_a[1]));
+  });
+  EXPECT_EQ(run.summary().fault().code, FaultCode::kNone);
+  EXPECT_LT(farthest, 0.051);  // m
+  for (const double excess : run.summary().truth().worst_excess()) EXPECT_LE(excess, 1e-3);
+}
+
 // The wrist of a UR is singular at 0, and a hand that has let go leaves the noise of the force
 // sensor: it moves no joint by more than what a free tool drifts anywhere.
 class SingularStart : public testing::TestWithParam<std::pair<const char*, const char*>> {

@@ -203,7 +203,7 @@ export interface FeltLimit {
 export interface ActiveLimit {
   index: number; // index in Scene.limits
   state: "inactive" | "lower" | "upper" | "violated";
-  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque" | "torque_rate" | "weight";
+  cause: "none" | "position" | "velocity" | "acceleration" | "lock" | "latch" | "friction" | "contradiction" | "torque" | "torque_rate" | "weight" | "braking";
   excess: number; // [rad or m] distance outside the configured range, >= 0
   reaction: number; // [Nm or N] constraint force or torque in the quantity's own coordinate
   text: string;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hg::rendering {
 namespace {
@@ -48,14 +49,15 @@ Interval braking_bounds(const Approach& approach, double reserve, Interval bound
   return bounds;
 }
 
-JointBraking::JointBraking(const hqp::Problem& tasks, int fixed, int limits, int first_motor,
-                           int motors, int between)
+JointBraking::JointBraking(const hqp::Problem& tasks, int fixed, std::vector<int> rows,
+                           int first_motor, int motors)
     : fixed_(fixed),
-      limits_(limits),
+      rows_(std::move(rows)),
       first_motor_(first_motor),
       motors_(motors),
-      between_(between),
-      problem_({.variables = tasks.variables() + 1, .levels = 4, .rows = fixed + limits + 1}),
+      problem_({.variables = tasks.variables() + 1,
+                .levels = 4,
+                .rows = fixed + static_cast<int>(rows_.size()) + 1}),
       solver_(problem_.capacity()),
       solution_(problem_.capacity()),
       coefficients_(problem_.capacity().variables, 0.0) {
@@ -65,7 +67,7 @@ JointBraking::JointBraking(const hqp::Problem& tasks, int fixed, int limits, int
   problem_.add_level();
   for (int i = 0; i < motors; ++i) problem_.add_row(coefficients_, {});
   problem_.add_level();
-  for (int i = 0; i < limits - motors; ++i) problem_.add_row(coefficients_, {});
+  for (std::size_t i = motors; i < rows_.size(); ++i) problem_.add_row(coefficients_, {});
   problem_.add_level();
   problem_.add_bound(tasks.variables(), {.lb = kMostReserve});
 }
@@ -85,24 +87,23 @@ void JointBraking::copy(const hqp::Problem& tasks, int from, int to, double need
 
 double JointBraking::reserve(const hqp::Problem& tasks, std::span<const Interval> torque,
                              std::span<const Approach> approaches,
-                             std::span<const Interval> joint_room,
-                             std::span<const double> known) noexcept {
+                             std::span<const Interval> joint_room) noexcept {
   for (int i = 0; i < fixed_; ++i) {
     copy(tasks, i, i, 0.0);
     problem_.set_bounds(i, tasks.bounds(i));
   }
   int motor_row = fixed_, row = fixed_ + motors_;
-  for (int limit = 0; limit < limits_; ++limit) {
+  for (int limit = 0; limit < static_cast<int>(rows_.size()); ++limit) {
     const int motor = limit - first_motor_;
     if (motor >= 0 && motor < motors_) {
-      copy(tasks, fixed_ + limit, motor_row, 0.0);
+      copy(tasks, rows_[limit], motor_row, 0.0);
       problem_.set_bounds(motor_row++, torque[motor]);
       continue;
     }
-    const int from = fixed_ + limit + (motor < 0 ? 0 : between_);
-    copy(tasks, from, row, approaches[limit].need);
-    const Interval room = limit < first_motor_ ? joint_room[limit] : approaches[limit].room;
-    problem_.set_bounds(row++, {room.lb - known[limit], room.ub - known[limit]});
+    const Approach& approach = approaches[limit];
+    copy(tasks, rows_[limit], row, approach.need);
+    const Interval room = limit < first_motor_ ? joint_room[limit] : approach.room;
+    problem_.set_bounds(row++, {room.lb - approach.known, room.ub - approach.known});
   }
   hqp::ActiveSet active;
   solver_.solve(problem_, {}, active, solution_);

@@ -25,8 +25,9 @@ inline constexpr double kLeastReserve = 1.6;   ///< Reserve for changes of postu
 
 /// A coordinate on its way to an end of its limits.
 struct Approach {
-  double need = 0.0;  ///< Needed deceleration, rad/s^2 or m/s^2; > 0: upper end, < 0: lower end
-  Interval room;      ///< Allowed accelerations while nothing has to brake; holds 0
+  double need = 0.0;   ///< Needed deceleration, rad/s^2 or m/s^2; > 0: upper end, < 0: lower end
+  Interval room;       ///< Allowed accelerations while nothing has to brake; holds 0
+  double known = 0.0;  ///< Acceleration without the unknowns
 };
 
 /// Approach of `q` with speed `dq` to the ends of `limits`. The room is that of bounds R with a
@@ -45,24 +46,25 @@ Interval braking_bounds(const Approach& approach, double reserve, Interval bound
 
 class JointBraking {
  public:
-  /// Uses `tasks`: rows 0 .. fixed - 1 always hold; then follow the limits, of which `motors` from
-  /// `first_motor` on are rows of motors and not approached. `between` further rows, which are not
-  /// used, lie behind those of the motors.
-  JointBraking(const hqp::Problem& tasks, int fixed, int limits, int first_motor, int motors,
-               int between = 0);
+  /// Uses `tasks`: rows 0 .. fixed - 1 always hold; `rows` are those of the limits, of which
+  /// `motors` from `first_motor` on are rows of motors and not approached.
+  JointBraking(const hqp::Problem& tasks, int fixed, std::vector<int> rows, int first_motor,
+               int motors);
 
   /// Returns the reserve: at most kMostReserve, 0 where there is no such motion. `tasks` has this
   /// cycle's rows; `torque` holds the bounds of the motors' rows, `approaches` those of all limits
   /// (motors: not read), `joint_room` the room of those before the motors, in place of that in
-  /// `approaches`, `known` the limits' accelerations without x.
+  /// `approaches`.
   double reserve(const hqp::Problem& tasks, std::span<const Interval> torque,
-                 std::span<const Approach> approaches, std::span<const Interval> joint_room,
-                 std::span<const double> known) noexcept;
+                 std::span<const Approach> approaches,
+                 std::span<const Interval> joint_room) noexcept;
 
  private:
   void copy(const hqp::Problem& tasks, int from, int to, double need) noexcept;
 
-  int fixed_, limits_, first_motor_, motors_, between_;
+  int fixed_;
+  std::vector<int> rows_;
+  int first_motor_, motors_;
   hqp::Problem problem_;
   hqp::Solver solver_;
   hqp::Solution solution_;

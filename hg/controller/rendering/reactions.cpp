@@ -59,15 +59,23 @@ LimitCause cause_of_motor(const LimitRow& row, bool is_upper) noexcept {
   return is_at_end ? LimitCause::kTorque : LimitCause::kTorqueRate;
 }
 
+// whether it comes nearer to the end at which it acts; one that stands there does not brake
+bool moves_outward(const LimitRow& row, bool is_upper) noexcept {
+  constexpr double kMoves = 0.02;  // rad/s or m/s
+  return (is_upper ? row.dq : -row.dq) > kMoves;
+}
+
 // rating of the limited quantity that gives the acting bound
-LimitCause cause_of(const LimitRow& row, Interval ddq, hqp::RowState state, double reaction,
-                    double dt) noexcept {
+LimitCause cause_of(const LimitRow& row, int acting_row, Interval ddq, hqp::RowState state,
+                    double reaction, double dt) noexcept {
   if (state == hqp::RowState::kInactive) return LimitCause::kNone;
   const bool is_upper = is_upper_side(state, reaction);
   if (row.is_motor) return cause_of_motor(row, is_upper);
   const LimitCause held_by = is_upper ? row.held_by.upper : row.held_by.lower;
   const bool holds_always = held_by == LimitCause::kLock || held_by == LimitCause::kFriction;
   if (holds_always) return held_by;
+  const bool is_early = row.brakes_together || acting_row == row.stop_row;
+  if (is_early && moves_outward(row, is_upper)) return LimitCause::kBraking;
   const double sign = is_upper ? 1.0 : -1.0;
   const double bound = is_upper ? ddq.ub : -ddq.lb;
   const auto is_bound = [&](double value) {
@@ -240,10 +248,10 @@ void Reactions::report(const Tasks& tasks, const hqp::Solution& solution, const 
     const Interval ddq = is_first ? rows[limit].ddq : tasks.problem().bounds(acting_row);
     LimitReport& report = result.limits[limit];
     report.state = limit_state(solution.state[acting_row], value_[limit]);
-    report.cause =
-        acting_row == rows[limit].holding_row
-            ? LimitCause::kWeight
-            : cause_of(rows[limit], ddq, solution.state[acting_row], value_[limit], felt.dt);
+    report.cause = acting_row == rows[limit].holding_row
+                       ? LimitCause::kWeight
+                       : cause_of(rows[limit], acting_row, ddq, solution.state[acting_row],
+                                  value_[limit], felt.dt);
     report.position = rows[limit].q;
     report.to_lower = rows[limit].q - rows[limit].limits.q_min;
     report.to_upper = rows[limit].limits.q_max - rows[limit].q;

@@ -37,6 +37,7 @@ struct LimitRow {
   double q = 0.0, dq = 0.0;  ///< Position and speed in this cycle
   double known = 0.0;        ///< Acceleration without the unknowns, this cycle
   Interval ddq;              ///< Bounds of the first row in this cycle, without known accelerations
+  bool brakes_together = false;  ///< Bounds R alone would let it move faster, in this cycle
 };
 
 /// Inputs of one cycle.

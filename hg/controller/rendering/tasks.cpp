@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hg/controller/rendering/motor_torque.h"
 #include "hg/core/rotation.h"
@@ -206,12 +207,16 @@ void Tasks::add_levels(const DeviceModel& device, const TwinModel& twin) {
   add_twin_limits(device, twin);
   limit_row_count_ = problem_.rows() - first_limit_row();
   if (brakes_together(device, options_)) {
-    const int limits = device.limit_count() - (device.keeps_apart ? 1 : 0);
+    std::vector<int> rows;
+    for (int i = 0; i < static_cast<int>(limit_rows_.size()) - stop_count_; ++i) {
+      if (device.keeps_apart && i == device.limit_count() - 1) continue;
+      braking_.push_back(i);
+      rows.push_back(limit_rows_[i].row);
+    }
     lasting_.resize(device.motors().size());
-    joint_braking_.emplace(problem_, first_limit_row(), limits, first_motor_, n_m_, n_m_);
-    approaches_.resize(limits);
+    joint_braking_.emplace(problem_, first_limit_row(), std::move(rows), first_motor_, n_m_);
+    approaches_.resize(braking_.size());
     joint_room_.resize(first_motor_);
-    known_.resize(limits);
   }
   if (paper_) {
     paper_->add_levels(problem_);
@@ -344,11 +349,11 @@ void Tasks::fill(const DeviceModel& device, const TwinModel& twin,
   fill_coupling(device, twin, input);
   fill_device_limits(device, input);
   if (has_torques_) fill_motors(device, input);
+  fill_twin_limits(twin, input);
   if (joint_braking_) brake_together();
   if (holding_) keep_holding(device, input);
   if (stop_path_) stop_inside(device, input);
   if (device.keeps_apart) keep_apart(device, input.collision);
-  fill_twin_limits(twin, input);
   if (stop_count_ > 0) fill_stops(input);
 
   const VectorA tau = input.tau - input.twin_chain.c();
@@ -396,6 +401,7 @@ void Tasks::set_limit(int limit, const limits::JointLimits& limits, double q, do
   row.q = q;
   row.dq = dq;
   row.known = known_acceleration;
+  row.brakes_together = false;
   if (row.is_recoverable) {
     row.ddq = limits::recoverable_bounds(limits, row.options, q, dq, dt_);
     if (row.rating_row >= 0) problem_.set_bounds(row.rating_row, {});
@@ -540,18 +546,21 @@ void Tasks::fill_motors(const DeviceModel& device, const TaskInput& input) noexc
   }
 }
 
-// Makes the limits that need it brake together, early enough.
+// Makes the limits of the device that need it brake together, early enough, and with what the twin
+// needs for its own. The twin brakes with its ratings, which are accelerations that a device can
+// brake that has no limit near.
 void Tasks::brake_together() noexcept {
   constexpr double kFirm = 0.25;  // share of the rating with which far walls are assumed to be met
   braking_reserve_ = kMostReserve;
+  const int first_twin = static_cast<int>(limit_rows_.size()) - n_a_ - stop_count_;
   bool has_near = false;
   double horizon = 0.0;  // s, until the device stands in front of the walls that are near
-  for (std::size_t i = 0; i < approaches_.size(); ++i) {
-    const LimitRow& row = limit_rows_[i];
+  for (std::size_t i = 0; i < braking_.size(); ++i) {
+    const LimitRow& row = limit_rows_[braking_[i]];
     if (row.is_motor) continue;
     approaches_[i] = approach(row.limits, row.options, row.q, row.dq, dt_);
-    known_[i] = row.known;
-    if (!is_near(approaches_[i], row.limits)) continue;
+    approaches_[i].known = row.known;
+    if (braking_[i] >= first_twin || !is_near(approaches_[i], row.limits)) continue;
     has_near = true;
     const bool is_wall = static_cast<int>(i) >= first_motor_ + n_m_;
     if (!is_wall) continue;
@@ -564,13 +573,15 @@ void Tasks::brake_together() noexcept {
     if (horizon > 0.0)
       joint_room_[i] = intersect(joint_room_[i], lasting_room(limit_rows_[i], horizon));
   }
-  braking_reserve_ = joint_braking_->reserve(problem_, lasting_, approaches_, joint_room_, known_);
-  for (std::size_t i = 0; i < approaches_.size(); ++i) {
-    LimitRow& row = limit_rows_[i];
+  braking_reserve_ = joint_braking_->reserve(problem_, lasting_, approaches_, joint_room_);
+  for (std::size_t i = 0; i < braking_.size() && braking_[i] < first_twin; ++i) {
+    LimitRow& row = limit_rows_[braking_[i]];
     if (row.is_motor) continue;
+    const Interval alone = row.ddq;
     row.ddq =
         braking_bounds(approaches_[i], braking_reserve_, row.ddq, row.limits, row.options, row.dq);
-    problem_.set_bounds(limit_rows_[i].row, {row.ddq.lb - row.known, row.ddq.ub - row.known});
+    row.brakes_together = row.ddq.lb != alone.lb || row.ddq.ub != alone.ub;
+    problem_.set_bounds(row.row, {row.ddq.lb - row.known, row.ddq.ub - row.known});
   }
 }
 

@@ -148,8 +148,8 @@ class Tasks {
   VectorM known_torque_;  ///< Motor torques in this cycle, without those that accelerate the joints
   VectorM motor_torque_;
   std::optional<JointBraking> joint_braking_;  ///< only where limits brake together
-  std::vector<Approach> approaches_;           ///< Approaches of the device's limits, this cycle
-  std::vector<double> known_;  ///< Accelerations of these limits without the unknowns
+  std::vector<int> braking_;          ///< Limits that brake together: the device's, the twin's
+  std::vector<Approach> approaches_;  ///< Their approaches in this cycle
   std::vector<Interval> lasting_, joint_room_;  ///< Of motors once reached; of joints up to walls
   double braking_reserve_ = kMostReserve;
   std::optional<Holding> holding_;     ///< only where limits brake together

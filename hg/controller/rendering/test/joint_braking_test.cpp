@@ -88,7 +88,6 @@ struct Arm {
   Eigen::Matrix<double, kFrames, 3> jacobian;
   std::array<Interval, kJoints> torque;
   std::array<Approach, kLimits> approaches;
-  std::array<double, kLimits> known{};
 
   explicit Arm(unsigned seed) {
     std::mt19937 random(seed);
@@ -101,7 +100,7 @@ struct Arm {
       state.need = any(random);
       state.room = {-1.0 - any(random), 1.0 + any(random)};
     }
-    for (double& acceleration : known) acceleration = 0.2 * any(random);
+    for (Approach& state : approaches) state.known = 0.2 * any(random);
   }
   Eigen::Vector3d row(int limit) const {
     if (limit < kJoints) return Eigen::Vector3d::Unit(limit);
@@ -130,8 +129,8 @@ struct Arm {
   }
   double reserve() const {
     const hqp::Problem problem = tasks();
-    JointBraking braking(problem, 0, kLimits, kJoints, kJoints);
-    return braking.reserve(problem, torque, approaches, joint_room(), known);
+    JointBraking braking(problem, 0, {0, 1, 2, 3, 4, 5, 6, 7}, kJoints, kJoints);
+    return braking.reserve(problem, torque, approaches, joint_room());
   }
   // a^T (ddq, mu) <= b, all of them
   std::vector<std::pair<Eigen::Vector4d, double>> half_spaces() const {
@@ -141,7 +140,7 @@ struct Arm {
       a << row(limit), is_motor(limit) ? 0.0 : approaches[limit].need;
       Interval bounds = approaches[limit].room;
       if (is_motor(limit)) bounds = torque[limit - kJoints];
-      const double given = is_motor(limit) ? 0.0 : known[limit];
+      const double given = is_motor(limit) ? 0.0 : approaches[limit].known;
       all.emplace_back(a, bounds.ub - given);
       all.emplace_back(-a, given - bounds.lb);
     }
@@ -236,7 +235,6 @@ class Pushed {
     for (int i = 0; i < 2; ++i) problem.add_bound(i, {-1.0, 1.0});
     problem.add_level();
     std::array<Approach, 5> approaches;
-    std::array<double, 5> known{};
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector2d n = normal(i);
       problem.add_row({n.data(), 2},
@@ -245,8 +243,8 @@ class Pushed {
     }
     if (brakes_together) {
       const std::array<Interval, 2> torque = {Interval{-1.0, 1.0}, Interval{-1.0, 1.0}};
-      JointBraking braking(problem, 0, 5, 0, 2);
-      const double reserve = braking.reserve(problem, torque, approaches, {}, known);
+      JointBraking braking(problem, 0, {0, 1, 2, 3, 4}, 0, 2);
+      const double reserve = braking.reserve(problem, torque, approaches, {});
       for (int i = 0; i < 3; ++i) {
         problem.set_bounds(i + 2, braking_bounds(approaches[i + 2], reserve, problem.bounds(i + 2),
                                                  kWall, options, normal(i).dot(v)));
@@ -279,6 +277,8 @@ class Thrown {
  public:
   DeviceModel device = unlimited_device();
   TwinModel twin = body(device);
+  double speed = 1.5;       ///< Of all joints, rad/s
+  bool twin_moves = false;  ///< With the handle, else it stands
 
   /// Every joint is so far away (rad) from its ends.
   explicit Thrown(double away = 0.3) {
@@ -296,12 +296,18 @@ class Thrown {
   Tasks tasks(const RenderingOptions& options) const {
     model::ChainData device_chain(device.chain), twin_chain(twin.chain);
     RenderingState state = Rendering(device, twin, options).start(kPosture);
-    state.reference.dq_m.setConstant(kSpeed);
+    state.reference.dq_m.setConstant(speed);
     Eigen::VectorXd q(8), dq(8);
     q << kGantryAtHome, kPosture;
     dq << Eigen::Vector2d::Zero(), state.reference.dq_m;
     device_chain.update(q, dq);
     twin_chain.update(state.twin.q_a, state.twin.dq_a);
+    if (twin_moves) {
+      const Eigen::MatrixXd J_m = device_chain.jacobian(device.handle).rightCols(6);
+      const Eigen::MatrixXd J = twin_chain.jacobian(twin.end_effector);
+      state.twin.dq_a = LeastSquares(J).solve(Eigen::VectorXd(J_m * state.reference.dq_m));
+      twin_chain.update(state.twin.q_a, state.twin.dq_a);
+    }
     const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Zero());
     const MatrixA L = Eigen::MatrixXd(twin_chain.M()).llt().matrixL();
     const model::Jacobian J_H = device_chain.jacobian(device.handle);
@@ -328,9 +334,18 @@ class Thrown {
     return result;
   }
 
- private:
-  static constexpr double kSpeed = 1.5;  // rad/s
+  /// What is reported of the first cycle.
+  LawResult result() const {
+    Rendering rendering(device, twin, {});
+    RenderingState state = rendering.start(kPosture);
+    state.reference.dq_m.setConstant(speed);
+    LawResult result;
+    const RobotState robot = robot_with(kGantryAtHome, kPosture, Vector6::Constant(5.0));
+    EXPECT_EQ(rendering.step({.robot = robot}, state, result), SolverStatus::kSolved);
+    return result;
+  }
 
+ private:
   static TwinModel body(const DeviceModel& device) {
     TwinModel twin =
         unlimited_twin(model::ChainModel::free_body({.mass = 1.0}, {.gravity = false}), "handle");
@@ -389,6 +404,37 @@ TEST(BrakingTogether, AJointThatMeetsItsEndOnTheWayBrakesNoWall) {
   constexpr double kFar = 3.0, kOnTheWay = 1.5;  // rad; even this is no end that is near
   ASSERT_LT(reserve(kFar), kMostReserve);
   EXPECT_LT(reserve(kOnTheWay), 0.5 * reserve(kFar));
+}
+
+// A twin that meets its own end at the same time uses the same motors.
+TEST(BrakingTogether, AnEndOfTheTwinUsesUpTheReserve) {
+  const auto reserve = [](double away) {
+    Thrown thrown(0.15);
+    thrown.speed = 0.8;
+    thrown.twin_moves = true;
+    for (int i = 0; i < 3; ++i) {
+      limits::JointLimits& limits = thrown.twin.dofs[i].limits;
+      limits.q_min = thrown.twin.q_start[i] - away;
+      limits.q_max = thrown.twin.q_start[i] + away;
+      limits.ddq_max = 5.0;
+    }
+    return thrown.tasks(kTogether).braking_reserve();
+  };
+  EXPECT_GT(reserve(10.0), 0.1);
+  EXPECT_LT(reserve(0.1), 0.8 * reserve(10.0));
+}
+
+TEST(BrakingTogether, NamesLimitsThatMakeTheDeviceSlower) {
+  const auto braking = [](double speed) {
+    Thrown thrown;
+    thrown.speed = speed;
+    const LawResult result = thrown.result();
+    return std::count_if(
+        result.limits.begin(), result.limits.begin() + 6,
+        [](const LimitReport& limit) { return limit.cause == LimitCause::kBraking; });
+  };
+  EXPECT_GT(braking(1.5), 0);
+  EXPECT_EQ(braking(0.01), 0);
 }
 
 TEST(BrakingTogether, EqualsBrakingAloneWithoutMotorModel) {

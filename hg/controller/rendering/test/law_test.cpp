@@ -7,6 +7,7 @@
 #include <random>
 #include <sstream>
 
+#include "hg/controller/rendering/test/playing.h"
 #include "hg/controller/rendering/test/test_models.h"
 #include "hg/core/allocation_counter.h"
 #include "hg/core/error.h"
@@ -14,9 +15,6 @@
 
 namespace hg::rendering {
 namespace {
-
-const VectorM kPosture = posture({0.3, 1.5, -0.6, 1.3, 0.2, 2.1});
-const Eigen::Vector2d kGantryAtHome = Eigen::Vector2d::Zero();
 
 RenderingOptions with(Law law, Bounds bounds) {
   RenderingOptions options = without_synchronisation();
