@@ -110,11 +110,13 @@ TEST(ElasticThrow, LimitsThatBrakeTogetherHoldInCorners) {
 
 // A wrist that turns fast passes near its own forearm all the time. That is no collision ahead, and
 // the law does not let it become one.
-TEST(ElasticFastHand, OfAnArmMeetsNoCollisionAhead) {
+class ElasticFastHand : public testing::TestWithParam<const char*> {};
+
+TEST_P(ElasticFastHand, OfAnArmMeetsNoCollisionAhead) {
   bool was_held = false;
   for (const char* file : {"tests/scenarios/fast/fr3.yaml", "tests/scenarios/fast/ur5e.yaml"}) {
     SCOPED_TRACE(file);
-    const config::Scenario scenario = scenario::load({.scenario = file, .law = "together"});
+    const config::Scenario scenario = scenario::load({.scenario = file, .law = GetParam()});
     ASSERT_TRUE(scenario.device.model.keeps_apart);
     ScenarioRun run(scenario);
     bool is_near = false;
@@ -131,6 +133,8 @@ TEST(ElasticFastHand, OfAnArmMeetsNoCollisionAhead) {
   }
   EXPECT_TRUE(was_held);
 }
+
+INSTANTIATE_TEST_SUITE_P(Laws, ElasticFastHand, testing::Values("together", "gauss"));
 
 TEST(ElasticSeeds, TheSameSeedGivesTheSameBitsAndAnotherSeedOthers) {
   constexpr double kSeconds = 3.0;

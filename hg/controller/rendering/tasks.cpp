@@ -657,7 +657,7 @@ void Tasks::keep_apart(const DeviceModel& device, const CollisionTask& task) noe
   limit.dq = task.rate;
   limit.ddq = {};
   problem_.set_bounds(limit.row, {});
-  if (!joint_braking_ || !std::isfinite(task.distance)) return;
+  if (paper_ || !std::isfinite(task.distance)) return;
   const double scale = task.per_acceleration.lpNorm<Eigen::Infinity>();
   if (!(scale > kLeast)) return;
   Eigen::Map<Eigen::VectorXd> row(coefficients_.data(), problem_.variables());
