@@ -48,6 +48,7 @@ export class PushKeys {
 
   private lift({ code }: KeyboardEvent): void {
     if (!this.held.delete(code)) return;
+    if (!this.drag.is_pushing) return this.held.clear(); // the hand was let go
     this.drag.set_push(this.held.size === 0 ? null : () => this.offset());
   }
 

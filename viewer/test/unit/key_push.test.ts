@@ -119,6 +119,22 @@ describe("keys that push", () => {
     expect(sent.at(-1)!.active).toBe(false);
   });
 
+  it("that are still down after the hand was let go push no more when another one is released", () => {
+    press("KeyW");
+    press("KeyD");
+    vi.advanceTimersByTime(2000);
+    drag.release();
+    expect(sent.at(-1)!.active).toBe(false);
+    sent.length = 0;
+    lift("KeyD");
+    vi.advanceTimersByTime(500);
+    expect(sent).toEqual([]);
+    press("KeyW");
+    expect(sent.at(-1)!.active).toBe(true); // from nothing again
+    expect(Math.hypot(...sent.at(-1)!.p_B_m)).toBe(0);
+    lift("KeyW");
+  });
+
   it("press the lever while they push, as a pointer that drags does", () => {
     drag.presses_while_dragging = true;
     press("KeyD");
