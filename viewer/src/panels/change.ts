@@ -102,7 +102,7 @@ export class ChangePanel {
   refuse(refusal: Refusal): void {
     if (!this.scene) return;
     if (refusal.command === "set") {
-      this.steps.forget_last(refusal.name);
+      this.steps.refuse(refusal.name);
       this.show_tools();
       this.fields.find(({ setting }) => setting.name === refusal.name)?.refuse(refusal.reason);
       return;

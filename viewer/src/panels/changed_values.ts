@@ -8,11 +8,17 @@ export interface Step {
   from: number | null; // null: unlimited, which no command can set
 }
 
+interface SentStep extends Step {
+  at_ms: number;
+  sent: number; // values that were not refused
+}
+
 const SAME_MS = 1500; // a slider that is drawn is one step
 
 // The steps that undo what was changed, the newest last.
 export class UndoList {
-  private steps: (Step & { at_ms: number })[] = [];
+  private steps: SentStep[] = [];
+  private taken: SentStep | null = null; // whose value was sent back last
 
   get is_empty(): boolean {
     return this.steps.length === 0;
@@ -20,21 +26,36 @@ export class UndoList {
 
   note(name: string, from: number | null, now_ms: number): void {
     const last = this.steps.at(-1);
-    if (last?.name === name && now_ms - last.at_ms < SAME_MS) last.at_ms = now_ms;
-    else this.steps.push({ name, from, at_ms: now_ms });
+    this.taken = null;
+    if (last?.name === name && now_ms - last.at_ms < SAME_MS) {
+      last.at_ms = now_ms;
+      last.sent += 1;
+    } else {
+      this.steps.push({ name, from, at_ms: now_ms, sent: 1 });
+    }
   }
 
   take(): Step | null {
-    return this.steps.pop() ?? null;
+    this.taken = this.steps.pop() ?? null;
+    return this.taken;
   }
 
-  // A value that was refused has changed nothing.
-  forget_last(name: string): void {
-    if (this.steps.at(-1)?.name === name) this.steps.pop();
+  // A value that was refused has changed nothing: the other values of its step are still there, and a
+  // step that could not be taken back comes back.
+  refuse(name: string): void {
+    const last = this.steps.at(-1);
+    if (this.taken?.name === name) {
+      this.steps.push(this.taken);
+      this.taken = null;
+    } else if (last?.name === name) {
+      last.sent -= 1;
+      if (last.sent === 0) this.steps.pop();
+    }
   }
 
   clear(): void {
     this.steps = [];
+    this.taken = null;
   }
 }
 

@@ -65,7 +65,33 @@ describe("UndoList", () => {
   it("forgets what was refused", () => {
     const steps = new UndoList();
     steps.note("a", 1, 0);
-    steps.forget_last("a");
+    steps.refuse("a");
+    expect(steps.is_empty).toBe(true);
+  });
+
+  it("keeps a step of which one value was taken and another one refused", () => {
+    const steps = new UndoList();
+    steps.note("a", 1, 0);
+    steps.note("a", 2, 500); // of the same step
+    steps.refuse("a");
+    expect(steps.take()?.from).toBe(1);
+  });
+
+  it("keeps all steps when one of them cannot be taken back", () => {
+    const steps = new UndoList();
+    steps.note("a", 1, 0);
+    steps.note("a", 2, 5000);
+    expect(steps.take()?.from).toBe(2);
+    steps.refuse("a");
+    expect([steps.take(), steps.take()].map((step) => step?.from)).toEqual([2, 1]);
+  });
+
+  it("takes a refusal after a new value for that of the new value", () => {
+    const steps = new UndoList();
+    steps.note("a", 1, 0);
+    steps.take();
+    steps.note("a", 1, 5000);
+    steps.refuse("a");
     expect(steps.is_empty).toBe(true);
   });
 });
