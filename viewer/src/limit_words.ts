@@ -39,7 +39,7 @@ const CAUSES: Record<ActiveLimit["cause"], string> = {
   torque: "has no more torque",
   torque_rate: "its torque is building up",
   weight: "carries its share of the arm's weight",
-  braking: "slower here: at this speed it could not stop before its end",
+  braking: "slower here, at this speed it could not stop before its end",
 };
 
 // "end of its range, joint of the device"
