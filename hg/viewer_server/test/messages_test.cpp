@@ -535,7 +535,9 @@ TEST(LimitText, NamesSideCauseAndReaction) {
       {LimitCause::kLock, "hinge: locked, 4.1 Nm"},
       {LimitCause::kLatch, "hinge: latched, 4.1 Nm"},
       {LimitCause::kFriction, "hinge: held by friction, 4.1 Nm"},
-      {LimitCause::kContradiction, "hinge: limits contradict each other, 4.1 Nm"}};
+      {LimitCause::kContradiction, "hinge: limits contradict each other, 4.1 Nm"},
+      {LimitCause::kBraking,
+       "hinge: slower here, at this speed it could not stop before its end, 4.1 Nm"}};
   for (const auto& [cause, text] : cases) {
     report.cause = cause;
     EXPECT_EQ(limit_text(hinge, report), text);
