@@ -56,17 +56,19 @@ class SingularSearch {
     });
   }
 
-  // Values at which the first witness is singular: the ends of its dips.
+  // Values at which the first witness is singular: the ends of its dips. One may lie beside an end
+  // of the range, which is its own neighbour.
   std::vector<double> lowest(const Interval& range) {
     const Eigen::VectorXd& witness = witnesses_.front();
-    const double step = (range.ub - range.lb) / kSteps;
-    const auto at = [&](int i) { return dexterity_at(range.lb + i * step, witness); };
+    const auto place = [&](int i) {
+      return std::lerp(range.lb, range.ub, std::clamp(i, 0, kSteps) / double{kSteps});
+    };
     std::vector<double> found;
-    double before = at(0), here = at(1);
-    for (int i = 1; i < kSteps; ++i) {
-      const double next = at(i + 1);
+    double before = dexterity_at(range.lb, witness), here = before;
+    for (int i = 0; i <= kSteps; ++i) {
+      const double next = dexterity_at(place(i + 1), witness);
       if (here <= before && here <= next) {
-        const double value = bottom(range.lb + (i - 1) * step, range.lb + (i + 1) * step);
+        const double value = bottom(place(i - 1), place(i + 1));
         if (dexterity_at(value, witness) <= kSingular) found.push_back(value);
       }
       before = here;

@@ -110,13 +110,19 @@ Findings findings_of_arm(const std::string& joints) {
 
 // An elbow is singular where shoulder, elbow and wrist are in line: here at no quarter of a turn.
 TEST(Singularity, IsNamedAfterTheJointThatMakesIt) {
-  const Findings findings = findings_of_arm(
-      "  shoulder: {q_min_rad: 0.5, ddq_max_rad_per_s2: 20}\n"
-      "  elbow: {q_min_rad: -0.6, q_max_rad: 0.6, ddq_max_rad_per_s2: 20}\n"
-      "  wrist_roll: {ddq_max_rad_per_s2: 20}\n"
-      "  wrist_bend: {q_min_rad: 0.3, ddq_max_rad_per_s2: 20}\n");
-  EXPECT_NE(find(findings, "joints.elbow", "singular wherever elbow is at -0.22"), nullptr)
-      << all_of(findings);
+  // within the range of the elbow, or just before the limit at its lower or upper end
+  for (const char* limits : {"q_min_rad: -0.6, q_max_rad: 0.6", "q_min_rad: -0.22, q_max_rad: 0.6",
+                             "q_min_rad: -0.6, q_max_rad: -0.218"}) {
+    const Findings findings =
+        findings_of_arm(fmt::format("  shoulder: {{q_min_rad: 0.5, ddq_max_rad_per_s2: 20}}\n"
+                                    "  elbow: {{{}, ddq_max_rad_per_s2: 20}}\n"
+                                    "  wrist_roll: {{ddq_max_rad_per_s2: 20}}\n"
+                                    "  wrist_bend: {{q_min_rad: 0.3, ddq_max_rad_per_s2: 20}}\n",
+                                    limits));
+    EXPECT_NE(find(findings, "joints.elbow", "singular wherever elbow is at -0.22"), nullptr)
+        << limits << "\n"
+        << all_of(findings);
+  }
 }
 
 TEST(Singularity, ThatTakesSeveralJointsIsNamedAfterNone) {
