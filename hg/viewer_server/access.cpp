@@ -40,6 +40,37 @@ std::string content_type(const std::filesystem::path& file) {
 }
 
 constexpr std::size_t kTokenDigits = 32;
+constexpr std::string_view kDigits = "0123456789abcdef";
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+  throw SetupError(file.string() + ": " + why);
+}
+
+// The token in a file that this user alone has; what is checked is what is read.
+std::string token_in(const std::filesystem::path& file) {
+  const OpenFile kept = open_to_read(file);
+  struct stat facts {};
+  if (fstat(kept.descriptor(), &facts) != 0) refuse(file, std::strerror(errno));
+  if (facts.st_uid != geteuid()) {
+    refuse(file,
+           "the token of the page must be a file of the user who runs this, got one of user " +
+               std::to_string(facts.st_uid) + ", expected " + std::to_string(geteuid()));
+  }
+  if ((facts.st_mode & 077U) != 0) {
+    refuse(file, "the token of the page must be its owner's only: chmod 600 " + file.string());
+  }
+  std::string token(2 * kTokenDigits, '\0');
+  const ssize_t count = read(kept.descriptor(), token.data(), token.size());
+  const bool is_longer = count == static_cast<ssize_t>(token.size());
+  token.resize(std::max<ssize_t>(count, 0));
+  token.erase(token.find_last_not_of(" \r\n") + 1);
+  if (is_longer || token.size() != kTokenDigits ||
+      token.find_first_not_of(kDigits) != std::string::npos) {
+    refuse(file,
+           "a token is 32 hexadecimal digits 0-9 a-f: delete the file, and a new one is made");
+  }
+  return token;
+}
 
 bool is_address(const std::string& text, int family) {
   in6_addr address;  // large enough for both
@@ -53,7 +84,6 @@ std::string random_token() {
   if (getentropy(bytes.data(), bytes.size()) != 0) {
     throw SetupError("viewer: the operating system must give random numbers for the token");
   }
-  constexpr std::string_view kDigits = "0123456789abcdef";
   std::string token;
   for (const unsigned char byte : bytes) {
     token += kDigits[byte >> 4];
@@ -63,29 +93,16 @@ std::string random_token() {
 }
 
 std::string kept_token(const std::filesystem::path& file) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  const auto refuse = [&](const std::string& why) { throw SetupError(file.string() + ": " + why); };
   const int made = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (made >= 0) {
     const OpenFile owner(made);
-    const std::string token = random_token();
-    if (write(made, token.data(), token.size()) != static_cast<ssize_t>(token.size())) {
-      refuse("the token of the page cannot be written");
-    }
-    return token;
+    std::string token = random_token();
+    if (write(made, token.data(), token.size()) == static_cast<ssize_t>(token.size())) return token;
+    unlink(file.c_str());  // part of a token would be refused at the next start
+    refuse(file, "the token of the page cannot be written: is the disk full?");
   }
-  if (errno != EEXIST) refuse("cannot be written: " + std::string(std::strerror(errno)));
-  const OpenFile kept = open_to_read(file);
-  struct stat facts {};
-  if (fstat(kept.descriptor(), &facts) != 0 || (facts.st_mode & 077U) != 0) {
-    refuse("the token of the page must be its owner's only: chmod 600 " + file.string());
-  }
-  std::string token = read_file(file, 2 * kTokenDigits);
-  token.erase(token.find_last_not_of(" \r\n") + 1);
-  if (token.size() != kTokenDigits || token.find_first_not_of(kDigits) != std::string::npos) {
-    refuse("a token is 32 hexadecimal digits 0-9 a-f: delete the file, and a new one is made");
-  }
-  return token;
+  if (errno != EEXIST) refuse(file, "cannot be written: " + std::string(std::strerror(errno)));
+  return token_in(file);
 }
 
 bool is_same_secret(std::string_view a, std::string_view b) noexcept {

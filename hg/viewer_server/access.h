@@ -16,7 +16,7 @@ namespace hg::viewer_server {
 std::string random_token();
 
 /// Token in `file`, which is created with a random one if missing, for its owner only. Throws
-/// SetupError when others may read the file or it holds no token.
+/// SetupError when it is another user's file, others may read it, or it holds no token.
 std::string kept_token(const std::filesystem::path& file);
 
 /// Compares two secrets in constant time; true when both are equal.

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <set>
 
@@ -33,6 +36,36 @@ TEST(KeptToken, IsMadeOnceAndStaysItsOwnersOnly) {
   EXPECT_EQ(std::filesystem::status(file).permissions(), perms::owner_read | perms::owner_write);
   std::filesystem::permissions(file, perms::group_read, std::filesystem::perm_options::add);
   EXPECT_THROW(kept_token(file), SetupError);
+}
+
+TEST(KeptToken, IsNotTakenFromAnotherUser) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "token";
+  kept_token(file);
+  if (geteuid() != 0 || chown(file.c_str(), 1, 1) != 0)
+    GTEST_SKIP() << "only root gives files away";
+  EXPECT_THROW(kept_token(file), SetupError);
+}
+
+TEST(KeptToken, LeavesNoFileWhereItCannotBeWritten) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "token";
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto signal_before = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit few_bytes = {.rlim_cur = 8, .rlim_max = before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &few_bytes), 0);
+  std::string said;
+  try {
+    kept_token(file);
+  } catch (const SetupError& error) {
+    said = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, signal_before);
+  EXPECT_NE(said.find("cannot be written"), std::string::npos) << said;
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_EQ(kept_token(file).size(), 32u);
 }
 
 TEST(KeptToken, RefusesFilesThatHoldNone) {
