@@ -1,8 +1,9 @@
 """What the linker and the compiler must have put into a program or library.
 
-Usage: hardening_test.py [--unoptimised] FILE|FOLDER...
+Usage: hardening_test.py [--unoptimised] [--packed] FILE|FOLDER...
 reads them with readelf; exit code 1 where something is missing. Of a FOLDER all programs and libraries
-are read, and only for where they look for libraries.
+are read, and only for where they look for libraries: not in the working directory, and what is packed,
+each FILE and with --packed also each FOLDER, only from $ORIGIN on.
 """
 
 import pathlib
@@ -35,11 +36,12 @@ def missing_in(file, is_optimised):
     return [what for what, is_held in held.items() if not is_held]
 
 
-def open_folders(file):
-    """Entries of its RUNPATH that depend on the working directory: empty or relative ones."""
-    found = re.search(r"\((?:RUNPATH|RPATH)\).*\[(.*)\]", readelf("--dynamic", file))
-    entries = found[1].split(":") if found else []
-    return [entry for entry in entries if not re.match(r"/|\$ORIGIN(/|$)", entry)]
+def open_folders(file, is_packed=True):
+    """Entries of its RUNPATH where others may write: empty and relative ones, and, as the computer on
+    which something packed runs has other folders, all that do not begin where the file is."""
+    found = re.findall(r"\((?:RUNPATH|RPATH)\).*\[(.*)\]", readelf("--dynamic", file))
+    fixed = r"\$ORIGIN(/|$)" if is_packed else r"/|\$ORIGIN(/|$)"
+    return [entry for path in found for entry in path.split(":") if not re.match(fixed, entry)]
 
 
 def linked_files(folder):
@@ -59,9 +61,10 @@ def main():
     files = [argument for argument in arguments if argument not in folders]
     faults = [f"{file}: {what} is missing" for file in files
               for what in missing_in(file, "--unoptimised" not in sys.argv)]
-    linked = files + [file for folder in folders for file in linked_files(folder)]
-    faults += [f"{file}: looks for libraries in '{entry}' of the working directory"
-               for file in linked for entry in open_folders(file)]
+    linked = {file: "--packed" in sys.argv for folder in folders for file in linked_files(folder)}
+    linked.update({file: True for file in files})
+    faults += [f"{file}: looks for libraries in '{entry}', where others may write"
+               for file, is_packed in linked.items() for entry in open_folders(file, is_packed)]
     print("\n".join(faults) or f"{len(files)} hardened, {len(linked)} without an open RUNPATH")
     sys.exit(1 if faults else 0)
 

@@ -210,7 +210,7 @@ class Installed:
                   f"{component}: its licence is not in the package")
 
     def test_library_folders(self):
-        print(run(sys.executable, ROOT / "tests/hardening/hardening_test.py",
+        print(run(sys.executable, ROOT / "tests/hardening/hardening_test.py", "--packed",
                   *self.prefix.glob("bin/hapticgiant*"),
                   *{file.parent for file in self.libraries}, *self.prefix.glob("_core*.so")), end="")
 
