@@ -50,37 +50,14 @@ void refuse_folder(const std::string& name, std::string_view kind) {
   throw SetupError(fmt::format("{}: is a folder, expected a {} file", name, kind));
 }
 
-// A file, or the shipped one of this name in models/KINDs: NAME.yaml, or where `has_folder`
-// NAME/KIND.yaml; or that of a shipped arm, "fr3/drawer". `words` is what the option takes beside.
-fs::path find_shipped(const std::string& name, std::string_view kind, bool has_folder = false,
-                      const std::vector<std::string>& words = {}) {
-  std::error_code error;  // a name may be longer than the system takes
-  if (fs::is_regular_file(name, error)) return name;
-  const fs::path folder = models_root() / "models" / fmt::format("{}s", kind);
-  const fs::path known =
-      has_folder ? folder / name / fmt::format("{}.yaml", kind) : folder / (name + ".yaml");
-  if (fs::is_regular_file(known, error)) return known;
-  const fs::path of_arm = models_root() / "models" / "arms" / (name + ".yaml");
-  if (fs::is_regular_file(of_arm, error)) return of_arm;
-
-  refuse_folder(name, kind);
-  const std::string arm = fs::path(name).parent_path().string();
-  if (const auto of_this = names_in(of_arm.parent_path(), ""); !arm.empty() && !of_this.empty()) {
-    throw SetupError(fmt::format("{}: no such file, did you mean '{}/{}'? Of {} there are {}", name,
-                                 arm, nearest_name(fs::path(name).filename().string(), of_this),
-                                 arm, fmt::join(of_this, ", ")));
-  }
-  const std::vector<std::string> shipped =
-      has_folder ? folders_with(fmt::format("{}.yaml", kind), folder) : names_in(folder, "");
-  std::vector<std::string> names = words;
-  names.insert(names.end(), shipped.begin(), shipped.end());
-  throw SetupError(fmt::format("{}: no such {} file, did you mean '{}'? Shipped are {}", name, kind,
-                               nearest_name(fs::path(name).stem().string(), names),
-                               fmt::join(shipped, ", ")));
-}
+// Keys at the beginning of a line, one of which files of a kind have.
+using Keys = std::initializer_list<const char*>;
+constexpr Keys kOfScenarios = {"title"};
+constexpr Keys kOfTwins = {"end_effector", "free_body"};
+constexpr Keys kOfDevices = {"manipulator"};
 
 // The first line of a file that gives one of the keys, without the key; empty: none does.
-std::optional<std::string> value_in(const fs::path& file, std::initializer_list<const char*> keys) {
+std::optional<std::string> value_in(const fs::path& file, Keys keys) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {
     for (const char* key : keys) {
@@ -97,15 +74,77 @@ std::string title_of(const fs::path& file) {
   return value_in(file, {"title", "name"}).value_or("");
 }
 
-// The files in models/arms/ARM that have one of the keys, as "ARM/NAME".
-void add_of_arms(std::initializer_list<const char*> keys, std::vector<ShippedFile>& found) {
+std::vector<std::string> arm_names() {
+  return folders_with("device.yaml", models_root() / "models" / "arms");
+}
+
+// Names of the files in models/arms/ARM that have one of the keys; without keys all.
+std::vector<std::string> names_of_arm(const std::string& arm, Keys keys) {
+  const fs::path folder = models_root() / "models" / "arms" / arm;
+  std::vector<std::string> names = names_in(folder, "");
+  std::erase_if(names, [&](const std::string& name) {
+    return keys.size() != 0 && !value_in(folder / (name + ".yaml"), keys);
+  });
+  return names;
+}
+
+// Those of all arms, as "ARM/NAME".
+void add_of_arms(Keys keys, std::vector<ShippedFile>& found) {
   const fs::path arms = models_root() / "models" / "arms";
-  for (const std::string& arm : folders_with("device.yaml", arms)) {
-    for (const std::string& name : names_in(arms / arm, "")) {
-      const fs::path file = arms / arm / (name + ".yaml");
-      if (value_in(file, keys)) found.push_back({fmt::format("{}/{}", arm, name), title_of(file)});
+  for (const std::string& arm : arm_names()) {
+    for (const std::string& name : names_of_arm(arm, keys)) {
+      found.push_back({fmt::format("{}/{}", arm, name), title_of(arms / arm / (name + ".yaml"))});
     }
   }
+}
+
+// Refuses "ARM/NAME" of a shipped arm, with its nearest file; or of another arm, "ur5/drawer", with
+// the nearest arm that has such a file.
+void refuse_of_arm(const std::string& name, std::string_view kind, Keys keys) {
+  const fs::path path = name, arm = path.parent_path();
+  if (arm.empty()) return;
+  if (const auto own = names_of_arm(arm.string(), keys); !own.empty()) {
+    throw SetupError(fmt::format("{}: no such {} file, did you mean '{}/{}'? Of {} there are {}",
+                                 name, kind, arm.string(), nearest_name(path.stem().string(), own),
+                                 arm.string(), fmt::join(own, ", ")));
+  }
+  std::error_code error;
+  const bool is_file = path.extension() == ".yaml" || fs::exists(arm, error);
+  if (is_file || arm.has_parent_path() || keys.size() == 0) return;
+  std::vector<ShippedFile> of_arms;
+  add_of_arms(keys, of_arms);
+  std::vector<std::string> all, same;
+  for (const ShippedFile& file : of_arms) {
+    all.push_back(file.name);
+    if (fs::path(file.name).filename() == path.filename()) same.push_back(file.name);
+  }
+  throw SetupError(fmt::format("{}: no such {} file, did you mean '{}'? Arms are {}", name, kind,
+                               nearest_name(name, same.empty() ? all : same),
+                               fmt::join(arm_names(), ", ")));
+}
+
+// A file, or the shipped one of this name in models/KINDs: NAME.yaml, or where `has_folder`
+// NAME/KIND.yaml; or that of a shipped arm, "fr3/drawer". `words` is what the option takes beside.
+fs::path find_shipped(const std::string& name, std::string_view kind, Keys keys,
+                      bool has_folder = false, const std::vector<std::string>& words = {}) {
+  std::error_code error;  // a name may be longer than the system takes
+  if (fs::is_regular_file(name, error)) return name;
+  const fs::path folder = models_root() / "models" / fmt::format("{}s", kind);
+  const fs::path known =
+      has_folder ? folder / name / fmt::format("{}.yaml", kind) : folder / (name + ".yaml");
+  if (fs::is_regular_file(known, error)) return known;
+  const fs::path of_arm = models_root() / "models" / "arms" / (name + ".yaml");
+  if (fs::is_regular_file(of_arm, error)) return of_arm;
+
+  refuse_folder(name, kind);
+  refuse_of_arm(name, kind, keys);
+  const std::vector<std::string> shipped =
+      has_folder ? folders_with(fmt::format("{}.yaml", kind), folder) : names_in(folder, "");
+  std::vector<std::string> names = words;
+  names.insert(names.end(), shipped.begin(), shipped.end());
+  throw SetupError(fmt::format("{}: no such {} file, did you mean '{}'? Shipped are {}", name, kind,
+                               nearest_name(fs::path(name).stem().string(), names),
+                               fmt::join(shipped, ", ")));
 }
 
 // The folder of an installed Python package that holds this code; empty: this is a program.
@@ -148,7 +187,7 @@ std::vector<ShippedFile> shipped_scenarios() {
   std::vector<ShippedFile> found;
   for (const std::string& name : names_in(models / "scenarios", ""))
     found.push_back({name, title_of(models / "scenarios" / (name + ".yaml"))});
-  add_of_arms({"title"}, found);
+  add_of_arms(kOfScenarios, found);
   return found;
 }
 
@@ -156,7 +195,7 @@ std::vector<ShippedFile> shipped_devices() {
   const fs::path models = models_root() / "models";
   std::vector<ShippedFile> found = {
       {"haptic_giant", title_of(models / "haptic_giant" / "device.yaml")}};
-  for (const std::string& arm : folders_with("device.yaml", models / "arms"))
+  for (const std::string& arm : arm_names())
     found.push_back({arm, title_of(models / "arms" / arm / "device.yaml")});
   return found;
 }
@@ -166,18 +205,20 @@ std::vector<ShippedFile> shipped_twins() {
   std::vector<ShippedFile> found;
   for (const std::string& name : folders_with("twin.yaml", twins))
     found.push_back({name, title_of(twins / name / "twin.yaml")});
-  add_of_arms({"end_effector", "free_body"}, found);
+  add_of_arms(kOfTwins, found);
   return found;
 }
 
-fs::path find_scenario(const std::string& name) { return find_shipped(name, "scenario"); }
+fs::path find_scenario(const std::string& name) {
+  return find_shipped(name, "scenario", kOfScenarios);
+}
 
 fs::path find_script(const std::string& name) {
-  return find_shipped(name, "script", false, {"mouse", "none"});
+  return find_shipped(name, "script", {}, false, {"mouse", "none"});
 }
 
 fs::path find_twin(const std::string& name, const SourceReader& reader) {
-  return reader.exists(name) ? fs::path(name) : find_shipped(name, "twin", true);
+  return reader.exists(name) ? fs::path(name) : find_shipped(name, "twin", kOfTwins, true);
 }
 
 fs::path find_device(const std::string& name, const SourceReader& reader) {
@@ -191,7 +232,8 @@ fs::path find_device(const std::string& name, const SourceReader& reader) {
   refuse_folder(name, "device");
   // the reader of a file says what is beside it
   if (fs::path(name).extension() == ".yaml") return name;
-  std::vector<std::string> names = folders_with("device.yaml", models / "arms");
+  refuse_of_arm(name, "device", kOfDevices);
+  std::vector<std::string> names = arm_names();
   names.insert(names.begin(), "haptic_giant");
   throw SetupError(fmt::format("{}: no such device file, did you mean '{}'? Shipped are {}", name,
                                nearest_name(name, names), fmt::join(names, ", ")));

@@ -90,6 +90,20 @@ class Refused(TemporaryFolder):
         self.assertIn("expected one of together, gauss", self.refused("run", "--law", "gaus"))
         self.assertIn("got 'gaus', did you mean 'gauss'?", self.refused("run", "--law", "gaus"))
 
+    def test_files_of_arms_name_the_nearest_of_their_kind(self):
+        for words, near in ((("ur5/open_cupboard",), "scenario file, did you mean 'ur5e/open_cupboard'"),
+                            (("ur10/turn_cam",), "scenario file, did you mean 'ur5e/turn_cam'"),
+                            (("ur5/open_cupbord",), "scenario file, did you mean 'ur5e/open_cupboard'"),
+                            (("--twin", "ur5/drawer"), "twin file, did you mean 'ur5e/drawer'"),
+                            (("gen3/turn_cam",), "scenario file, did you mean 'gen3/move_tool'? Of gen3 there are move_tool, open_"),
+                            (("--device", "fr3/fcu"), "device file, did you mean 'fr3/fci'"),
+                            (("--device", "fr/fci"), "device file, did you mean 'fr3/fci'"),
+                            (("--device", "ur5"), "device file, did you mean 'ur5e'"),
+                            (("mine/dor.yaml",), "scenario file, did you mean 'door'")):
+            err = self.refused("run", *words, "--fast", "--no-recording")
+            self.assertIn(f"{words[-1]}: no such {near}", err)
+            self.assertEqual(len(err.splitlines()), 1, err)
+
     def test_files_of_another_kind_are_named_as_such(self):
         arm, gate, twin = EXAMPLES / "arm.yaml", EXAMPLES / "gate.urdf", MODELS / "twins/door/twin.yaml"
         for words, said in (
