@@ -44,8 +44,7 @@ const std::array<Meaning, 11>& meanings() {
        "'hapticgiant new device URDF' and 'hapticgiant new twin URDF' write first files"},
       {{"connect", "calibrate", "calibration"},
        "'hapticgiant commission' makes the first motions of a machine, 'hapticgiant identify' "
-       "finds "
-       "its parameters"},
+       "finds its parameters"},
       {{"ros", "ros1", "ros2"}, "'hapticgiant bridge ros2' shows runs to ROS"},
       {{"csv", "parquet", "hdf5", "rosbag"}, "'hapticgiant export RECORDING' writes tables"},
   }};

@@ -70,7 +70,8 @@ std::vector<std::string> python_program(const std::string& part) {
   for (const fs::path& package :
        {home / "python" / "hapticgiant", home.parent_path().parent_path()}) {
     std::error_code error;
-    if (home.empty() || !fs::exists(package / part / "__main__.py", error)) continue;
+    if (home.empty() || package.filename() != "hapticgiant") continue;  // not what sources are in
+    if (!fs::exists(package / part / "__main__.py", error)) continue;
     words.push_back((package / part).string());
     return words;
   }

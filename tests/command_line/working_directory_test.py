@@ -67,6 +67,17 @@ class WorkingDirectory(TemporaryFolder):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("no figures", done.stdout)
 
+    def test_the_python_package_is_no_folder_of_another_name(self):
+        """A package for pip has the program in hapticgiant/bin; sources may stand beside anything."""
+        for name, is_package in (("prefix", False), ("hapticgiant", True)):
+            program = install(self.folder / name)
+            part = self.folder / name / "study"
+            part.mkdir()
+            (part / "__main__.py").write_text("")
+            done = self.run_here(program, "study", "plan", HAPTICGIANT_PYTHON="/bin/echo")
+            self.assertEqual(str(part) in done.stdout, is_package, done)
+            self.assertEqual("-m hapticgiant.study" in done.stdout, not is_package, done)
+
     def test_an_interpreter_that_was_chosen_takes_none_either(self):
         own = pathlib.Path(".venv/bin/python").absolute()
         done = self.run_here(PROGRAM, "plot", self.record(), "--out", "figures",
