@@ -91,7 +91,7 @@ std::string_view name_of_done(const Command& command) {
 
 struct RunPage::Order {
   CommandName name;
-  bool needs_simulation;  ///< the device has to wait, or to start again
+  bool needs_simulation;  ///< the device has to wait, to start again, or to have a hand of ours
   bool changes_run;       ///< a trial would no longer be what was planned
   /// How it is executed; nullptr = by the server, at the operator's desk
   std::string (RunPage::*obey)(const Command&, runtime::Runtime*, const Note&);
@@ -106,7 +106,7 @@ std::span<const RunPage::Order> RunPage::orders() {
                                       {CommandName::kMark, false, false, &RunPage::mark},
                                       {CommandName::kEmergencyStop, false, false, nullptr},
                                       {CommandName::kReleaseStop, false, false, nullptr},
-                                      {CommandName::kAskForHand, false, false, nullptr},
+                                      {CommandName::kAskForHand, true, true, nullptr},
                                       {CommandName::kPause, true, true, &RunPage::set_pace},
                                       {CommandName::kResume, true, true, &RunPage::set_pace},
                                       {CommandName::kStep, true, true, &RunPage::set_pace},

@@ -338,7 +338,7 @@ class Complaints(unittest.TestCase):
                       f"{sum(speed <= 1 for speed in creep)} at rest, others to {max(creep):.0f} mm/s")
             self.assertAlmostEqual(mass, 0.9, delta=0.02)
             self.assertLess(max(off), 0.7, name)
-            self.assertLess(max(creep), 100, name)
+            self.assertLess(max(creep), 30, name)
 
 
 if __name__ == "__main__":

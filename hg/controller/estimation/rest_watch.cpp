@@ -15,6 +15,10 @@ constexpr int kLeftOut = 4;            // blocks in which the arm itself jerks
 constexpr double kForce = 0.5;         // N, change of the wrench that is a touch
 constexpr double kLever = 0.08;        // m, of its torque
 constexpr double kMet = 0.05;          // N, between a zero and the wrench that it has met
+constexpr double kSame = 0.15;         // N, change of a force that stays the same
+constexpr double kTravel = 0.03;       // m, on which the force of a hand changes by more
+constexpr double kMoving = 0.018;      // N, rms of an axis, by which moving drives shake a payload
+constexpr int kNewest = 4;             // blocks in which a moving tool has no tremor
 constexpr double kFast = 0.008;        // s, low-pass of what touches
 constexpr double kMean = 1.6;          // s, low-pass of what is steady
 constexpr double kFollow = 0.3;        // s, in which the zero follows it
@@ -93,6 +97,23 @@ double noise_of(double dt, double stated, const RestState& rest) noexcept {
   return std::max(stated, std::sqrt(seen));
 }
 
+// Whether the handle has travelled with the same wrench, as far as turning explains a change, and
+// without a tremor. Advances the travel.
+bool is_carried(double dt, const RestInput& input, RestState& rest) noexcept {
+  const double turned = (input.up_S - rest.carried_up).norm();
+  rest.travel += dt * input.v_H;
+  if (!is_within(rest.fast - rest.carried, kSame + payload_force(input, 9.81 * turned))) {
+    rest.carried = rest.fast;
+    rest.carried_up = input.up_S;
+    rest.travel.setZero();
+  }
+  if (!(rest.travel.norm() >= kTravel) || rest.watched_s < RestState::kBlocks * kBlock)
+    return false;
+  double sum = 0.0;
+  for (int i = 0; i < kNewest; ++i) sum += rest.blocks[i];
+  return sum / kNewest < tremor_limit(dt, noise_of(dt, input.noise, rest), kMoving);
+}
+
 // Whether the wrench stays and nothing trembles.
 void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const Eigen::Vector3d f = input.w_S.head<3>() - input.inertia_S;
@@ -123,9 +144,11 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
   const bool is_steady = is_within(change, kForce + inertia);
   rest.steady = is_steady ? std::min(rest.steady + 1, 1 << 20) : 0;
   if (!is_steady) rest.mean = rest.fast;
-  const bool is_calm =
-      is_braking || rest.tremor < tremor_limit(dt, noise_of(dt, input.noise, rest), kTremor);
-  rest.is_untouched = is_calm && rest.steady * dt >= RestState::kBlocks * kBlock;
+  const bool is_weight = is_carried(dt, input, rest);
+  const bool is_calm = is_braking || is_weight ||
+                       rest.tremor < tremor_limit(dt, noise_of(dt, input.noise, rest), kTremor);
+  const int blocks = is_weight || rest.braked_s > 0.0 ? kNewest : RestState::kBlocks;
+  rest.is_untouched = is_calm && rest.steady * dt >= blocks * kBlock;
 }
 
 // Whether time and turning explain how far the steady wrench is from the zero.

@@ -7,6 +7,10 @@
 /// an answer the zero follows the steady wrench; once it has met it, only as slowly as sensors
 /// drift. A known zero is not given up for a wrench that drift and turning do not explain.
 /// Sensors whose own noise hides a tremor never count as untouched.
+///
+/// Moving drives shake a payload nearly as a relaxed hand does. But a hand has stiffness: over 30
+/// mm of travel its force changes. A wrench that stays the same on such a way, without a tremor for
+/// 0.4 s, is a weight or a drift that nothing holds.
 #pragma once
 
 #include <array>
@@ -48,6 +52,9 @@ struct RestState {
   Eigen::Vector3d v_H = Eigen::Vector3d::Zero();           ///< Of the last sample
   Vector6 fast = Vector6::Zero(), mean = Vector6::Zero();  ///< Wrench by two low-passes
   Vector6 last = Vector6::Zero();                          ///< Wrench of the last sample
+  Vector6 carried = Vector6::Zero();                       ///< Wrench that the travel began with
+  Eigen::Vector3d carried_up = Eigen::Vector3d::Zero();    ///< Upwards at that time, in S
+  Eigen::Vector3d travel = Eigen::Vector3d::Zero();        ///< With that wrench, in B, m
   double jumps = 0.0;     ///< Mean square of a force's change from sample to sample, N^2
   double changing = 1.0;  ///< Share of the periods that bring a new sample
   bool is_untouched = false;
@@ -60,8 +67,9 @@ struct RestState {
 
 /// Words of the state hash. Filters, and all while the watch does not act, are left out.
 void hashed(auto& hash, const RestState& state) {
-  const auto& [watched_s, band, blocks, tremor, sum, samples, steady, v_H, fast, mean, last, jumps,
-               changing, is_untouched, braked_s, is_known, known_up, known_s, zero] = state;
+  const auto& [watched_s, band, blocks, tremor, sum, samples, steady, v_H, fast, mean, last,
+               carried, carried_up, travel, jumps, changing, is_untouched, braked_s, is_known,
+               known_up, known_s, zero] = state;
   if (is_known || braked_s > 0.0) hash.mix(is_untouched, braked_s, known_s, zero);
 }
 

@@ -169,6 +169,28 @@ TEST(RestWatch, APushIsSeenAlsoWhereThePayloadIsHeavy) {
   pushed.run(1, 3.05, 4.5, rest);
 }
 
+// A tool that is let go, with a wrong payload: its drives shake it a little.
+TEST_P(RestWatchSeeds, AWeightThatIsLetGoIsBrakedBeforeItFliesOff) {
+  Trial trial = {.force = [](double t) { return t < 3.0 ? 3.0 * std::sin(4.0 * t) : 5.0; },
+                 .tremor = [](double t) { return t < 3.0 ? 0.06 : 0.012; }};
+  const RestState held = trial.run(GetParam(), 0.0, 3.0);
+  EXPECT_FALSE(held.is_untouched);
+  trial.input.v_H = {0.3, 0.0, 0.0};
+  const RestState rest = trial.run(GetParam(), 3.0, 4.0, held);
+  EXPECT_GT(braking_rate(rest), 10.0);
+}
+
+// A person who carries a tool: trembling with a steady force, or with a spring's.
+TEST_P(RestWatchSeeds, AHandThatMovesAToolIsNoWeight) {
+  Trial steady = {.force = [](double) { return 3.0; }, .tremor = [](double) { return 0.04; }};
+  Trial spring = {.force = [](double t) { return 2.0 + 10.0 * std::fmod(t, 2.0); }};
+  for (Trial* trial : {&steady, &spring}) {
+    trial->input.v_H = {0.1, 0.0, 0.0};
+    trial->look = [](double t, const RestState& now) { ASSERT_EQ(braking_rate(now), 0.0) << t; };
+    trial->run(GetParam(), 0.0, 10.0);
+  }
+}
+
 TEST(RestWatch, LetsTheTwinBeWhereSomethingElseMovesOrHoldsIt) {
   Trial held = {.force = [](double) { return 2.0; }};
   held.input.is_free = false;
