@@ -6,6 +6,10 @@ import { element, is_typing, make, make_button } from "./page";
 
 const PUSH = `${RISE_N_PER_S} N more for each second that the key is held, up to ${LARGEST_N} N; a released key lets go at once`;
 
+const CAMERA: [string, string] = ["1 2 3 4", "camera: orbit, follow, top, first person"];
+const TOUCH = "By touch: drag the ring at the handle";
+const TOUCH_CAMERA = "drag elsewhere to look around, two fingers to move and zoom";
+
 const GROUPS: [string, [string, string][]][] = [
   [
     "Stop",
@@ -26,7 +30,7 @@ const GROUPS: [string, [string, string][]][] = [
       ["P", "pause, continue"],
       [".", "one step"],
       ["R", "from the start"],
-      ["1 2 3 4", "camera: orbit, follow, top, first person"],
+      CAMERA,
       ["?", "these keys"],
     ],
   ],
@@ -36,20 +40,17 @@ export class KeysDialog {
   private readonly dialog = element<HTMLDialogElement>("keys");
   private opened_from: Element | null = null;
 
-  constructor() {
+  constructor(has_cameras: boolean) {
     const close = make_button("Close", "Esc stops the device as well", () => this.close());
     close.id = "close-keys";
     const title = make("h2", "", "Keys");
     title.id = "keys-title";
-    const lists = GROUPS.flatMap(([name, keys]) => [
-      make("h3", "", name),
-      make("dl", "", ...keys.flatMap(([key, what]) => [make("dt", "", key), make("dd", "", what)])),
-    ]);
-    const touch = make(
-      "p",
-      "quiet",
-      "By touch: drag the ring at the handle; drag elsewhere to look around, two fingers to move and zoom.",
-    );
+    const lists = GROUPS.flatMap(([name, all]) => {
+      const keys = all.filter((key) => has_cameras || key !== CAMERA);
+      const rows = keys.flatMap(([key, what]) => [make("dt", "", key), make("dd", "", what)]);
+      return [make("h3", "", name), make("dl", "", ...rows)];
+    });
+    const touch = make("p", "quiet", has_cameras ? `${TOUCH}; ${TOUCH_CAMERA}.` : `${TOUCH}.`);
     this.dialog.append(title, ...lists, touch, close);
     addEventListener("keydown", (event) => this.take_key(event));
   }

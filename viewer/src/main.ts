@@ -90,7 +90,7 @@ class Page {
     this.drag.on_refused = () => this.explain_hand();
     this.hand_controls = new HandControls(this.drag);
     this.push_keys = new PushKeys(this.drag, this.picture.view);
-    const keys = new KeysDialog();
+    const keys = new KeysDialog(this.picture.has_cameras);
     build_page_tools(this.plots, () => keys.toggle());
     this.listen();
     this.picture.run((now_ms) => this.draw(now_ms));
@@ -145,6 +145,7 @@ class Page {
 
   // Why it cannot be taken hold of.
   private explain_hand(): void {
+    if (!offers_hand()) return;
     const { frame, page } = this.store;
     if (frame && is_taken(frame, page)) {
       this.notices.show("hand", `Page ${frame.hand_page} has the hand: ask for it, or wait until it lets go.`);

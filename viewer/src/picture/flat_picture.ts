@@ -25,6 +25,7 @@ export class FlatPicture implements Picture, HandView {
   readonly target_m = null;
   readonly is_hand_tracked = false;
   readonly is_worn = false;
+  readonly has_cameras = false;
   private readonly views: FlatView[];
   private held: FlatView; // in which the hand is, or was last
   private bodies: Bodies | null = null;

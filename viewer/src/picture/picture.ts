@@ -9,6 +9,7 @@ export interface Picture {
   readonly target_m: Vec3 | null; // where a headset's hand pulls to
   readonly is_hand_tracked: boolean; // by a headset
   readonly is_worn: boolean; // in a headset: nothing is seen on the screen
+  readonly has_cameras: boolean; // it can be looked at from elsewhere
   // `is_current`: no other scene has come meanwhile.
   load(scene: Scene, is_current: () => boolean): Promise<void>;
   note(frame: Frame): void; // each frame, also those that are not drawn

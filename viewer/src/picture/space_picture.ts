@@ -17,6 +17,7 @@ import type { Picture, PictureInput } from "./picture";
 
 export class SpacePicture implements Picture {
   readonly view: CameraView;
+  readonly has_cameras = true;
   private readonly stage = new Stage(element("stage"));
   private readonly cameras = new Cameras(this.stage.camera, this.stage.canvas);
   private readonly layers = new Layers(() => {

@@ -49,6 +49,8 @@ export async function without_webgl_only_the_space_is_missing({ program, expect 
     const mode = await page_comes_to(page, () => document.querySelector("#mode").textContent === "running");
     expect(mode, "the state is shown");
     expect(!(await page.isVisible("#view")), "no camera is offered");
+    const keys = await keys_listed(page);
+    expect(/Hand/.test(keys) && !/camera|look around/.test(keys), "nor listed among the keys");
     for (const tab of TABS) {
       await page.click(`#tab-${tab}`);
       expect((await page.textContent(`#${tab}`)).length > 20, `the panel shows ${tab}`);
@@ -74,6 +76,13 @@ export async function without_webgl_the_hand_opens_the_door({ program, expect })
     await page.click("#emergency-stop");
     expect(await comes_true(page, (f) => f.safety.emergency_stop), "STOP stops");
   });
+}
+
+async function keys_listed(page) {
+  await page.click("#show-keys");
+  const text = await page.textContent("#keys");
+  await page.click("#close-keys");
+  return text;
 }
 
 // Again if the window has lost the focus to another one of the tests, and with it the hand.
@@ -107,7 +116,8 @@ export async function keys_alone_open_the_door({ browser, program, expect }) {
   await page.keyboard.press("?");
   const dialog = page.getByRole("dialog", { name: "Keys" });
   expect(await dialog.isVisible(), "? shows the keys");
-  expect(/30 N/.test(await dialog.textContent()), "with the largest force of a key");
+  const keys = await dialog.textContent();
+  expect(/30 N/.test(keys) && /first person/.test(keys), "with the largest force of a key and the cameras");
   const focused = await page.evaluate(() => document.activeElement.id);
   expect(focused === "close-keys", `its button has the focus: ${focused}`);
   await page.keyboard.press("Enter");
@@ -188,7 +198,7 @@ export async function phones_have_room_for_fingers({ browser, program, expect })
   }
 }
 
-// What fingers press and is smaller; of a check box its label counts, words of a text do not. words of a text may be small.
+// What fingers press and is smaller; of a check box its label counts, words of a text do not.
 function too_small(least) {
   return [...document.querySelectorAll("button:not(.term), select, summary, input[type=text], input[type=range], .check")]
     .filter((part) => part.checkVisibility())
