@@ -9,6 +9,7 @@ Journal of Sleep Research 12, 2003).
 """
 
 import itertools
+import types
 import unittest
 import warnings
 
@@ -143,9 +144,31 @@ class Paired(unittest.TestCase):
                 edges = np.unique(shifts)
                 for shift in [edges[0] - 1, *(edges[1:] + edges[:-1]) / 2, edges[-1] + 1]:
                     self.assertEqual(found.low < shift < found.high, p_of(shift) >= 0.05, (a, b, c, shift))
-                is_in, is_inside = found.low <= 0 <= found.high, found.low < 0 < found.high
-                self.assertTrue(is_in if found.p >= 0.05 else not is_inside, (a, b, c))
+                is_above = found.low < 0 or found.low == 0 and found.open_end != "low"
+                is_below = found.high > 0 or found.high == 0 and found.open_end != "high"
+                self.assertEqual(is_above and is_below, found.p >= 0.05, (a, b, c))
+                self.assertTrue(found.open_end == "" or found.p < 0.05, (a, b, c))
                 self.assertTrue(found.low <= found.estimate <= found.high)
+
+    def test_an_end_at_a_0_that_is_rejected_is_printed_as_open(self):
+        """Ratings of 7 points: a Walsh average, or a difference of two people, is 0 where p begins to reject."""
+        plan = types.SimpleNamespace(plan={"alpha": 0.05, "correction": "none"})
+        for test, a, b, high in (("wilcoxon", [1, 4, 4, 5, 4, 2, 6, 6], [2, 6, 6, 7, 7, 1, 7, 7], "2.5"),
+                                 ("mann_whitney", [1, 2, 2, 6, 2, 7, 2], [3, 6, 7, 4, 7, 7, 6], "5")):
+            people = [*range(len(a))] * 2 if test == "wilcoxon" else range(2 * len(a))
+            for values, wanted in (([*a, *b], f"above 0 to {high}"), ([*b, *a], f"-{high} to below 0")):
+                found = inference.run(test, values, ["x"] * len(a) + ["y"] * len(a), people)
+                self.assertLess(found.p, 0.05)
+                self.assertEqual(analysis.pair_rows(plan, [("rating", found, found.p)])[1][4], wanted)
+        self.assertEqual(analysis.interval(-0.0, 2), "0 to 2")
+        self.assertEqual(analysis.interval(0, np.inf, "low"), "above 0 to no end")
+
+    def test_an_end_is_moved_to_a_0_that_is_rejected(self):
+        """Where p falls at 0 and rises again beyond, the end on the other side of the estimate is an open 0."""
+        for p, estimate, wanted in ((0.04, 1.0, (0, 3, "low")), (0.04, -1.0, (-2, 0, "high")), (0.05, 1.0, (-2, 3, ""))):
+            found = inference.not_rejected(np.array([-2.0, -1.0, 1.0, 3.0]), lambda shift: 0.06 if -2 < shift < 3 else 0.01,
+                                           p, estimate, 0.05)
+            self.assertEqual(found, wanted)
 
     def test_no_difference_at_all_is_no_error(self):
         self.assertEqual(inference.wilcoxon([1, 2, 3], [1, 2, 3]).p, 1)

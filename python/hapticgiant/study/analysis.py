@@ -203,15 +203,17 @@ def pair_rows(data: Data, found) -> list[list[str]]:
         for pair in [] if isinstance(each, str) else each.comparisons:
             df = "" if pair.df is None else f"({degrees([pair.df])})"
             rows.append([outcome, f"{pair.second} - {pair.first}", pair.counted, f"{pair.estimate:.3g}",
-                         interval(pair.low, pair.high), f"{pair.statistic}{df} = {pair.value:.3f}",
+                         interval(pair.low, pair.high, pair.open_end), f"{pair.statistic}{df} = {pair.value:.3f}",
                          inference.number(pair.p), inference.number(pair.p_adjusted), f"{pair.effect} = {pair.size:.2f}"])
     return rows
 
 
-def interval(low: float, high: float) -> str:
-    """Both ends of an interval; a test by ranks of few people may have none."""
-    low, high = ("no end" if math.isinf(each) else f"{each:.3g}" for each in (low, high))
-    return "none" if low == high == "no end" else f"{low} to {high}"
+def interval(low: float, high: float, open_end: str = "") -> str:
+    """Both ends of an interval; a test by ranks of few people may have none. An open end is not within."""
+    low, high = ("no end" if math.isinf(each) else f"{each + 0.0:.3g}" for each in (low, high))
+    if low == high == "no end":
+        return "none"
+    return f"{'above ' if open_end == 'low' else ''}{low} to {'below ' if open_end == 'high' else ''}{high}"
 
 
 def assumption_rows(found) -> list[list[str]]:

@@ -49,6 +49,8 @@ class Comparison:
     """How many values the test counts: people, pairs that differ, or both groups."""
     note: str = ""
     """What ranks leave out or share."""
+    open_end: str = ""
+    """"low" or "high": that end is 0, and 0 itself is not within the interval."""
 
 
 @dataclasses.dataclass
@@ -140,12 +142,13 @@ def paired_t(first, second, alpha=0.05, names=("a", "b")) -> Comparison:
                       counted=str(len(difference)))
 
 
-def not_rejected(ends, p_of, p: float, estimate: float, alpha: float) -> tuple[float, float]:
-    """The interval of shifts that a test by ranks does not reject: the test inverted, ties and all.
+def not_rejected(ends, p_of, p: float, estimate: float, alpha: float) -> tuple[float, float, str]:
+    """The interval of shifts that a test by ranks does not reject, and which end is open: the test inverted, ties and all.
 
     ends: sorted shifts at which the ranks change; p_of(shift): p between them; p: of the shift 0. An end that no shift
-    is rejected beyond is infinite. With ties p need not fall evenly: where it leaves a doubt, 0 is within the interval
-    if and only if the test does not reject it.
+    is rejected beyond is infinite. 0 is within the interval if and only if the test does not reject it: an end at a 0
+    that is rejected is open ("low" or "high"; empty: none is), and so is one that is moved there since with ties p need
+    not fall evenly.
     """
     limit = alpha * (1 - 1e-12)  # p of the limit itself is not rejected
     width = ends[-1] - ends[0] + abs(ends[0]) + 1
@@ -166,10 +169,10 @@ def not_rejected(ends, p_of, p: float, estimate: float, alpha: float) -> tuple[f
     low = -math.inf if first == 0 else float(edges[first])
     high = math.inf if last == len(edges) - 2 else float(edges[last + 1])
     if p >= limit:
-        return min(low, 0.0), max(high, 0.0)
-    if low < 0 < high:
-        return (0.0, high) if estimate > 0 else (low, 0.0)
-    return low, high
+        return min(low, 0.0), max(high, 0.0), ""
+    if not low <= 0 <= high:
+        return low, high, ""
+    return (0.0, high, "low") if estimate > 0 or low == 0 else (low, 0.0, "high")
 
 
 def doubled_ranks(values) -> tuple[int, ...]:
@@ -225,14 +228,14 @@ def wilcoxon(first, second, alpha=0.05, names=("a", "b"), is_exact: bool | None 
     above, other = np.triu_indices(count)
     walsh = rounded((kept[above] + kept[other]) / 2, float(np.max(abs(kept))))
     estimate, p = float(np.median(walsh)), signed_rank_p(kept, is_exact)
-    low, high = not_rejected(np.unique(walsh), lambda shift: signed_rank_p(kept - shift, is_exact), p, estimate, alpha)
+    low, high, open_end = not_rejected(np.unique(walsh), lambda shift: signed_rank_p(kept - shift, is_exact), p, estimate, alpha)
     notes = []
     if count < len(difference):
         notes.append(f"{len(difference) - count} of {len(difference)} pairs do not differ and are left out: {count} count")
     if tied := shared(ranks):
         notes.append(f"{tied} of {count} differences share a rank")
     return Comparison(*names, "V", v, p, estimate, low, high, effect, (2 * v - total) / total, counted=counted,
-                      note="; ".join(notes))
+                      note="; ".join(notes), open_end=open_end)
 
 
 def shared(ranks) -> int:
@@ -303,10 +306,10 @@ def mann_whitney(first, second, alpha=0.05, names=("a", "b"), is_exact: bool | N
     u = stats.mannwhitneyu(b, a, method="asymptotic").statistic if np.ptp(pooled) > 0 else len(a) * len(b) / 2
     gaps = rounded((b[:, None] - a[None, :]).ravel(), float(np.max(abs(pooled))))
     estimate, p = float(np.median(gaps)), rank_sum_p(a, b, is_exact)
-    low, high = not_rejected(np.unique(gaps), lambda shift: rank_sum_p(a, b - shift, is_exact), p, estimate, alpha)
+    low, high, open_end = not_rejected(np.unique(gaps), lambda shift: rank_sum_p(a, b - shift, is_exact), p, estimate, alpha)
     tied = shared(stats.rankdata(pooled))
     return Comparison(*names, "U", u, p, estimate, low, high, "rank-biserial (Cliff's delta)", 2 * u / len(gaps) - 1,
-                      counted=both(a, b), note=f"{tied} of {len(pooled)} values share a rank" if tied else "")
+                      counted=both(a, b), note=f"{tied} of {len(pooled)} values share a rank" if tied else "", open_end=open_end)
 
 
 def least_p(test: str, sizes: list[int]) -> float:
