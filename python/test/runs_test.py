@@ -260,8 +260,8 @@ class Comparison(unittest.TestCase):
         return {"facts": run | more,
                 "columns": {name: rows[name].tolist() for name in ("cycle", "state_hash")}}
 
-    def compare(self, rows, other_rows, **more):
-        both = [self.recorded("a", rows), self.recorded("b", other_rows, **more)]
+    def compare(self, rows, other_rows, of_first=None, **more):
+        both = [self.recorded("a", rows, summary=summary(**of_first or {})), self.recorded("b", other_rows, **more)]
         return said(recordings.write, {"kind": "compare", "runs": both}, None)
 
     def test_the_same(self):
@@ -302,6 +302,16 @@ class Comparison(unittest.TestCase):
             code, text = self.compare(table(), table(), summary=other)
             self.assertEqual(code, 1)
             self.assertIn("forces         mean has no value in the second", text)
+
+    def test_an_oscillation_of_hand_and_device(self):
+        still, shaken = ({"shaking": {"duration_s": duration_s}} for duration_s in (0.0, 0.25))
+        code, text = self.compare(table(), table(), of_first=still, summary=summary(**shaken))
+        self.assertEqual(code, 1)
+        self.assertIn("vibration      hand and device oscillate for 0.00 -> 0.25 s", text)
+        for one, other in ((shaken, shaken), (shaken, {}), ({}, shaken)):  # a summary of an earlier program has none
+            code, text = self.compare(table(), table(), of_first=one, summary=summary(**other))
+            self.assertEqual(code, 0)
+            self.assertIn("vibration      nothing changed", text)
 
     def test_timing_alone_is_no_difference(self):
         other = summary(cycle_time_us={"median": 15.0, "p99_9": 20.0, "max": 0.0})
