@@ -1,6 +1,6 @@
 """Draws commands of the documents by a seed and plays them: those that docs_test.py does not run.
 
-    drawn_commands_test.py PROGRAM [--seed N] [--count 20] [--list]
+    drawn_commands_test.py PROGRAM [--seed N | --today] [--count 20] [--list]
 
 Documents are README.md, docs/**/*.md and models/README.md; commands are lines of their blocks that begin with
 `hapticgiant`, and what stands so between backticks. Drawn are those that this computer can play: without a machine, a
@@ -8,8 +8,8 @@ cluster, another program, or a word that stands for another (FILE, HOST). Each i
 the files which the documents speak of: examples under the names of my_*, a recording, links to models/ and examples/.
 
 A command must end with exit code 0, or with N where its line ends with `# exit N`. One that still runs after LONGEST_S
-has been understood; it is ended. The seed is the day, as 20261130, unless one is given: the same seed and documents
-draw the same commands.
+has been understood and gets SIGINT: within ENDING_S it must end so, or as one that was interrupted. The same seed and
+documents draw the same commands, every day; with --today the seed is the date, as 20261130.
 """
 
 import argparse
@@ -29,7 +29,11 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+SEED = 1
 LONGEST_S = 5
+ENDING_S = 120
+INTERRUPTED = (130, -signal.SIGINT)
+VERDICTS = ("commission", "start-test")  # of which an interrupted one is not passed: 1
 PREPARING_S = 300
 BLOCK = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 INDENTED = re.compile(r"^    (\S.*)$", re.MULTILINE)
@@ -135,6 +139,19 @@ def free_port():
         return str(found.getsockname()[1])
 
 
+def end_of(process, exit_code, interrupted):
+    """Its exit code, None where it does not end; and those that are right for it, (exit_code,) if it ends uninterrupted."""
+    try:
+        return process.wait(LONGEST_S), (exit_code,)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGINT)
+    wanted = tuple(dict.fromkeys((0, exit_code, *interrupted)))
+    try:
+        return process.wait(ENDING_S), wanted
+    except subprocess.TimeoutExpired:
+        return None, wanted
+
+
 def play(program, command, folder):
     """What is wrong with a command; empty: nothing."""
     words = [re.sub(r"^(127\.0\.0\.1:)?(4810|8080)$", lambda found: (found[1] or "") + free_port(), word)
@@ -146,30 +163,31 @@ def play(program, command, folder):
         process = subprocess.Popen([program, *words], cwd=folder, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
                                    env=environment, start_new_session=True)
         try:
-            code = process.wait(LONGEST_S)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, signal.SIGINT)
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(PREPARING_S)
-            return ""
+            interrupted = (*INTERRUPTED, 1) if words[0] in VERDICTS else INTERRUPTED
+            code, wanted = end_of(process, command.exit_code, interrupted)
         finally:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
         said.seek(0)
         text = said.read()
-    if code == command.exit_code or command.is_mention and re.search(LEFT_OUT, text):
+    if code in wanted or code is not None and command.is_mention and re.search(LEFT_OUT, text):
         return ""
-    return f"{command.page}: {command.text}\n  exit {code}, expected {command.exit_code}\n{text[-1500:]}"
+    end = f"still ran {ENDING_S} s after SIGINT" if code is None else f"exit {code}"
+    return f"{command.page}: {command.text}\n  {end}, expected {' or '.join(map(str, wanted))}\n{text[-1500:]}"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("program", type=lambda name: str(pathlib.Path(name).resolve()))
-    parser.add_argument("--seed", type=int, default=int(datetime.date.today().strftime("%Y%m%d")))
+    seed = parser.add_mutually_exclusive_group()
+    seed.add_argument("--seed", type=int, default=SEED)
+    seed.add_argument("--today", dest="seed", action="store_const", const=int(datetime.date.today().strftime("%Y%m%d")),
+                      help="the date as seed")
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--list", action="store_true", help="print all that can be drawn, and play nothing")
     words = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background it is ignored, by commands, too
     faults = []
     with tempfile.TemporaryDirectory() as before:
         prepared = pathlib.Path(before)
