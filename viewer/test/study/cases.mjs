@@ -139,7 +139,7 @@ export async function escape_stops({ browser, mock, links, expect }) {
   await page.keyboard.press("Escape");
   await until(page, () => document.body.dataset.phase === "failed");
   expect(mock.stops === 1, "Esc stops by the study server, also while one types");
-  expect(mock.received.includes("emergency stop"), `and by the run's page: ${mock.received.join()}`);
+  expect(await mock.receives("emergency stop"), `and by the run's page: ${mock.received.join()}`);
   const problem = await page.textContent("#problem");
   expect(/stopped by the operator/.test(problem), `the problem is an alert: ${problem}`);
   expect_none(expect, await violations(page));

@@ -19,7 +19,7 @@ const RUN_PAGE = `<!doctype html><html lang="en"><meta charset="utf-8"><title>Ru
 <link rel="stylesheet" href="run.css"><main><h1>The run</h1><p id="received"></p><button>STOP</button></main><script src="run.js"></script></html>`;
 const RUN_SCRIPT = `addEventListener("message", ({ data }) => {
   document.getElementById("received").textContent = data;
-  fetch("/received?" + encodeURIComponent(data));
+  fetch("/received?" + encodeURIComponent(data), { keepalive: true }); // the page goes when the study server has stopped, too
 });
 document.getElementById("received").textContent = location.hash;`;
 const RUN_STYLE = `body { font-family: sans-serif; background: #dfe7f0; color: #1c2630; display: grid; place-items: center; min-height: 90vh; }`;
@@ -189,6 +189,14 @@ export class Mock {
     }
     const found = { "/run.js": [RUN_SCRIPT, "text/javascript"], "/run.css": [RUN_STYLE, "text/css"] }[url.pathname] ?? [RUN_PAGE, "text/html"];
     response.writeHead(200, { "Content-Type": found[1] }).end(found[0]);
+  }
+
+  // Whether a page says so to the run's page, which has its own connection.
+  async receives(text, patience_ms = 30_000) {
+    for (const end = Date.now() + patience_ms; Date.now() < end; await new Promise((done) => setTimeout(done, 20))) {
+      if (this.received.includes(text)) return true;
+    }
+    return false;
   }
 
   take(page, socket) {
