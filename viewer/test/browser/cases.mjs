@@ -93,6 +93,24 @@ export async function hand_alone({ browser, program, expect }) {
   await trial.close();
 }
 
+// The operator of a study must not disturb who holds the handle.
+export async function a_trial_does_not_ask_for_the_hand({ browser, program, expect }) {
+  const hand = await open_page(browser, cheap(`${program.link}&show=hand`));
+  const trial = await open_page(browser, cheap(`${program.link}&show=trial`));
+  await hand.page.keyboard.down("d");
+  const is_known = await page_comes_to(trial.page, () => /has the hand/.test(document.querySelector("#holder").textContent));
+  expect(is_known, "the participant has the hand");
+  const asks = ["#holder", "#ask-for-hand"];
+  const seen = await trial.page.evaluate((parts) => parts.filter((part) => document.querySelector(part).checkVisibility()), asks);
+  expect(seen.length === 0, `the operator's page does not offer to ask for it: ${seen.join(" ") || "nothing"}`);
+  for (const key of "wasd") await trial.page.keyboard.press(key);
+  const notices = await trial.page.textContent("#notices");
+  expect(!/hand/.test(notices), `nor do keys that push say so: ${notices || "nothing"}`);
+  await hand.page.keyboard.up("d");
+  await hand.close();
+  await trial.close();
+}
+
 // As a user without instructions does: at once, and not along the arc of the handle.
 export async function hasty_drag_opens_door({ browser, program, expect }) {
   const { page, close } = await open_page(browser, cheap(program.link));
