@@ -59,8 +59,12 @@ export class FeelPanel {
     );
     const budget = make("div", "budget");
     for (const part of PART_NAMES) budget.append(this.add_row(part));
-    section.append(
-      make("div", "wrench", this.one("force", this.force, "N", this.force_bar)),
+    const wrench = make("div", "wrench", this.one("force", this.force, "N", this.force_bar));
+    wrench.append(this.one("torque", this.torque, "Nm", this.torque_bar));
+    const body = make(
+      "div",
+      "feel-body",
+      wrench,
       make("h2", "", "Why do I feel this?"),
       this.reason,
       this.acting,
@@ -73,7 +77,7 @@ export class FeelPanel {
       make("h2", "", "Safety"),
       this.safety,
     );
-    section.firstElementChild!.append(this.one("torque", this.torque, "Nm", this.torque_bar));
+    section.append(body);
   }
 
   show(scene: Scene, frame: Frame): void {

@@ -23,6 +23,8 @@ const PHONES = {
   "small phone upright": { width: 360, height: 640 },
 };
 
+const TABLET = { width: 820, height: 1180 };
+
 async function without_space(program, use, options = {}) {
   const browser = await start_browser(NO_SPACE);
   const opened = await open_page(browser, cheap(program.link), options);
@@ -205,6 +207,15 @@ function too_small(least) {
     .map((part) => ({ part, box: part.getBoundingClientRect() }))
     .filter(({ box }) => box.width < least - 0.5 || box.height < least - 0.5)
     .map(({ part, box }) => `${part.id || part.textContent || part.type} ${box.width | 0}x${box.height | 0}`);
+}
+
+export async function a_tablet_shows_all_at_once({ browser, program, expect }) {
+  const { page, close } = await open_page(browser, cheap(program.link), { viewport: TABLET, hasTouch: true });
+  const bar = await page.locator("#bar").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
+  expect(bar <= 0, `no tool of the bar sticks out: ${bar} px`);
+  const feel = await page.locator("#feel").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
+  expect(feel <= 0, `no column of the panel sticks out: ${feel} px`);
+  await close();
 }
 
 export async function a_second_page_asks_for_the_hand({ browser, program, expect }) {
