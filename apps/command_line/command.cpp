@@ -131,18 +131,23 @@ void refuse_empty_values(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) refuse_empty_values(*command);
 }
 
-// The values of Option::suggest(), kept as the name of a validator that checks nothing.
-constexpr std::string_view kSuggested = "suggested\n";
+// Name of the validator that keeps the values of Option::suggest(): it is asked for them only, and
+// checks nothing.
+constexpr std::string_view kSuggested = "suggested";
 
 std::vector<std::string> suggested_values(CLI::Option& option) {
-  std::string values;
+  CLI::Validator* kept = nullptr;
   try {
-    for (int i = 0; !values.starts_with(kSuggested); ++i)
-      values = option.get_validator(i)->get_name();
+    for (int i = 0; kept == nullptr || kept->get_name() != kSuggested; ++i)
+      kept = option.get_validator(i);
   } catch (const CLI::OptionNotFound&) {
     return {};
   }
-  return CLI::detail::split(values.substr(kSuggested.size()), '\n');
+  std::string values;
+  kept->active(true);
+  (void)(*kept)(values);
+  kept->active(false);
+  return CLI::detail::split(values, '\n');
 }
 
 CLI::App* subcommand_named(CLI::App* command, const std::string& name) {
@@ -208,13 +213,17 @@ Option Option::one_of(const std::vector<std::string>& values) const {
     return fmt::format("expected one of {}, got '{}'{}", fmt::join(values, ", "), text,
                        near.empty() ? "" : ", did you mean '" + near + "'?");
   });
-  return Option(self_->check(member)).suggest(values);
+  return Option(self_->check(member)).suggest([values] { return values; });
 }
 
-Option Option::suggest(const std::vector<std::string>& values) const {
+Option Option::suggest(const std::function<std::vector<std::string>()>& values) const {
   CLI::Validator kept;
-  kept.name(fmt::format("{}{}", kSuggested, fmt::join(values, "\n"))).active(false);
-  return Option(self_->check(kept));
+  kept.operation([values](std::string& text) {
+    text = fmt::format("{}", fmt::join(values(), "\n"));
+    return std::string();
+  });
+  kept.name(std::string(kSuggested)).active(false);
+  return Option(self_->transform(kept));
 }
 
 Option Option::existing_file() const { return Option(self_->check(CLI::ExistingFile)); }

@@ -30,8 +30,8 @@ class Option {
   Option check(const OptionCheck& check) const;
   /// Only these values; the help lists them, and a shell completes them.
   Option one_of(const std::vector<std::string>& values) const;
-  /// Values that a shell completes, besides others that are valid.
-  Option suggest(const std::vector<std::string>& values) const;
+  /// Values that a shell completes, besides others that are valid; found when it asks for them.
+  Option suggest(const std::function<std::vector<std::string>()>& values) const;
   Option existing_file() const;
   /// Replaces the value by what `change` returns for it.
   Option transform(const std::function<std::string(const std::string&)>& change) const;

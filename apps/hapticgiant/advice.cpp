@@ -132,7 +132,9 @@ void add_help(Command app) {
   const auto command = std::make_shared<std::string>();
   const std::vector<std::string> names = app.subcommand_names();
   const Command help = app.add_subcommand("help", "Describes a command: help run, help new twin.");
-  help.add_option("command", *command, "the command; without: all of them").suggest(names);
+  help.add_option("command", *command, "the command; without: all of them").suggest([names] {
+    return names;
+  });
   help.callback([command] {});  // keeps the word while the line is parsed
 }
 

@@ -48,17 +48,17 @@ void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
       .add_option("scenario", world.scenario,
                   "scenario file, or the name of a shipped one, as door or fr3/open_drawer "
                   "(run --list)")
-      .suggest(names_in(config::shipped_scenarios))
+      .suggest([] { return names_in(config::shipped_scenarios); })
       .capture_default_str();
   command
       .add_option("--device", world.device,
                   "device.yaml, or the name of a shipped device (fr3), instead of the scenario's")
-      .suggest(names_in(config::shipped_devices));
+      .suggest([] { return names_in(config::shipped_devices); });
   command
       .add_option("--twin", world.twin,
                   "twin.yaml, or the name of a shipped one (light, fr3/drawer), instead of the "
                   "scenario's")
-      .suggest(names_in(config::shipped_twins));
+      .suggest([] { return names_in(config::shipped_twins); });
   command.add_option("--plant", world.plant, "elastic: with springs, friction and delays; or ideal")
       .one_of({"elastic", "ideal"});
   command.add_option("--simulation", world.simulation, kSimulationHelp);
