@@ -44,7 +44,7 @@ TEST(SchemaText, ExplainsEveryNumberOfAnEnum) {
   for (const char* line :
        {"\nuint8 cause  # 0 none, 1 position, 2 velocity, 3 acceleration, 4 "
         "lock, 5 latch, 6 friction, "
-        "7 contradiction, 8 torque, 9 torque rate, 10 weight\n",
+        "7 contradiction, 8 torque, 9 torque rate, 10 weight, 11 braking\n",
         "\nuint8 change  # outcome of this cycle's parameter change: 0 none, 1 taken, 2 refused\n",
         "14 still moving, 15 twin apart, 16 posture implausible\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line;
