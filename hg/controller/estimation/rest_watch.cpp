@@ -17,6 +17,7 @@ constexpr double kLever = 0.08;        // m, of its torque
 constexpr double kMet = 0.05;          // N, between a zero and the wrench that it has met
 constexpr double kSame = 0.15;         // N, change of a force that stays the same
 constexpr double kTravel = 0.03;       // m, on which the force of a hand changes by more
+constexpr double kTurned = 0.5;        // of up, as a unit vector: turning explains no more than so
 constexpr double kMoving = 0.018;      // N, rms of an axis, by which moving drives shake a payload
 constexpr int kNewest = 4;             // blocks in which a moving tool has no tremor
 constexpr double kFast = 0.008;        // s, low-pass of what touches
@@ -102,7 +103,8 @@ double noise_of(double dt, double stated, const RestState& rest) noexcept {
 bool is_carried(double dt, const RestInput& input, RestState& rest) noexcept {
   const double turned = (input.up_S - rest.carried_up).norm();
   rest.travel += dt * input.v_H;
-  if (!is_within(rest.fast - rest.carried, kSame + payload_force(input, 9.81 * turned))) {
+  const double same = kSame + payload_force(input, 9.81 * turned);
+  if (!(turned < kTurned) || !is_within(rest.fast - rest.carried, same)) {
     rest.carried = rest.fast;
     rest.carried_up = input.up_S;
     rest.travel.setZero();

@@ -191,6 +191,18 @@ TEST_P(RestWatchSeeds, AHandThatMovesAToolIsNoWeight) {
   }
 }
 
+// Turning would explain each of these forces, but not that they are the same one.
+TEST_P(RestWatchSeeds, AHandThatTurnsAToolIsNoWeight) {
+  Trial turning = {.force = [](double t) { return 6.0 * std::sin(2.0 * t); },
+                   .tremor = [](double) { return 0.012; }};
+  turning.input.v_H = {0.1, 0.0, 0.0};
+  turning.input.up_S = Eigen::Vector3d::UnitX();
+  RestState rest = turning.run(GetParam(), 0.0, 0.2);
+  turning.input.up_S = Eigen::Vector3d::UnitZ();
+  turning.look = [](double t, const RestState& now) { ASSERT_EQ(braking_rate(now), 0.0) << t; };
+  turning.run(GetParam(), 0.2, 6.0, rest);
+}
+
 TEST(RestWatch, LetsTheTwinBeWhereSomethingElseMovesOrHoldsIt) {
   Trial held = {.force = [](double) { return 2.0; }};
   held.input.is_free = false;
