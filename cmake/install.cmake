@@ -3,7 +3,7 @@
 #
 # Everything but what only the program needs.
 set(HG_PACKAGE core signals model limits hqp estimation rendering prepositioning tracking safety
-  controller device udp runtime config simulator analysis simulation scenario)
+  controller device udp runtime config simulator teleoperation analysis simulation scenario)
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hapticgiant)

@@ -91,6 +91,17 @@ std::string limit_name(const Names& names, int index) {
                                                        : fmt::format("number {}", index);
 }
 
+std::string value_of_command(const Names& names, const SensorFrame& sensors, int index) {
+  const auto n_m = static_cast<int>(sensors.q_m.size());
+  const auto n_p = static_cast<int>(sensors.q_p.size());
+  return part_in({{"position", n_m, &names.joints},
+                  {"speed", n_m, &names.joints},
+                  {"acceleration", n_m, &names.joints},
+                  {"torque", sensors.tau_m.size(), &names.joints},
+                  {"speed", n_p, &names.gantry}},
+                 index);
+}
+
 }  // namespace
 
 std::string part_of(const Fault& fault, const Names& names, const SensorFrame& sensors) {
@@ -110,16 +121,13 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
                       {kGyroscope, 3}},
                      index);
     case FaultCode::kCommandNotFinite:
-      return part_in({{"position", n_m, &names.joints},
-                      {"speed", n_m, &names.joints},
-                      {"acceleration", n_m, &names.joints},
-                      {"torque", sensors.tau_m.size(), &names.joints},
-                      {"speed", n_p, &names.gantry}},
-                     index);
+      return value_of_command(names, sensors, index);
     case FaultCode::kCollisionAhead:
       return name_in(names.pairs, index, "pair");
     case FaultCode::kOscillation:
       return std::string(to_string(static_cast<Shaking>(index)));
+    case FaultCode::kTwinForceWrong:
+      return part_in({{"wrench, component", 6}, {"joint of the twin", kMaxTwin}}, index);
     case FaultCode::kWrenchTooLarge:
       return index == 0 ? "force in N" : "torque in Nm";
     case FaultCode::kSafeSpeedExceeded:

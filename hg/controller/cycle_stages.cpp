@@ -171,7 +171,8 @@ void CycleStages::step(const SensorFrame& sensors, const OperatorFrame& operator
   const GantryAim gantry = preposition(motion, robot);
   ended_(Stage::kPrepositioning);
 
-  const rendering::LawResult& law = render(motion, is_held(sensors), robot, gantry);
+  const rendering::LawResult& law =
+      render(motion, is_held(sensors), robot, gantry, supervision.twin_force);
   const PassivityReport passivity = watch_energy(motion, robot, law);
   watch_rest(motion, robot, law);
   const Moved moved = advance(motion, robot, gantry, law);
@@ -227,6 +228,11 @@ CycleStages::Supervision CycleStages::supervise(const SensorFrame& sensors,
       // no control with such a sample
       .reaction = fault.code != FaultCode::kNone ? Stop::kSto : Stop::kNone};
   if (input.fault.code == FaultCode::kNone) input.fault = fault;
+  if (!operator_input.twin_force.is_zero()) {
+    const Fault wrong = check(operator_input.twin_force);
+    if (wrong.code == FaultCode::kNone) result.twin_force = &operator_input.twin_force;
+    if (input.fault.code == FaultCode::kNone) input.fault = wrong;
+  }
   result.refusal = safety::advance(input, supervisor);
   if (was_fault && supervisor.state != safety::SafetyState::kFault) reset_controllers();
 
@@ -242,6 +248,24 @@ Fault CycleStages::check(const SensorFrame& sensors, const Fault& values) noexce
   const bool is_on = safety::is_powered(state_.supervisor.state);
   control_.listen(sensors, is_on, state_.control);
   return is_on ? control_.check_latency(sensors, state_.control) : Fault{};
+}
+
+// Values per joint, finite, and no more than what the user may do to the handle.
+Fault CycleStages::check(const TwinForce& force) const noexcept {
+  constexpr double kLever = 1.0;  // m
+  const auto wrong = [](Eigen::Index index, double value, double limit) {
+    return Fault{FaultCode::kTwinForceWrong, static_cast<std::int16_t>(index), value, limit};
+  };
+  const int n_a = rendering_.twin().chain.nv();
+  const auto joints = static_cast<int>(force.tau.size());
+  if (joints != 0 && joints != n_a) return wrong(-1, joints, n_a);
+  const double force_max = monitor_.config().force_max, torque_max = monitor_.config().torque_max;
+  for (int i = 0; i < 6 + joints; ++i) {
+    const double value = i < 6 ? force.w_E[i] : force.tau[i - 6];
+    const double limit = i < 3 ? force_max : i < 6 ? torque_max : kLever * force_max + torque_max;
+    if (!(std::abs(value) <= limit)) return wrong(i, value, limit);
+  }
+  return {};
 }
 
 Refusal CycleStages::refusal_to_arm() const noexcept {
@@ -404,8 +428,8 @@ CollisionTask CycleStages::keep_apart(Motion motion, const RobotState& robot) no
 // still: limits and the distance of handle and twin are shown, the distance is checked before
 // arming, and the first motion starts with the active set. Its accelerations are then not used.
 const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
-                                                const RobotState& robot,
-                                                const GantryAim& gantry) noexcept {
+                                                const RobotState& robot, const GantryAim& gantry,
+                                                const TwinForce* twin_force) noexcept {
   if (motion == Motion::kNone) return law_;
   const double fade_s = ramp_out();
   const double share = ramp_forces(motion, is_held, fade_s);
@@ -429,7 +453,8 @@ const rendering::LawResult& CycleStages::render(Motion motion, bool is_held,
                    .most_active_sets = most_active_sets(config_.solver_caps, time_s()),
                    .gantry = gantry.task,
                    .cycle = state_.cycle,
-                   .collision = keep_apart(motion, robot)},
+                   .collision = keep_apart(motion, robot),
+                   .twin_force = twin_force},
                   state_.rendering, law_);
   rendering_.gantry_room(state_.room.down, state_.room.up);
   state_.is_blocked = is_moving(motion) && rendering_.is_blocked();

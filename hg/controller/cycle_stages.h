@@ -51,6 +51,7 @@ class CycleStages {
     bool is_usable = false;  ///< The sample has all values, and they are finite
     Refusal refusal = Refusal::kNone;
     ChangeStatus change = ChangeStatus::kNone;
+    const TwinForce* twin_force = nullptr;  ///< Where there is one that can be used
   };
   /// Aim of the gantry. Empty where the device does not move.
   struct GantryAim {
@@ -86,7 +87,7 @@ class CycleStages {
   VectorM place_reference(Motion motion, const RobotState& robot) noexcept;
   GantryAim preposition(Motion motion, const RobotState& robot) noexcept;
   const rendering::LawResult& render(Motion motion, bool is_held, const RobotState& robot,
-                                     const GantryAim& gantry) noexcept;
+                                     const GantryAim& gantry, const TwinForce* twin_force) noexcept;
   PassivityReport watch_energy(Motion motion, const RobotState& robot,
                                const rendering::LawResult& law) noexcept;
   void watch_rest(Motion motion, const RobotState& robot, const rendering::LawResult& law) noexcept;
@@ -105,6 +106,7 @@ class CycleStages {
 
   // parts of these stages
   Fault check(const SensorFrame& sensors, const Fault& values) noexcept;
+  Fault check(const TwinForce& force) const noexcept;
   Refusal refusal_to_arm() const noexcept;
   void reset_controllers() noexcept;
   double speed_max() const noexcept;

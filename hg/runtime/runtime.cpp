@@ -63,7 +63,9 @@ Runtime::Runtime(const RuntimeOptions& options, controller::Cycle& cycle, device
       cycle_(cycle),
       device_(device),
       connection_(dynamic_cast<const device::ConnectedDevice*>(&device)),
-      session_(cycle, device, {.changes = options.changes, .load = options.load}),
+      session_(
+          cycle, device,
+          {.changes = options.changes, .load = options.load, .twin_force = options.twin_force}),
       samples_(options.ring),
       hand_targets_(256),
       parameter_changes_(256),

@@ -17,6 +17,7 @@
 #include "hg/signals/timed_changes.h"
 #include "hg/signals/timed_load.h"
 #include "hg/signals/timed_panel.h"
+#include "hg/signals/twin_force_source.h"
 
 namespace hg::runtime {
 
@@ -31,6 +32,8 @@ struct RuntimeOptions {
   std::vector<TimedChange> changes;  ///< Changes of the twin, in the order of their times
   std::vector<TimedPanel> panel;     ///< Panels of the operator, in the order of their times
   std::vector<TimedLoad> load;       ///< Late cycles, for tests
+  /// What pushes the twin, and outlives the runtime; nullptr = nothing.
+  TwinForceSource* twin_force = nullptr;
   /// true: a fault does not end the run, because an operator can reset it. After a fault no request
   /// is made automatically.
   bool stays_in_fault = false;

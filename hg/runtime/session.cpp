@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hg/controller/cycle.h"
+#include "hg/controller/cycle_state.h"
 #include "hg/runtime/requests.h"
 
 namespace hg::runtime {
@@ -12,7 +13,8 @@ Session::Session(controller::Cycle& cycle, device::Device& device, const Session
       device_(device),
       duration_s_(plan.duration_s),
       changes_(plan.changes),
-      loads_(plan.load) {}
+      loads_(plan.load),
+      twin_force_(plan.twin_force) {}
 
 bool Session::advance() noexcept HG_NONBLOCKING {
   read();
@@ -37,6 +39,14 @@ void Session::read() noexcept HG_NONBLOCKING {
     next_.change = {};
   }
   input.late_cycles += loads_.late_cycles(time_s);
+  if (twin_force_ != nullptr) {
+    twin_force_->step({.twin = cycle_.state().rendering.twin,
+                       .w_H = now.record.robot.w_H,
+                       .time_s = time_s,
+                       .is_running = now.record.mode == Mode::kRunning,
+                       .is_clutch_open = input.is_clutch_open},
+                      input.twin_force, now.teleoperation);
+  }
   next_.request = ModeRequest::kNone;
   next_.late_cycles = 0;
 

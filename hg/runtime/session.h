@@ -13,6 +13,7 @@
 #include "hg/signals/state.h"
 #include "hg/signals/timed_changes.h"
 #include "hg/signals/timed_load.h"
+#include "hg/signals/twin_force_source.h"
 
 namespace hg::controller {
 class Cycle;
@@ -25,6 +26,8 @@ struct SessionPlan {
   double duration_s = 0.0;           ///< Duration, s; 0 = until a fault or a stop
   std::vector<TimedChange> changes;  ///< Changes of the twin, in the order of their times
   std::vector<TimedLoad> load;       ///< Late cycles, for tests
+  /// What pushes the twin, and outlives the session; nullptr = nothing.
+  TwinForceSource* twin_force = nullptr;
 };
 
 /// A cycle, its device and an operator.
@@ -73,6 +76,7 @@ class Session {
   double duration_s_;
   TimedChanges changes_;
   TimedLoads loads_;
+  TwinForceSource* twin_force_;
   OperatorFrame next_;
   bool is_operated_ = false;  ///< Requests come from the caller
   bool is_asked_ = false;     ///< The next period has a request from outside, or none on purpose

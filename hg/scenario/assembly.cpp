@@ -12,6 +12,7 @@
 #include "hg/scenario/start_posture.h"
 #include "hg/simulator/faults/faulty_device.h"
 #include "hg/simulator/simulated_device.h"
+#include "hg/teleoperation/teleoperation.h"
 
 namespace hg::scenario {
 namespace {
@@ -226,6 +227,13 @@ std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& sc
   auto device = std::make_unique<simulator::SimulatedDevice>(std::move(world));
   if (scenario.faults.empty()) return device;
   return std::make_unique<faults::FaultyDevice>(std::move(device), scenario.faults);
+}
+
+std::unique_ptr<TwinForceSource> make_twin_force(const config::Scenario& scenario) {
+  if (!scenario.teleoperation) return nullptr;
+  return std::make_unique<teleoperation::Teleoperation>(
+      *scenario.teleoperation, scenario.twin.model.chain, scenario.twin.model.end_effector,
+      scenario.device.model.dt());
 }
 
 analysis::Summary make_summary(const config::Scenario& scenario) {

@@ -8,6 +8,7 @@
 #include "hg/controller/cycle.h"
 #include "hg/device/device.h"
 #include "hg/scenario/start_posture.h"
+#include "hg/signals/twin_force_source.h"
 #include "hg/simulator/person/person.h"
 #include "hg/simulator/simulation.h"
 
@@ -39,6 +40,9 @@ std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& sc
 /// The same with a given world, to start several devices from one.
 std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario,
                                                       simulator::Simulation world);
+
+/// What pushes the twin of the scenario from outside: its teleoperation. Null: nothing does.
+std::unique_ptr<TwinForceSource> make_twin_force(const config::Scenario& scenario);
 
 /// Evaluation of a run of the scenario.
 analysis::Summary make_summary(const config::Scenario& scenario);

@@ -8,10 +8,11 @@
 namespace hg::scenario {
 namespace {
 
-runtime::SessionPlan plan_of(const config::Scenario& scenario) {
+runtime::SessionPlan plan_of(const config::Scenario& scenario, TwinForceSource* twin_force) {
   return {.duration_s = planned_duration_s(scenario),
           .changes = scenario.changes,
-          .load = faults::loads_of(scenario.faults)};
+          .load = faults::loads_of(scenario.faults),
+          .twin_force = twin_force};
 }
 
 }  // namespace
@@ -22,7 +23,7 @@ Session::Session(const config::Scenario& scenario)
 Session::Session(const std::filesystem::path& file) : Session(config::load_scenario(file)) {}
 
 Session::Session(const config::Scenario& scenario, std::unique_ptr<device::Device> device)
-    : SessionParts{make_cycle(scenario), std::move(device)},
-      runtime::Session(own_cycle, *own_device, plan_of(scenario)) {}
+    : SessionParts{make_cycle(scenario), std::move(device), make_twin_force(scenario)},
+      runtime::Session(own_cycle, *own_device, plan_of(scenario, own_twin_force.get())) {}
 
 }  // namespace hg::scenario

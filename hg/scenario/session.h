@@ -23,6 +23,7 @@ namespace hg::scenario {
 struct SessionParts {
   controller::Cycle own_cycle;
   std::unique_ptr<device::Device> own_device;
+  std::unique_ptr<TwinForceSource> own_twin_force;
 };
 
 /// Session of a scenario, until its planned end. One session serves one thread.

@@ -114,6 +114,11 @@ constexpr FaultWords kFaults[] = {
      .text = "safely limited speed exceeded",
      .meaning =
          "While the handle was not held, the device was faster than the safely limited speed."},
+    {.code = FaultCode::kTwinForceWrong,
+     .name = "remote force",
+     .text = "force of the remote machine cannot be used",
+     .meaning = "The force that a remote machine sends to the twin is not a number, larger than is "
+                "allowed on the handle, or has no value for each joint."},
     {.code = FaultCode::kSolverFailed,
      .name = "solver failed",
      .text = "rendering problem was not solved",

@@ -35,6 +35,7 @@ enum class FaultCode : std::uint16_t {
   kScannerField = 131,
   kSafetyInputsDisagree = 132,
   kSafeSpeedExceeded = 133,
+  kTwinForceWrong = 140,
   kSolverFailed = 200,
   kReferenceNotFinite = 201,
   kCommandNotFinite = 202,

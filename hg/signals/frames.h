@@ -9,6 +9,7 @@
 #include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/signals/fault.h"
+#include "hg/signals/twin_force.h"
 
 namespace hg {
 
@@ -173,6 +174,8 @@ struct OperatorFrame {
   HandTarget hand_target;
   SafetyPanel panel;
   ParameterChange change;
+  TwinForce twin_force;
+  bool is_clutch_open = false;
   std::uint32_t late_cycles = 0;
 };
 
@@ -182,6 +185,8 @@ void fields(Archive& a, T& input) {
   a("hand_target", input.hand_target, "target of a simulated hand");
   a("panel", input.panel, "panel of a simulated operator");
   a("change", input.change, "change of a parameter of the twin");
+  a("twin_force", input.twin_force, "force of a remote machine on the twin");
+  a("is_clutch_open", input.is_clutch_open, "the operator releases the remote machine");
   a("late_cycles", input.late_cycles, "cycles late or left out since the last cycle");
 }
 

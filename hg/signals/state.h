@@ -15,6 +15,7 @@
 #include "hg/signals/fault.h"
 #include "hg/signals/frames.h"
 #include "hg/signals/limit.h"
+#include "hg/signals/teleoperation.h"
 #include "hg/signals/touch.h"
 #include "hg/signals/truth.h"
 
@@ -169,9 +170,10 @@ struct Budget {
   VectorA damping;   ///< viscous part of tau_dis
   VectorA friction;  ///< Coulomb part of tau_dis while slipping
   VectorA spring;    ///< -tau_dri
-  VectorA surface;   ///< J_a^T w_ref, minus J_a^T times the wrench of a contact with the arm
-  VectorA limits;    ///< negative constraint torques of all rows with a reaction
-  VectorA conflict;  ///< negative contribution of rows that could not be met
+  VectorA
+      surface;  ///< J_a^T w_ref, minus what surfaces, contacts of the arm and a remote machine do
+  VectorA limits;                       ///< negative constraint torques of all rows with a reaction
+  VectorA conflict;                     ///< negative contribution of rows that could not be met
   Vector6 structure = Vector6::Zero();  ///< part of w in the null space of J_a^T S
 };
 
@@ -391,6 +393,7 @@ struct Sample {
   CommandFrame command;
   CycleRecord record;
   Truth truth;
+  TeleoperationReport teleoperation;
   double cycle_time_us = 0.0;
 };
 
@@ -402,6 +405,8 @@ void fields(Archive& a, T& sample) {
   a("record", sample.record, "results of the cycle");
   a("truth", sample.truth,
     "ground truth of a simulation at the time of the sensors; not part of a replay");
+  a("teleoperation", sample.teleoperation,
+    "the other side of a teleoperation before the cycle; not part of a replay");
   a("cycle_time_us", sample.cycle_time_us,
     "duration of the cycle as measured by the runtime; not part of a replay", unit::kUs);
 }

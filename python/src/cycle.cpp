@@ -228,6 +228,9 @@ void bind_session(nb::module_& module) {
       .def_prop_ro("command", [](Session& self) { return self.sample().command; })
       .def_prop_ro("record", [](Session& self) { return self.record(); })
       .def_prop_ro(
+          "teleoperation", [](Session& self) { return self.sample().teleoperation; },
+          "the other side of a teleoperation; link NONE where there is none")
+      .def_prop_ro(
           "operator_input", [](Session& self) -> OperatorFrame& { return self.input(); },
           nb::rv_policy::reference_internal,
           "what the next step() gets: set hand_target or change in it")

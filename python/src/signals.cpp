@@ -30,6 +30,8 @@ void bind_enums(nb::module_& module) {
   bind_enum<LimitState>(module, "LimitState", "Active side of a limit.");
   bind_enum<LimitCause>(module, "LimitCause", "Active rating of a limit.");
   bind_enum<Parameter>(module, "Parameter", "Parameter of a twin that may change at run time.");
+  bind_enum<RemoteLink>(module, "RemoteLink", "State of the link to a remote machine.");
+  bind_enum<RemoteCause>(module, "RemoteCause", "Why a remote machine does not follow.");
   bind_enum<ChangeStatus>(module, "ChangeStatus", "Outcome of a parameter change.");
 }
 
@@ -89,6 +91,8 @@ void bind_signals(nb::module_& module) {
   bind_fields<SafetyPanel>(module, "SafetyPanel", "Buttons and keys of a simulated operator.");
   bind_fields<HandTarget>(module, "HandTarget", "Target of a simulated hand.");
   bind_fields<ParameterChange>(module, "ParameterChange", "New value of a parameter of the twin.");
+  bind_fields<TwinForce>(module, "TwinForce", "Force of a remote machine on the twin.");
+  bind_fields<TeleoperationReport>(module, "TeleoperationReport", "Other side of a teleoperation.");
   bind_fields<SensorFrame>(module, "SensorFrame", "Sensor values of one sample.");
   bind_fields<OperatorFrame>(module, "OperatorFrame", "All inputs of a cycle besides sensors.");
   bind_fields<CommandFrame>(module, "CommandFrame", "Command to the device.");

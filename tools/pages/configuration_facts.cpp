@@ -103,6 +103,8 @@ Json scenario_table() {
   describe_surfaces(writer, surfaces);
   BystanderDraft bystander;
   describe_bystander(writer, bystander);
+  TeleoperationDraft teleoperation;
+  describe_teleoperation(writer, teleoperation);
   return writer.table();
 }
 

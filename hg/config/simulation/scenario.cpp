@@ -117,6 +117,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   ChangesDraft changes;
   InjectionsDraft injections;
   BystanderDraft bystander;
+  TeleoperationDraft teleoperation;
   std::vector<surfaces::Surface> surfaces;
   std::vector<TimedPanel> panel;
   std::optional<SimulatedDeviceConfig> device;
@@ -147,6 +148,8 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     describe_injections(loader, injections);
     bystander = bystander_of(device->model.chain.frame_names());
     describe_bystander(loader, bystander);
+    teleoperation = teleoperation_of(twin->model);
+    describe_teleoperation(loader, teleoperation);
   });
 
   return {.title = draft.title,
@@ -163,6 +166,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
           .faults = std::move(injections.injections),
           .surfaces = std::move(surfaces),
           .bystander = in_the_way(std::move(bystander)),
+          .teleoperation = teleoperation_of(teleoperation),
           .sources = reader.texts(),
           .places = std::move(file.places)};
 }

@@ -18,6 +18,7 @@
 #include "hg/simulator/faults/injection.h"
 #include "hg/simulator/person/person.h"
 #include "hg/simulator/plant/bystander.h"
+#include "hg/teleoperation/teleoperation.h"
 
 namespace hg::config {
 
@@ -43,6 +44,7 @@ struct Scenario {
   std::vector<faults::Injection> faults;    ///< injected faults
   std::vector<surfaces::Surface> surfaces;  ///< surfaces that the twin meets
   std::optional<BystanderInTheWay> bystander;
+  std::optional<teleoperation::TeleoperationConfig> teleoperation;  ///< with a remote machine
   std::vector<SourceText> sources;  ///< source texts of all files, the scenario first
   Places places;                    ///< places of the keys of the YAML file
 };

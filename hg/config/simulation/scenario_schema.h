@@ -13,6 +13,7 @@
 #include "hg/config/simulation/injection_schema.h"
 #include "hg/config/simulation/panel_schema.h"
 #include "hg/config/simulation/surface_schema.h"
+#include "hg/config/simulation/teleoperation_schema.h"
 #include "hg/config/sources.h"
 #include "hg/signals/event_rule.h"
 #include "hg/simulator/person/person.h"

@@ -20,9 +20,10 @@ struct LawInput {
   /// motors give; with a gantry, with at most a share of its rating.
   double joint_braking_rate = 0.0;
   double kept_acceleration = 0.0;  ///< In a stop: kept share of what makes a joint faster
-  /// Share of the user's wrench, the twin's springs, its weight, its reference wrench and the
-  /// surfaces around it, 0..1. With it a run against a leaning hand begins and ends without a jump.
-  /// 0 with a braking rate: the twin is a body without friction and without the user.
+  /// Share of the user's wrench, the twin's springs, its weight, its reference wrench, the surfaces
+  /// around it and a remote machine, 0..1. With it a run against a leaning hand begins and ends
+  /// without a jump. 0 with a braking rate: the twin is a body without friction and without the
+  /// user.
   double force_share = 1.0;
   /// Largest speed of the handle along each axis of B where the device has Cartesian limits for it,
   /// m/s.
@@ -32,6 +33,8 @@ struct LawInput {
   GantryTask gantry = {};        ///< Accelerations with which the law may lead the gantry
   std::uint64_t cycle = 0;       ///< Number of the cycle under which its problem is kept
   CollisionTask collision = {};  ///< What the law keeps apart
+  /// Force of a remote machine on the twin, with finite values; nullptr = none.
+  const TwinForce* twin_force = nullptr;
 };
 
 /// What the law found in one cycle, recorded but for the accelerations.

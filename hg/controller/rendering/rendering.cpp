@@ -293,6 +293,10 @@ void Rendering::add_torques(const LawInput& input, bool is_released, RenderingSt
     }
     budget.friction = slip_torque(twin_, state.twin, state.inner);
     budget.surface = J_a_.transpose() * (share * values.w_ref);
+    if (input.twin_force != nullptr) {
+      budget.surface.noalias() -= J_a_.transpose() * (share * input.twin_force->w_E);
+      if (input.twin_force->tau.size() > 0) budget.surface -= share * input.twin_force->tau;
+    }
   }
   if (input.braking_rate > 0.0) {
     const VectorA braking = input.braking_rate * state.twin.dq_a;

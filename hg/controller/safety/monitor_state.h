@@ -1,7 +1,9 @@
 /// State of the monitor from cycle to cycle.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "hg/controller/safety/rules.h"
@@ -41,14 +43,19 @@ struct MonitorState {
   ShakingState shaking;
 };
 
-/// Words of the state hash, in its order. Without the rule that is younger than 0.2.0: hashes of
-/// runs recorded before stay what they were.
+/// Words of the state hash, in its order. Without the rules that are younger than 0.2.0, of which
+/// the monitor looks at one only: hashes of runs recorded before stay what they were.
 void hashed(auto& hash, const MonitorState& state) {
   const auto& [broken, is_broken, has_sample, q_m, tau_m, q_p, w_S, imu, time_s, same, clock_error,
                late, late_in_a_row, dq_p_model, gantry_gap, gantry_drift, gantry_way, pulled_back,
                momentum, lowest, highest, lowest_p, highest_p, is_stopping, stop_from, braking_ramp,
                ramp_speed, stop_from_p, braking_ramp_p, shaking] = state;
-  hash.mix_first(broken, static_cast<int>(rule_index(FaultCode::kLimitNotHeld)));
+  constexpr std::size_t kYounger = rule_index(FaultCode::kTwinForceWrong);
+  constexpr std::size_t kOlder = rule_index(FaultCode::kLimitNotHeld) - 1;
+  std::array<std::uint16_t, kOlder> older{};
+  std::copy_n(broken.begin(), kYounger, older.begin());
+  std::copy_n(broken.begin() + kYounger + 1, kOlder - kYounger, older.begin() + kYounger);
+  hash.mix_first(older, static_cast<int>(kOlder));
   hash.mix(same,
            static_cast<std::uint64_t>(late_in_a_row) | std::uint64_t{has_sample} << 62U |
                std::uint64_t{is_broken} << 63U,

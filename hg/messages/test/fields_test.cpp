@@ -97,16 +97,20 @@ void for_every_struct(Visit visit) {
 TEST(Fields, AllStructsOfASampleHaveThem) {
   std::set<std::string_view> names;
   for_every_struct([&]<typename Struct>(const Struct*) { names.insert(struct_name<Struct>()); });
-  EXPECT_EQ(names,
-            (std::set<std::string_view>{"Sample",          "SensorFrame",    "SafetyInputs",
-                                        "OperatorFrame",   "HandTarget",     "SafetyPanel",
-                                        "ParameterChange", "CommandFrame",   "CycleRecord",
-                                        "Fault",           "RobotState",     "ReferenceState",
-                                        "TwinState",       "Pose",           "Budget",
-                                        "LimitReport",     "TrackingReport", "CollisionReport",
-                                        "PassivityReport", "ContactReport",  "TouchReport",
-                                        "InertialReport",  "Truth",          "BystanderReport",
-                                        "RestReport",      "WalkerReport"}));
+  EXPECT_EQ(names, (std::set<std::string_view>{"Sample",          "SensorFrame",
+                                               "SafetyInputs",    "OperatorFrame",
+                                               "HandTarget",      "SafetyPanel",
+                                               "ParameterChange", "CommandFrame",
+                                               "CycleRecord",     "Fault",
+                                               "RobotState",      "ReferenceState",
+                                               "TwinState",       "Pose",
+                                               "Budget",          "LimitReport",
+                                               "TrackingReport",  "CollisionReport",
+                                               "PassivityReport", "ContactReport",
+                                               "TouchReport",     "InertialReport",
+                                               "Truth",           "BystanderReport",
+                                               "RestReport",      "WalkerReport",
+                                               "TwinForce",       "TeleoperationReport"}));
 }
 
 TEST(Fields, NameEveryMemberOfEveryStruct) {

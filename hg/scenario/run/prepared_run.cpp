@@ -54,7 +54,10 @@ PreparedRun::PreparedRun(const ScenarioOptions& options, const MachineAddress& m
 PreparedRun::PreparedRun(config::Scenario loaded, const ScenarioOptions& options,
                          const MachineAddress& machine, const RunTiming& timing,
                          const RunRecords& records)
-    : world(options), scenario(std::move(loaded)), cycle(make_cycle(scenario)) {
+    : world(options),
+      scenario(std::move(loaded)),
+      cycle(make_cycle(scenario)),
+      twin_force(make_twin_force(scenario)) {
   doctor::check_items(machine.despite);
   if (machine.address.empty()) {
     simulated = make_simulated_device(scenario);

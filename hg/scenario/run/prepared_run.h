@@ -46,8 +46,9 @@ struct PreparedRun {
   const ScenarioOptions world;
   config::Scenario scenario;
   controller::Cycle cycle;
-  std::optional<Connection> connection;       ///< to a remote device
-  std::unique_ptr<device::Device> simulated;  ///< without one
+  std::optional<Connection> connection;         ///< to a remote device
+  std::unique_ptr<device::Device> simulated;    ///< without one
+  std::unique_ptr<TwinForceSource> twin_force;  ///< nullptr = none
   std::string refusal;  ///< why the device neither waits nor starts again; empty = it does
 };
 

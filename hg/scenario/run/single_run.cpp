@@ -38,6 +38,7 @@ bool continues(const RunSetting& setting) {
 runtime::RuntimeOptions runtime_options(const PreparedRun& run, const RunTiming& timing,
                                         bool is_endless) {
   runtime::RuntimeOptions options = run_options(run.scenario);
+  options.twin_force = run.twin_force.get();
   options.is_fast = timing.is_fast;
   if (!timing.is_fast) {
     options.slow_cycle_us = kSlowCycle * 1e6 / run.scenario.device.model.rate_Hz;

@@ -1,0 +1,111 @@
+/// Description of the remote machine of a teleoperation in a scenario.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hg/config/schema.h"
+#include "hg/controller/rendering/twin_model.h"
+#include "hg/teleoperation/teleoperation.h"
+
+namespace hg::config {
+
+/// A teleoperation before it is checked against the twin.
+struct TeleoperationDraft {
+  std::vector<std::string> joints;  ///< of the twin, those that are not floating
+  std::vector<teleoperation::AxisLimits> joint_limits;
+  std::vector<double> joint_starts;
+  Eigen::Vector3d tool_start = Eigen::Vector3d::Zero();
+  Eigen::Vector3d lowest = Eigen::Vector3d::Constant(-0.5);
+  Eigen::Vector3d highest = Eigen::Vector3d::Constant(0.5);
+  double v_max = 1.0, a_max = 20.0, yaw = 0.0;
+  std::optional<teleoperation::TeleoperationConfig> config;
+};
+
+/// The joints of the twin, which are those of the remote machine in an indirect teleoperation.
+inline TeleoperationDraft teleoperation_of(const rendering::TwinModel& twin) {
+  TeleoperationDraft draft;
+  for (const rendering::TwinDof& dof : twin.dofs) {
+    if (dof.q_index < 0) continue;
+    draft.joints.push_back(dof.name);
+    draft.joint_limits.push_back({.range = {dof.limits.q_min, dof.limits.q_max}});
+    draft.joint_starts.push_back(twin.q_start[dof.q_index]);
+  }
+  return draft;
+}
+
+template <class V>
+void describe_tool_wall(V& v, teleoperation::Wall& wall) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Constant(kNoDefault), through = normal;
+  v.vector("normal", normal, {.lb = -1.0, .ub = 1.0}, "tool: direction out of the wall");
+  v.vector("through_m", through, {.lb = -1e3, .ub = 1e3}, "tool: a point of its surface");
+  v.rule(v.is_given("normal") && v.is_given("through_m"), "",
+         "a wall before a tool needs 'normal' and 'through_m'");
+  v.rule(!v.is_given("normal") || normal.norm() > 1e-3, "normal", "must not be a zero vector");
+  v.number("stiffness_N_per_m", wall.stiffness, kPositive, "tool: of the wall");
+  v.number("damping_Ns_per_m", wall.damping, kNotNegative, "tool: of the wall");
+  wall.normal = normal.normalized();
+  wall.offset = wall.normal.dot(through);
+}
+
+template <class V>
+void describe_joint_wall(V& v, const TeleoperationDraft& d, teleoperation::Wall& wall) {
+  int joint = 0;
+  double at = 0.0;
+  bool is_above = false;
+  v.name("joint", joint, d.joints, "a joint of the twin", "joints: which one meets the wall",
+         Need::kRequired);
+  v.number("at_rad", at, kAnyNumber, "joints: where it meets it", Need::kRequired);
+  v.flag("is_above", is_above, "joints: the wall is at positions above, not below");
+  v.number("stiffness_Nm_per_rad", wall.stiffness, kPositive, "joints: of the wall");
+  v.number("damping_Nms_per_rad", wall.damping, kNotNegative, "joints: of the wall");
+  const double sign = is_above ? -1.0 : 1.0;
+  wall.normal = PortVector::Zero(std::min<Eigen::Index>(
+      kMaxPort, std::max<Eigen::Index>(1, static_cast<Eigen::Index>(d.joints.size()))));
+  if (joint < wall.normal.size()) wall.normal[joint] = sign;
+  wall.offset = sign * at;
+}
+
+template <class V>
+void describe_remote(V& v, TeleoperationDraft& d) {
+  teleoperation::TeleoperationConfig& config = *d.config;
+  teleoperation::SimulatedMachineConfig& machine = config.machine;
+  const bool is_tool = config.mapping == teleoperation::Mapping::kTool;
+  const bool covers_tool = v.covers(is_tool), covers_joints = v.covers(!is_tool);
+  if (covers_tool) {
+    v.vector("start_m", d.tool_start, {.lb = -1e3, .ub = 1e3},
+             "tool: where it starts, in its base");
+    v.vector("lowest_m", d.lowest, {.lb = -1e3, .ub = 1e3}, "tool: lower end of its range");
+    v.vector("highest_m", d.highest, {.lb = -1e3, .ub = 1e3}, "tool: upper end of its range");
+    v.number("speed_m_per_s", d.v_max, kPositive, "tool: largest speed along each axis");
+    v.number("acceleration_m_per_s2", d.a_max, kPositive, "tool: largest acceleration");
+    v.number("mass_kg", machine.impedance.mass, kPositive, "tool: what moves with it");
+    v.number("stiffness_N_per_m", machine.impedance.stiffness, kPositive,
+             "tool: of the machine's own controller");
+    v.number("damping_Ns_per_m", machine.impedance.damping, kPositive,
+             "tool: of the machine's own controller");
+    v.number("force_max_N", machine.force_max, kPositive, "tool: largest force along each axis");
+  }
+  if (covers_joints) {
+    v.number("speed_rad_per_s", d.v_max, kPositive, "joints: largest speed; ranges are the twin's");
+    v.number("acceleration_rad_per_s2", d.a_max, kPositive, "joints: largest acceleration");
+    v.number("inertia_kg_m2", machine.impedance.mass, kPositive, "joints: of each");
+    v.number("stiffness_Nm_per_rad", machine.impedance.stiffness, kPositive,
+             "joints: of the machine's own controller");
+    v.number("damping_Nms_per_rad", machine.impedance.damping, kPositive,
+             "joints: of the machine's own controller");
+    v.number("torque_max_Nm", machine.force_max, kPositive, "joints: largest torque of each");
+  }
+  v.list(
+      "walls",
+      [&](auto& child) {
+        teleoperation::Wall& wall = machine.walls.emplace_back();
+        if (covers_tool) describe_tool_wall(child, wall);
+        if (covers_joints) describe_joint_wall(child, d, wall);
+      },
+      "what it meets");
+}
+
+}  // namespace hg::config

@@ -1,0 +1,213 @@
+// A device whose twin is pushed by a remote machine: the whole machine, its simulated person and
+// the simulated remote side.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "hg/config/simulation/scenario.h"
+#include "hg/scenario/assembly.h"
+#include "hg/scenario/session.h"
+
+namespace hg::scenario {
+namespace {
+
+config::Scenario shipped(const std::string& name) {
+  return config::load_scenario("models/scenarios/" + name + ".yaml");
+}
+
+// Plays a scenario and keeps what the test looks at.
+struct Moment {
+  double time_s;
+  TeleoperationReport remote;
+  TwinForce force;
+  double hand;  ///< y of the handle, m
+};
+
+std::vector<Moment> played(const std::string& name) {
+  Session session(shipped(name));
+  std::vector<Moment> moments;
+  while (session.advance()) {
+    const Sample& now = session.sample();
+    moments.push_back({now.record.time_s, now.teleoperation, now.operator_input.twin_force,
+                       now.record.T_B_H.p.y()});
+  }
+  EXPECT_EQ(session.record().fault.code, FaultCode::kNone);
+  return moments;
+}
+
+const std::vector<Moment>& remote_arm() {
+  static const std::vector<Moment> moments = played("remote_arm");
+  return moments;
+}
+
+double running_since() {
+  const auto first = std::ranges::find(remote_arm(), RemoteLink::kEngaged,
+                                       [](const Moment& m) { return m.remote.link; });
+  return first->time_s;
+}
+
+// The moment `s` seconds after the first engagement.
+const Moment& at(double s) {
+  const double time_s = running_since() + s;
+  return *std::ranges::find_if(remote_arm(), [&](const Moment& m) { return m.time_s >= time_s; });
+}
+
+TEST(RemoteArm, FollowsAndIsFelt) {
+  double most = 0.0, deepest = 0.0;
+  for (const Moment& now : remote_arm()) {
+    if (now.remote.x_true.size() == 0) continue;
+    most = std::max(most, std::abs(now.force.w_E[1]));
+    deepest = std::max(deepest, now.remote.x_true[1]);
+  }
+  EXPECT_GT(most, 8.0);
+  EXPECT_GT(deepest, 0.2);
+  EXPECT_LT(deepest, 0.21);
+}
+
+TEST(RemoteArm, StaysWhereItIsWhileTheClutchIsOpenAndWhenItCloses) {
+  const double before = at(18.5).remote.x_true[1];
+  const double closed = at(20.0).hand;
+  double led = 0.0;
+  for (const Moment& now : remote_arm()) {
+    const double s = now.time_s - running_since();
+    if (s < 18.5 || s > 20.8) continue;
+    const double moved = std::abs(now.remote.x_true[1] - before);
+    if (s > 20.0) led = std::max(led, std::abs(now.hand - closed));
+    ASSERT_LT(moved, led + 1e-3) << s;
+  }
+  EXPECT_LT(at(19.9).hand - at(18.1).hand, -0.1) << "the hand has moved";
+  EXPECT_EQ(at(19.0).remote.link, RemoteLink::kReleased);
+  EXPECT_EQ(at(20.5).remote.link, RemoteLink::kEngaged);
+}
+
+TEST(RemoteArm, WithoutALinkTheForceFadesAndTheToolHoldsUntilTheClutchIsUsed) {
+  const auto lost = std::ranges::find(remote_arm(), RemoteLink::kLost,
+                                      [](const Moment& m) { return m.remote.link; });
+  ASSERT_NE(lost, remote_arm().end());
+  EXPECT_EQ(lost->remote.cause, RemoteCause::kSilent);
+  EXPECT_GT(lost->force.w_E.norm(), 1.0) << "the hand was pressing";
+  for (auto now = lost; now != remote_arm().end(); ++now) {
+    const double since = now->time_s - lost->time_s;
+    if (since > 0.2 && now->remote.link == RemoteLink::kLost) {
+      ASSERT_EQ(now->force.w_E.norm(), 0.0) << since;
+    }
+  }
+  EXPECT_EQ(at(29.5).remote.link, RemoteLink::kLost) << "the link is back, the clutch was not used";
+  EXPECT_EQ(at(31.0).remote.link, RemoteLink::kEngaged);
+}
+
+TEST(Excavator, FarAwayMeetsTheGroundAndItsTwinFeelsIt) {
+  double most = 0.0, apart = 0.0;
+  for (const Moment& now : played("teleoperation")) {
+    if (now.force.tau.size() == 0) continue;
+    most = std::max(most, now.force.tau[1]);
+    const PortVector lag = now.remote.x_leader - now.remote.x_true;
+    if (now.time_s > 14.5 && now.time_s < 15.5) apart = lag.lpNorm<Eigen::Infinity>();
+    EXPECT_EQ(now.force.tau[0], 0.0);
+  }
+  EXPECT_GT(most, 20.0);
+  EXPECT_LT(apart, 0.01);
+}
+
+TEST(RemoteArm, ReplaysBitForBitFromItsInputs) {
+  const config::Scenario scenario = shipped("remote_arm");
+  Session session(scenario);
+  controller::Cycle cycle = make_cycle(scenario);
+  CommandFrame command;
+  CycleRecord record;
+  double pushed = 0.0;
+  for (int k = 0; k < 9000 && session.advance(); ++k) {
+    const Sample& now = session.sample();
+    cycle.step(now.sensors, now.operator_input, command, record);
+    ASSERT_EQ(record.state_hash, now.record.state_hash) << k;
+    pushed = std::max(pushed, now.operator_input.twin_force.w_E.norm());
+  }
+  EXPECT_GT(pushed, 1.0);
+}
+
+// A force of the test's own.
+struct Push final : TwinForceSource {
+  TwinForce force;
+  void step(const TwinNow&, TwinForce& push, TeleoperationReport&) noexcept override {
+    push = force;
+  }
+};
+
+struct Pushed {
+  config::Scenario scenario;
+  Push push;
+  controller::Cycle cycle;
+  std::unique_ptr<device::Device> device;
+  runtime::Session session;
+
+  explicit Pushed(const std::string& name)
+      : scenario(shipped(name)),
+        cycle(make_cycle(scenario)),
+        device(make_simulated_device(scenario)),
+        session(cycle, *device, {.twin_force = &push}) {
+    while (session.record().mode != Mode::kRunning && session.record().cycle < 5000) {
+      session.advance();
+    }
+    for (int k = 0; k < 400; ++k) session.advance();
+  }
+};
+
+TEST(TwinForce, AcceleratesTheTwinByItsMass) {
+  Pushed pushed("free_space");
+  const Eigen::Vector3d before = pushed.session.record().a_H;
+  pushed.push.force.w_E[0] = 3.0;
+  pushed.session.advance();
+  EXPECT_NEAR(pushed.session.record().a_H.x() - before.x(), 3.0 / 6.0, 0.05);
+}
+
+TEST(TwinForce, OfTheWrongKindStopsTheDeviceWithItsName) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto fault_of = [](const TwinForce& force) {
+    Pushed pushed("excavator");
+    EXPECT_EQ(pushed.session.record().mode, Mode::kRunning);
+    pushed.push.force = force;
+    pushed.session.advance();
+    const CycleRecord& record = pushed.session.record();
+    EXPECT_EQ(record.fault.code, FaultCode::kTwinForceWrong);
+    EXPECT_TRUE(record.twin.ddq_a.allFinite());
+    EXPECT_EQ(record.mode, Mode::kStopping);
+    return record.fault;
+  };
+  TwinForce force;
+  force.w_E[4] = nan;
+  EXPECT_EQ(fault_of(force).index, 4);
+  force.w_E[4] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(fault_of(force).index, 4);
+  force.w_E[4] = 0.0;
+  force.w_E[2] = 151.0;
+  EXPECT_EQ(fault_of(force).limit, 150.0);
+  force.w_E[2] = 0.0;
+  force.tau = VectorA::Zero(4);
+  force.tau[3] = nan;
+  EXPECT_EQ(fault_of(force).index, 9);
+  force.tau = VectorA::Ones(3);
+  EXPECT_EQ(fault_of(force).value, 3.0) << "three torques for four joints";
+}
+
+TEST(TwinForce, ThatIsZeroChangesNothing) {
+  const auto hash_after = [](bool has_source) {
+    const config::Scenario scenario = shipped("excavator");
+    controller::Cycle cycle = make_cycle(scenario);
+    const auto device = make_simulated_device(scenario);
+    Push push;
+    push.force.tau = VectorA::Zero(4);
+    runtime::SessionPlan plan;
+    if (has_source) plan.twin_force = &push;
+    runtime::Session session(cycle, *device, plan);
+    for (int k = 0; k < 4000; ++k) session.advance();
+    return session.record().state_hash;
+  };
+  EXPECT_EQ(hash_after(true), hash_after(false));
+}
+
+}  // namespace
+}  // namespace hg::scenario

@@ -1,0 +1,150 @@
+#include "hg/teleoperation/leader_half.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "hg/core/error.h"
+#include "hg/core/first_not_finite.h"
+
+namespace hg::teleoperation {
+
+void check_leader(const LeaderConfig& config) {
+  const auto require = [](bool ok, const char* rule, double value) {
+    if (!ok) throw SetupError(std::string("leader: ") + rule + ", got " + std::to_string(value));
+  };
+  require(config.silence > 0.0, "silence must be positive", config.silence);
+  require(config.fade > 0.0, "fade must be positive", config.fade);
+  require(config.force_max > 0.0, "force_max must be positive", config.force_max);
+  require(config.snapshot > 0.0, "snapshot must be positive", config.snapshot);
+}
+
+LeaderHalf::LeaderHalf(const MethodConfig& method, const LeaderConfig& config, double dt)
+    : config_((check_leader(config), config)), dt_(dt), method_(make_leader_method(method, dt)) {}
+
+void LeaderHalf::receive(const RemotePacket& packet, double now_s) noexcept {
+  if (packet.sequence <= arrived_.sequence) return;
+  const bool is_first = arrived_.sequence == 0;
+  if (!is_first && !(packet.sent_s > arrived_.sent_s)) return;
+  const Eigen::Index size = packet.x.size();
+  const bool is_complete = size > 0 && packet.v.size() == size && packet.f.size() == size &&
+                           packet.x_target.size() == size && packet.reflected.size() == size &&
+                           packet.wave.size() == size && packet.energy.size() == size &&
+                           (is_first || size == arrived_.x.size());
+  const ContactModel& model = packet.model;
+  const bool has_model = model.normal.size() == size || model.stiffness == 0.0;
+  const int bad = first_not_finite(packet.x, packet.v, packet.x_target, packet.f, packet.reflected,
+                                   packet.wave, packet.energy, model.normal);
+  const bool is_finite =
+      bad < 0 && std::isfinite(model.offset + model.stiffness + packet.energy_net);
+  if (!is_complete || !has_model || !is_finite) {
+    arrived_.sequence = packet.sequence;
+    if (link_ == RemoteLink::kEngaged) {
+      link_ = RemoteLink::kLost;
+      cause_ = RemoteCause::kNotFinite;
+    }
+    return;
+  }
+  arrived_ = packet;
+  arrived_s_ = now_s;
+  is_new_ = true;
+}
+
+// The newest packet answers this engagement.
+bool LeaderHalf::is_confirmed() const noexcept { return arrived_.engagement == engagements_; }
+
+void LeaderHalf::engage(const LeaderInput& input) noexcept {
+  const PortVector offset = arrived_.x_target - input.x;
+  if (offset.lpNorm<Eigen::Infinity>() > config_.snapshot) return;
+  offset_ = offset;
+  ++engagements_;
+  link_ = RemoteLink::kEngaged;
+  cause_ = RemoteCause::kNone;
+  was_open_ = is_started_ = false;
+  method_->start(input.x.size());
+  energy_.start(input.x.size());
+  force_ = applied_ = PortVector::Zero(input.x.size());
+  x_before_.resize(0);
+  share_ = 0.0;
+}
+
+// The clutch, and whether the link is there.
+void LeaderHalf::operate(double now_s, const LeaderInput& input) noexcept {
+  const bool is_alive = now_s - arrived_s_ <= config_.silence;
+  if (!input.is_clutch_closed) was_open_ = true;
+  switch (link_) {
+    case RemoteLink::kNone:
+    case RemoteLink::kWaiting:
+      if (is_alive) link_ = RemoteLink::kReleased;
+      break;
+    case RemoteLink::kEngaged:
+      if (!input.is_clutch_closed) {
+        link_ = RemoteLink::kReleased;
+        cause_ = RemoteCause::kReleased;
+      } else if (!is_alive) {
+        link_ = RemoteLink::kLost;
+        cause_ = RemoteCause::kSilent;
+      } else if (is_confirmed() && holds(arrived_.cause)) {
+        link_ = RemoteLink::kLost;
+        cause_ = arrived_.cause;
+      } else {
+        cause_ = is_confirmed() ? arrived_.cause : RemoteCause::kNone;
+      }
+      break;
+    case RemoteLink::kReleased:
+    case RemoteLink::kLost:
+      break;
+  }
+  const bool may_engage = link_ == RemoteLink::kReleased || link_ == RemoteLink::kLost;
+  if (may_engage && is_alive && was_open_ && input.is_clutch_closed && share_ == 0.0) {
+    engage(input);
+  }
+}
+
+PortVector LeaderHalf::step(double now_s, const LeaderInput& input, LeaderPacket& packet) noexcept {
+  const Eigen::Index size = input.x.size();
+  if (offset_.size() != size) {
+    offset_ = force_ = applied_ = PortVector::Zero(size);
+    energy_.start(size);
+  }
+  operate(now_s, input);
+  x_ = input.x + offset_;
+  if (x_before_.size() == size) energy_.add(applied_, x_ - x_before_);
+  x_before_ = x_;
+
+  const bool is_engaged = link_ == RemoteLink::kEngaged;
+  packet = {.sequence = ++sequence_,
+            .engagement = is_engaged ? engagements_ : 0,
+            .sent_s = now_s,
+            .x = x_,
+            .v = input.v,
+            .f = PortVector::Zero(size),
+            .wave = PortVector::Zero(size),
+            .energy = PortVector::Zero(size)};
+  const bool is_coupled = is_engaged && is_confirmed() && arrived_.x.size() == size;
+  if (is_coupled) {
+    is_started_ = true;
+  }
+  if (is_engaged && (is_started_ || arrived_.x.size() == size)) {
+    RemotePacket quiet = arrived_;
+    if (!is_started_) {  // what arrives is of an earlier engagement
+      quiet.reflected.setZero();
+      quiet.wave.setZero();
+      quiet.energy.setZero();
+      quiet.model = {};
+      quiet.model.normal = PortVector::Zero(size);
+    }
+    force_ = method_->step({.x = x_, .v = input.v, .f_hand = input.f_hand, .energy = energy_},
+                           quiet, is_new_ && is_started_, packet);
+    if (!is_started_) force_.setZero();
+    is_new_ = false;
+  }
+  const double step = dt_ / config_.fade;
+  share_ = std::clamp(share_ + (is_engaged && is_started_ ? step : -step), 0.0, 1.0);
+  applied_ = share_ * force_;
+  const double norm = applied_.norm();
+  if (norm > config_.force_max) applied_ *= config_.force_max / norm;
+  return applied_;
+}
+
+}  // namespace hg::teleoperation

@@ -1,0 +1,58 @@
+/// Interface of a remote machine, and a simulated one.
+#pragma once
+
+#include <vector>
+
+#include "hg/core/interval.h"
+#include "hg/teleoperation/method.h"
+
+namespace hg::teleoperation {
+
+/// Measured state of a remote machine.
+struct MachineState {
+  PortVector x, v;
+  PortVector f;  ///< Force of the surroundings on the machine
+};
+
+/// A machine whose own controller follows a target with a spring and a damper. One call of read()
+/// and one of write() per period. Neither allocates, waits or throws.
+class RemoteMachine {
+ public:
+  virtual ~RemoteMachine() = default;
+  virtual void read(MachineState& state) noexcept = 0;
+  virtual void write(const RemoteTarget& target) noexcept = 0;
+};
+
+/// A wall: pushes what is behind it out along its normal.
+struct Wall {
+  PortVector normal;       ///< Unit vector out of the wall
+  double offset = 0.0;     ///< Position of its surface along the normal, m or rad
+  double stiffness = 5e3;  ///< N/m or Nm/rad
+  double damping = 50.0;   ///< Ns/m or Nms/rad; never pulls
+};
+
+struct SimulatedMachineConfig {
+  MachineImpedance impedance;
+  double friction = 2.0;     ///< Viscous, Ns/m or Nms/rad
+  double force_max = 300.0;  ///< Of each motor, N or Nm
+  std::vector<Wall> walls;
+  PortVector x_start;
+};
+
+/// Independent axes with the same inertia, between walls.
+class SimulatedMachine final : public RemoteMachine {
+ public:
+  SimulatedMachine(const SimulatedMachineConfig& config, double dt);
+  void read(MachineState& state) noexcept override;
+  void write(const RemoteTarget& target) noexcept override;
+
+ private:
+  PortVector wall_force() const noexcept;
+
+  SimulatedMachineConfig config_;
+  double dt_;
+  MachineState state_;
+  PortVector x_target_;
+};
+
+}  // namespace hg::teleoperation

@@ -1,0 +1,77 @@
+/// A device that leads a simulated remote machine over a simulated link.
+///
+/// Direct: the end effector of the twin leads the tool of the remote machine; motion and force are
+/// scaled, the clutch sets where both belong together. Indirect: the twin is the model of the
+/// remote machine, and its joints lead the machine's joints; what limits the machine limits the
+/// twin.
+///
+/// The source of the twin's force in a session (hg/signals/twin_force_source.h). No allocation
+/// after construction, noexcept.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hg/core/interval.h"
+#include "hg/model/chain_data.h"
+#include "hg/signals/twin_force_source.h"
+#include "hg/teleoperation/channel.h"
+#include "hg/teleoperation/leader_half.h"
+#include "hg/teleoperation/limiter.h"
+#include "hg/teleoperation/machine.h"
+#include "hg/teleoperation/remote_half.h"
+
+namespace hg::teleoperation {
+
+enum class Mapping : std::uint8_t {
+  kTool,    ///< direct: positions of the tool, three coordinates
+  kJoints,  ///< indirect: joints of the twin, up to seven
+};
+
+struct TeleoperationConfig {
+  Mapping mapping = Mapping::kTool;
+  MethodConfig method;
+  LeaderConfig leader;
+  ChannelConfig link;     ///< Of both directions, each with random numbers of its own
+  LimiterConfig limiter;  ///< Of the remote machine
+  SimulatedMachineConfig machine;
+  double motion_scale = 1.0;  ///< Motion of the remote machine over that of the leader
+  double force_scale = 1.0;   ///< Force on the leader over that on the remote machine
+  Eigen::Matrix3d R_R_B =
+      Eigen::Matrix3d::Identity();    ///< Base of the leader in that of the remote
+  std::vector<Interval> clutch_open;  ///< Times at which the clutch is open, s since the run began
+};
+
+class Teleoperation final : public TwinForceSource {
+ public:
+  /// `end_effector` is a frame of the twin. Throws SetupError.
+  Teleoperation(const TeleoperationConfig& config, const model::ChainModel& twin, int end_effector,
+                double dt);
+
+  void step(const TwinNow& now, TwinForce& force, TeleoperationReport& report) noexcept override;
+
+ private:
+  void find_port(const TwinNow& now) noexcept;
+  bool is_clutch_closed(const TwinNow& now) noexcept;
+  void move_remote(double now_s) noexcept;
+  void push(TwinForce& force) const noexcept;
+
+  TeleoperationConfig config_;
+  model::ChainData twin_;
+  int end_effector_;
+  LeaderHalf leader_;
+  RemoteHalf remote_;
+  SimulatedMachine machine_;
+  Channel<LeaderPacket> to_remote_;
+  Channel<RemotePacket> to_leader_;
+  // the leader's port before the offset of an engagement
+  PortVector x_, v_, f_hand_, f_leader_;
+  Eigen::Vector3d p_before_ = Eigen::Vector3d::Zero();
+  double began_s_ = -1.0;  ///< When the run began; negative = it has not
+  MachineState machine_state_;
+  LeaderPacket leader_packet_, arrived_at_remote_;
+  RemotePacket remote_packet_, arrived_at_leader_;
+};
+
+}  // namespace hg::teleoperation
