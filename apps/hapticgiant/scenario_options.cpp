@@ -59,6 +59,16 @@ void add_scenario_options(Command command, scenario::ScenarioOptions& world) {
                   "twin.yaml, or the name of a shipped one (light, fr3/drawer), instead of the "
                   "scenario's")
       .suggest([] { return names_in(config::shipped_twins); });
+  command
+      .add_option("--surfaces", world.surfaces,
+                  "scenario whose virtual surfaces are met instead of the scenario's own; or none")
+      .suggest([] {
+        std::vector<std::string> names = names_in(config::shipped_scenarios);
+        std::erase_if(names, [](const std::string& name) {
+          return !config::has_surfaces(config::find_scenario(name));
+        });
+        return names;
+      });
   command.add_option("--plant", world.plant, "elastic: with springs, friction and delays; or ideal")
       .one_of({"elastic", "ideal"});
   command.add_option("--simulation", world.simulation, kSimulationHelp);

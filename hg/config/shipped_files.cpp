@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <fstream>
 #include <initializer_list>
 #include <optional>
@@ -53,6 +54,7 @@ void refuse_folder(const std::string& name, std::string_view kind) {
 // Keys at the beginning of a line, one of which files of a kind have.
 using Keys = std::initializer_list<const char*>;
 constexpr Keys kOfScenarios = {"title"};
+constexpr Keys kOfOwnScenarios = {"person"};  // other files of users may have titles
 constexpr Keys kOfTwins = {"end_effector", "free_body"};
 constexpr Keys kOfDevices = {"manipulator"};
 
@@ -86,6 +88,47 @@ std::vector<std::string> names_of_arm(const std::string& arm, Keys keys) {
     return keys.size() != 0 && !value_in(folder / (name + ".yaml"), keys);
   });
   return names;
+}
+
+constexpr int kMostLookedAt = 1000;           // files of a folder
+constexpr std::uintmax_t kLargest = 4 << 20;  // bytes of a configuration file
+
+std::vector<fs::path> yaml_files_in(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  int looked_at = 0;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (++looked_at > kMostLookedAt) break;
+    std::error_code ignored;
+    const bool is_candidate = entry->path().extension() == ".yaml" &&
+                              entry->is_regular_file(ignored) &&
+                              entry->file_size(ignored) <= kLargest;
+    if (is_candidate) files.push_back(entry->path().lexically_normal());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<ShippedFile> local_files(Keys keys) {
+  std::vector<fs::path> folders = {"."};
+  std::error_code error;
+  for (fs::directory_iterator entry(".", error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code ignored;
+    if (folders.size() > kMostLookedAt) break;
+    if (entry->is_directory(ignored)) folders.push_back(entry->path());
+  }
+  std::vector<ShippedFile> found;
+  for (const fs::path& folder : folders) {
+    for (const fs::path& file : yaml_files_in(folder)) {
+      if (!value_in(file, keys)) continue;
+      const std::string title = title_of(file);
+      found.push_back({file.generic_string(), title.empty() ? file.generic_string() : title});
+    }
+  }
+  std::ranges::sort(found, {}, &ShippedFile::name);
+  return found;
 }
 
 // Those of all arms, as "ARM/NAME".
@@ -207,6 +250,16 @@ std::vector<ShippedFile> shipped_twins() {
     found.push_back({name, title_of(twins / name / "twin.yaml")});
   add_of_arms(kOfTwins, found);
   return found;
+}
+
+std::vector<ShippedFile> local_scenarios() { return local_files(kOfOwnScenarios); }
+std::vector<ShippedFile> local_devices() { return local_files(kOfDevices); }
+std::vector<ShippedFile> local_twins() { return local_files(kOfTwins); }
+
+bool has_surfaces(const fs::path& scenario) { return value_in(scenario, {"surfaces"}).has_value(); }
+
+fs::path find_surfaces(const std::string& name, const SourceReader& reader) {
+  return reader.exists(name) ? fs::path(name) : find_scenario(name);
 }
 
 fs::path find_scenario(const std::string& name) {

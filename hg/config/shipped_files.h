@@ -21,7 +21,7 @@ std::filesystem::path installation_root();
 /// when neither has one.
 std::filesystem::path models_root();
 
-/// A file of models/, by the name that options take.
+/// A file that can be chosen, by the name that options take.
 struct ShippedFile {
   std::string name;   ///< "door", "fr3/open_drawer", "fr3"
   std::string title;  ///< its title, or its name in the file
@@ -32,6 +32,15 @@ struct ShippedFile {
 std::vector<ShippedFile> shipped_scenarios();
 std::vector<ShippedFile> shipped_devices();
 std::vector<ShippedFile> shipped_twins();
+
+/// Scenarios, devices and twins of users: those in the working directory and in its folders, by
+/// their paths. Of a folder with very many files, not all are looked at.
+std::vector<ShippedFile> local_scenarios();
+std::vector<ShippedFile> local_devices();
+std::vector<ShippedFile> local_twins();
+
+/// Whether a scenario has surfaces of its own.
+bool has_surfaces(const std::filesystem::path& scenario);
 
 /// Finds a scenario by file name, or by the name of a shipped one ("door", "fr3/open_drawer").
 /// Throws SetupError with the nearest name.
@@ -44,6 +53,10 @@ std::filesystem::path find_script(const std::string& name);
 /// A twin file that `reader` has, or the shipped one of this name ("light", "fr3/drawer"). Throws
 /// SetupError naming the nearest one.
 std::filesystem::path find_twin(const std::string& name, const SourceReader& reader);
+
+/// A scenario file that `reader` has, or the shipped one of this name, whose surfaces are wanted.
+/// Throws SetupError naming the nearest one.
+std::filesystem::path find_surfaces(const std::string& name, const SourceReader& reader);
 
 /// A device file that `reader` has, or the shipped device of this name ("fr3"). Throws SetupError
 /// naming the nearest one.

@@ -181,9 +181,61 @@ void sort(std::vector<Choice>& choices) {
             [](const Choice& a, const Choice& b) { return a.name < b.name; });
 }
 
+constexpr char kOwnFiles[] = "Files here";
+
+// "Franka FR3" of the arm fr3; "HapticGiant" of what is of no arm.
+std::string device_of(const std::string& name, const std::vector<config::ShippedFile>& devices) {
+  const std::string arm = fs::path(name).parent_path().generic_string();
+  const auto device = std::ranges::find(devices, arm.empty() ? devices.front().name : arm,
+                                        &config::ShippedFile::name);
+  return device == devices.end() ? arm : device->title;
+}
+
+std::vector<Choice> choices_of(const std::vector<config::ShippedFile>& shipped,
+                               const std::vector<config::ShippedFile>& own,
+                               const std::vector<config::ShippedFile>& devices) {
+  std::vector<Choice> choices;
+  for (const config::ShippedFile& file : shipped) {
+    const std::string device = devices.empty() ? "" : device_of(file.name, devices);
+    std::string title = title_of(file.title);
+    if (title.ends_with(", " + device)) title.erase(title.size() - device.size() - 2);
+    choices.push_back({file.name, title, device});
+  }
+  for (const config::ShippedFile& file : own) {
+    choices.push_back({file.name, fmt::format("{} ({})", title_of(file.title), file.name),
+                       devices.empty() ? "" : kOwnFiles});
+  }
+  return choices;
+}
+
+std::vector<Choice> choices_of_people() {
+  std::vector<Choice> people;
+  for (const auto& entry : fs::directory_iterator(config::models_root() / "models" / "scripts")) {
+    if (entry.path().extension() != ".yaml") continue;
+    people.push_back({entry.path().generic_string(), "Script " + entry.path().stem().string(), ""});
+  }
+  sort(people);
+  people.insert(
+      people.begin(),
+      {{"", "as in the scenario", ""}, {"mouse", "Only the mouse", ""}, {"none", "No person", ""}});
+  return people;
+}
+
+std::vector<Choice> choices_of_surfaces(const std::vector<Choice>& scenarios) {
+  std::vector<Choice> sets = {{"", "as in the scenario", ""}, {"none", "No surfaces", ""}};
+  for (const Choice& scenario : scenarios) {
+    if (!config::has_surfaces(config::find_scenario(scenario.name))) continue;
+    sets.push_back({scenario.name, "Those of: " + scenario.title, ""});
+  }
+  return sets;
+}
+
 // adds a choice given on the command line
 void add_own(const std::string& name, std::vector<Choice>& choices) {
-  if (!is_choice(choices, name)) choices.push_back({name, fs::path(name).filename().string()});
+  if (is_choice(choices, name)) return;
+  const bool has_groups =
+      std::ranges::any_of(choices, [](const Choice& choice) { return !choice.group.empty(); });
+  choices.push_back({name, fs::path(name).filename().string(), has_groups ? "As given" : ""});
 }
 
 std::string stopping_text(const config::DeviceConfig& device) {
@@ -235,37 +287,35 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   return scene;
 }
 
-viewer_server::Choices page_choices(const scenario::ScenarioOptions& options) {
+viewer_server::Choices page_choices(const scenario::ScenarioOptions& options,
+                                    const scenario::ScenarioOptions& given) {
+  const std::vector<config::ShippedFile> devices = config::shipped_devices();
+  const Choice as_in_scenario = {"", "as in the scenario", ""};
   viewer_server::Choices choices;
-  const fs::path models = config::models_root() / "models";
-  for (const auto& entry : fs::directory_iterator(models / "scenarios")) {
-    const std::string stem = entry.path().stem().string();
-    if (entry.path().extension() == ".yaml") choices.scenarios.push_back({stem, title_of(stem)});
-  }
-  for (const auto& entry : fs::directory_iterator(models / "twins")) {
-    const fs::path file = entry.path() / "twin.yaml";
-    if (!fs::is_regular_file(file)) continue;
-    choices.twins.push_back({file.generic_string(), title_of(entry.path().filename().string())});
-  }
-  for (const auto& entry : fs::directory_iterator(models / "scripts")) {
-    if (entry.path().extension() != ".yaml") continue;
-    choices.people.push_back(
-        {entry.path().generic_string(), "Script " + entry.path().stem().string()});
-  }
-  for (auto* list : {&choices.scenarios, &choices.twins, &choices.people}) sort(*list);
-  choices.twins.insert(choices.twins.begin(), {"", "as in the scenario"});
-  choices.people.insert(
-      choices.people.begin(),
-      {{"", "as in the scenario"}, {"mouse", "Only the mouse"}, {"none", "No person"}});
+  choices.scenarios = choices_of(config::shipped_scenarios(), config::local_scenarios(), devices);
+  choices.twins = choices_of(config::shipped_twins(), config::local_twins(), devices);
+  choices.devices = choices_of(devices, config::local_devices(), {});
+  choices.people = choices_of_people();
   for (const auto& law : config::kLawPresets) {
-    choices.laws.push_back({std::string(law.name), title_of(std::string(law.name))});
+    choices.laws.push_back({std::string(law.name), title_of(std::string(law.name)), ""});
+  }
+  choices.twins.insert(choices.twins.begin(), as_in_scenario);
+  choices.devices.insert(choices.devices.begin(), as_in_scenario);
+  for (const scenario::ScenarioOptions* own : {&given, &options}) {
+    add_own(own->scenario, choices.scenarios);
+    add_own(own->twin, choices.twins);
+    add_own(own->device, choices.devices);
+    add_own(own->user, choices.people);
+  }
+  choices.surface_sets = choices_of_surfaces(choices.scenarios);
+  for (const scenario::ScenarioOptions* own : {&given, &options}) {
+    add_own(own->surfaces, choices.surface_sets);
   }
   choices.scenario = options.scenario;
   choices.twin = options.twin;
+  choices.device = options.device;
+  choices.surfaces = options.surfaces;
   choices.person = options.user;
-  add_own(choices.scenario, choices.scenarios);
-  add_own(choices.twin, choices.twins);
-  add_own(choices.person, choices.people);
   return choices;
 }
 

@@ -15,9 +15,11 @@ namespace hg::page {
 /// Scene of a run or of a recording: chains, limits, box and surroundings.
 viewer_server::Scene page_scene(const config::Scenario& scenario);
 
-/// Choices of scenarios, twins, laws and people shipped with the program, and those of `options`.
-/// Names are as in scenario::ScenarioOptions; empty twin and person stand for the scenario's own.
-viewer_server::Choices page_choices(const scenario::ScenarioOptions& options);
+/// Choices of scenarios, twins, devices, surfaces, laws and people: those shipped with the program,
+/// those in the working directory, and those of `options` and `given`, with which the program was
+/// started. Names are as in scenario::ScenarioOptions; empty ones stand for the scenario's own.
+viewer_server::Choices page_choices(const scenario::ScenarioOptions& options,
+                                    const scenario::ScenarioOptions& given);
 
 /// True when `name` is one of `choices`.
 bool is_choice(const std::vector<viewer_server::Choice>& choices, const std::string& name);

@@ -15,6 +15,7 @@
 #include "hg/scenario/names.h"
 #include "hg/scenario/recorded/recorded_scenario.h"
 #include "hg/scenario/recorded/robot_models.h"
+#include "hg/scenario/start_posture.h"
 
 namespace hg::page {
 namespace {
@@ -55,6 +56,8 @@ struct Chooser {
 constexpr Chooser kChoosers[] = {
     {CommandName::kScenario, &Choices::scenarios, &ScenarioOptions::scenario},
     {CommandName::kTwin, &Choices::twins, &ScenarioOptions::twin},
+    {CommandName::kDevice, &Choices::devices, &ScenarioOptions::device},
+    {CommandName::kSurfaces, &Choices::surface_sets, &ScenarioOptions::surfaces},
     {CommandName::kLaw, &Choices::laws, &ScenarioOptions::law},
     {CommandName::kPerson, &Choices::people, &ScenarioOptions::user}};
 
@@ -64,6 +67,22 @@ viewer_server::ServerOptions with(OperatorDesk* desk, viewer_server::ServerOptio
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+/// What follows from the choice of another part: another scenario is played as it stands, the one
+/// that the program was started with as it was given; and a script is made for one twin.
+void settle_choice(CommandName chosen, const ScenarioOptions& given, ScenarioOptions& options) {
+  const bool is_scenario = chosen == CommandName::kScenario;
+  const bool is_given = is_scenario && options.scenario == given.scenario;
+  if (is_scenario) {
+    options.twin = is_given ? given.twin : "";
+    options.device = is_given ? given.device : "";
+    options.surfaces = is_given ? given.surfaces : "";
+  }
+  const bool has_script = options.user != "mouse" && options.user != "none";
+  if (has_script && (is_scenario || chosen == CommandName::kTwin)) {
+    options.user = is_given ? given.user : "";
+  }
+}
 
 std::string text_of_done(const Command& command) {
   const std::string page = fmt::format("page {}", command.page);
@@ -114,6 +133,8 @@ std::span<const RunPage::Order> RunPage::orders() {
                                       {CommandName::kRestart, true, true, &RunPage::choose},
                                       {CommandName::kScenario, true, true, &RunPage::choose},
                                       {CommandName::kTwin, true, true, &RunPage::choose},
+                                      {CommandName::kDevice, true, true, &RunPage::choose},
+                                      {CommandName::kSurfaces, true, true, &RunPage::choose},
                                       {CommandName::kLaw, true, true, &RunPage::choose},
                                       {CommandName::kPerson, true, true, &RunPage::choose},
                                       {CommandName::kPanel, true, false, nullptr}};
@@ -123,6 +144,7 @@ std::span<const RunPage::Order> RunPage::orders() {
 RunPage::RunPage(const viewer_server::ServerOptions& options, const ShownRun& first,
                  Prepare prepare)
     : run_(first),
+      given_(*first.options),
       prepare_(std::move(prepare)),
       form_(config::twin_form(first.scenario->twin.model)),
       values_(values_of(form_)),
@@ -133,7 +155,7 @@ viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
   viewer_server::Scene scene = page_scene(*run.scenario);
   scene.run = number_;
   scene.duration_s = scenario::planned_duration_s(*run.scenario);
-  scene.choices = page_choices(*run.options);
+  scene.choices = page_choices(*run.options, given_);
   scene.choices.law = config::preset_name(run.scenario->device.rendering);
   scene.settings = page_settings(form_);
   scene.refusal = run.fixed_by.empty() ? run.refusal : run.fixed_by;
@@ -461,21 +483,20 @@ std::string RunPage::choose(const Command& command, runtime::Runtime*, const Not
   ScenarioOptions options = *run_.options;
   const auto* chooser = std::ranges::find(kChoosers, command.name, &Chooser::command);
   if (chooser != std::end(kChoosers)) {
-    if (!is_choice(page_choices(options).*chooser->list, command.argument)) {
+    if (!is_choice(page_choices(options, given_).*chooser->list, command.argument)) {
       return "there is no such choice: " + command.argument;
     }
     options.*chooser->option = command.argument;
   }
-  const bool is_other_scenario = command.name == CommandName::kScenario;
-  if (is_other_scenario) options.twin.clear();
-  // a script is made for one twin
-  const bool is_other_twin = is_other_scenario || command.name == CommandName::kTwin;
-  if (is_other_twin && options.user != "mouse" && options.user != "none") options.user.clear();
+  settle_choice(command.name, given_, options);
   chosen_ = command;
   prepared_ = std::async(std::launch::async, [this, options]() -> std::string {
     try {
       prepare_(options);
       return {};
+    } catch (const scenario::StartError& error) {
+      return fmt::format("the {} cannot hold the handle of the {} where it starts ({})",
+                         error.device, error.twin, error.why);
     } catch (const SetupError& error) {
       return first_line(error.what());
     }

@@ -131,6 +131,7 @@ class RunPage {
   void publish();
 
   ShownRun run_;
+  scenario::ScenarioOptions given_;  ///< with which the program was started
   Prepare prepare_;
   std::uint64_t number_ = 1;
   std::vector<config::FormField> form_;

@@ -22,14 +22,65 @@
 namespace hg::scenario {
 namespace {
 
-// applies --device, --simulation, --twin, --user and --rate-hz; expected events belong to the
-// scenario as it stands
+constexpr char kNoSurfaces[] = "none";
+
+// The title without the name of a device that is not played any more: "Drawer, Franka FR3".
+void forget_device(std::string& title, const std::string& device) {
+  const std::string end = ", " + device;
+  if (title.ends_with(end)) title.erase(title.size() - end.size());
+}
+
+// applies --surfaces; returns the files that were read
+std::vector<config::SourceText> apply_surfaces(const std::string& name,
+                                               config::SourceReader& reader,
+                                               config::Scenario& scenario) {
+  if (name == kNoSurfaces) {
+    scenario.surfaces.clear();
+    return {};
+  }
+  const std::size_t read = reader.texts().size();
+  config::Scenario other = config::load_scenario(config::find_surfaces(name, reader), reader);
+  if (other.surfaces.empty()) {
+    throw SetupError(fmt::format("--surfaces {}: this scenario has no surfaces", name));
+  }
+  scenario.surfaces = std::move(other.surfaces);
+  return reader.since(read);
+}
+
+// applies --user, and who holds the handle of another twin; returns the files that were read
+std::vector<config::SourceText> apply_person(const ScenarioOptions& options,
+                                             config::SourceReader& reader,
+                                             config::Scenario& scenario) {
+  if (!options.user.empty()) scenario.events.clear();
+  if (options.user == "mouse") {
+    scenario.person = person::PersonKind::kMouse;
+  } else if (options.user == "none") {
+    scenario.person = person::PersonKind::kNone;
+  } else if (!options.user.empty()) {
+    scenario.person = person::PersonKind::kScript;
+    scenario.script =
+        config::load_script(config::find_script(options.user), scenario.twin.model, reader);
+    scenario.duration_s = 0.0;  // as long as this script
+    return scenario.script.sources;
+  } else if (!options.twin.empty()) {
+    scenario.person = person::PersonKind::kMouse;  // a script is made for one twin
+  }
+  return {};
+}
+
+// applies --device, --simulation, --twin, --surfaces, --user and --rate-hz; expected events belong
+// to the scenario as it stands
 void apply(const ScenarioOptions& options, config::SourceReader& reader,
            config::Scenario& scenario) {
   const auto add_sources = [&](const std::vector<config::SourceText>& sources) {
     scenario.sources.insert(scenario.sources.end(), sources.begin(), sources.end());
   };
   if (!options.device.empty()) {
+    if (!scenario.faults.empty() || scenario.bystander) {
+      throw SetupError(
+          "--device: the scenario's faults and bystander are of its own device; leave them out");
+    }
+    forget_device(scenario.title, scenario.device.name);
     scenario.device =
         config::load_simulated_device(config::find_device(options.device, reader), reader);
     add_sources(scenario.device.sources);
@@ -50,6 +101,13 @@ void apply(const ScenarioOptions& options, config::SourceReader& reader,
     scenario.changes.clear();
     add_sources(scenario.twin.sources);
   }
+  if (!options.surfaces.empty()) {
+    add_sources(apply_surfaces(options.surfaces, reader, scenario));
+    scenario.events.clear();
+  }
+  if (!options.surfaces.empty() || !options.twin.empty()) {
+    config::check_start_outside(scenario.surfaces, scenario.twin.model);
+  }
   if (!options.twin.empty() || !options.device.empty()) {
     scenario.limits = rendering::make_catalogue(scenario.device.model, scenario.twin.model);
     if (const auto repeated = rendering::repeated_names(scenario.limits); !repeated.empty()) {
@@ -58,21 +116,7 @@ void apply(const ScenarioOptions& options, config::SourceReader& reader,
     }
     scenario.events.clear();
   }
-  if (!options.user.empty()) scenario.events.clear();
-
-  if (options.user == "mouse") {
-    scenario.person = person::PersonKind::kMouse;
-  } else if (options.user == "none") {
-    scenario.person = person::PersonKind::kNone;
-  } else if (!options.user.empty()) {
-    scenario.person = person::PersonKind::kScript;
-    scenario.script =
-        config::load_script(config::find_script(options.user), scenario.twin.model, reader);
-    scenario.duration_s = 0.0;  // as long as this script
-    add_sources(scenario.script.sources);
-  } else if (!options.twin.empty()) {
-    scenario.person = person::PersonKind::kMouse;  // a script is made for one twin
-  }
+  add_sources(apply_person(options, reader, scenario));
   if (options.rate_Hz) {
     config::check_rate(scenario.device, *options.rate_Hz);
     scenario.device.model.rate_Hz = *options.rate_Hz;
@@ -126,6 +170,7 @@ ScenarioOptions recorded_options(const std::string& text) {
     const std::string option = line.substr(0, space), value = line.substr(space + 1);
     if (option == "--device") options.device = value;
     if (option == "--twin") options.twin = value;
+    if (option == "--surfaces") options.surfaces = value;
     if (option == "--rate-hz") options.rate_Hz = std::strtod(value.c_str(), nullptr);
     if (option == "--simulation") options.simulation = value;
     if (option == "--seed") options.seed = std::strtoull(value.c_str(), nullptr, 10);
@@ -264,6 +309,10 @@ config::Scenario load_changed(const ScenarioOptions& options, const config::Scen
   ScenarioOptions known = options;  // as the files are called in `sources`
   if (!options.device.empty()) known.device = first_of(scenario.device.sources);
   if (!options.twin.empty()) known.twin = first_of(scenario.twin.sources);
+  if (!options.surfaces.empty() && options.surfaces != kNoSurfaces) {
+    known.surfaces =
+        config::find_surfaces(options.surfaces, {}).lexically_normal().generic_string();
+  }
   try {
     config::SourceReader reader(sources);
     return apply_all(known, reader, config::load_scenario(sources));
@@ -292,6 +341,9 @@ std::string to_text(const ScenarioOptions& options) {
     line("--device", config::find_device(options.device, {}).string());
   }
   if (!options.twin.empty()) line("--twin", config::find_twin(options.twin, {}).string());
+  line("--surfaces", options.surfaces.empty() || options.surfaces == kNoSurfaces
+                         ? options.surfaces
+                         : config::find_surfaces(options.surfaces, {}).string());
   line("--user", options.user);
   if (options.rate_Hz) line("--rate-hz", fmt::format("{}", *options.rate_Hz));
   line("--plant", options.plant);

@@ -10,11 +10,13 @@
 
 namespace hg::scenario {
 
-/// What replaces parts of a scenario: device, person, twin, simulation and law.
+/// What replaces parts of a scenario: device, person, twin, surfaces, simulation and law.
 struct ScenarioOptions {
   std::string scenario = "door";  ///< file, or name of a shipped one
   std::string device;             ///< device.yaml instead of the scenario's; empty = its own
   std::string twin;               ///< twin.yaml instead of the scenario's; empty = its own
+  /// Scenario whose surfaces replace the scenario's, or "none"; empty = its own
+  std::string surfaces;
   /// User: see config::find_script(), or "mouse" or "none"; empty = the scenario's
   std::string user;
   std::optional<double> rate_Hz;  ///< rate; unset = the device's

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -56,29 +57,33 @@ std::optional<Violation> find_violation(const DeviceModel& device, model::ChainD
   return {};
 }
 
-// throws SetupError when the device may not be at `start`
+// throws StartError when the device may not be at `start`
 void check_limits(const config::DeviceConfig& device, const config::Twin& twin,
                   const Start& start) {
   model::ChainData chain(device.model.chain);
   const std::optional<Violation> violation =
       find_violation(device.model, chain, stacked(start.q_p, start.q_m));
   if (!violation) return;
-  throw SetupError(fmt::format(
-      "twin {}: at its start {} of the device would be at {:.3f}, outside {:.3f} .. {:.3f}; move "
-      "or turn the twin's placement, or change its start{}",
-      twin.name, violation->item, violation->value, violation->limits.q_min,
-      violation->limits.q_max, !device.model.has_closed_form ? " or the device's posture" : ""));
+  const std::string why =
+      fmt::format("{} of the device would be at {:.3f}, outside {:.3f} .. {:.3f}", violation->item,
+                  violation->value, violation->limits.q_min, violation->limits.q_max);
+  throw StartError(
+      fmt::format("twin {}: at its start {}; move or turn the twin's placement, or change its "
+                  "start{}",
+                  twin.name, why, !device.model.has_closed_form ? " or the device's posture" : ""),
+      device, twin, why);
 }
 
-// throws SetupError when the handle or a part of the device would be in the floor at `start`: the
+// throws StartError when the handle or a part of the device would be in the floor at `start`: the
 // guard accepts a device in its present posture, so no other check reports it
 void check_floor(const config::DeviceConfig& device, const config::Twin& twin, const Start& start) {
   if (!device.has_floor) return;
   const auto refuse = [&](const std::string& what) {
-    throw SetupError(
+    throw StartError(
         fmt::format("twin {}: at its start {} would be in the floor, at floor_z_m {:g} of the "
                     "device; check the sign of floor_z_m, or move the twin's placement",
-                    twin.name, what, device.floor_z));
+                    twin.name, what, device.floor_z),
+        device, twin, what + " would be in the floor");
   };
   if (start.T_B_H.p.z() <= device.floor_z) {
     refuse(fmt::format("the handle, at z {:.3f} m,", start.T_B_H.p.z()));
@@ -103,10 +108,11 @@ Start closed_form_start(const config::DeviceConfig& device, const config::Twin& 
   const auto require_solved = [&](model::haptic_giant::InverseStatus status, const char* what) {
     if (status == model::haptic_giant::InverseStatus::kSolved) return;
     const Eigen::Vector3d& p = start.T_B_H.p;
-    throw SetupError(
+    throw StartError(
         fmt::format("twin {}: {} its handle at ({:.2f}, {:.2f}, {:.2f}) m: {}; move the "
                     "twin's placement",
-                    twin.name, what, p.x(), p.y(), p.z(), to_string(status)));
+                    twin.name, what, p.x(), p.y(), p.z(), to_string(status)),
+        device, twin, std::string(to_string(status)));
   };
   const model::haptic_giant::Lengths lengths =
       model::haptic_giant::lengths_of(device.model.chain, device.model.handle);
@@ -169,12 +175,16 @@ Start numeric_start(const config::DeviceConfig& config, const config::Twin& twin
   const bool is_near = std::max(found.position_error, found.angle_error) < kHair;
   if (!found.is_solved && !(is_near && problem.permits(found.q))) {
     const Eigen::Vector3d& p = start.T_B_H.p;
-    throw SetupError(fmt::format(
-        "twin {}: the device cannot hold its handle at ({:.2f}, {:.2f}, {:.2f}) m: the nearest "
-        "posture is {:.3f} m and {:.3f} rad away, {}; move or turn the twin's placement, or change "
-        "its start",
-        twin.name, p.x(), p.y(), p.z(), found.position_error, found.angle_error,
-        joints_at_limits(device.chain, problem, found.q)));
+    throw StartError(
+        fmt::format(
+            "twin {}: the device cannot hold its handle at ({:.2f}, {:.2f}, {:.2f}) m: the nearest "
+            "posture is {:.3f} m and {:.3f} rad away, {}; move or turn the twin's placement, or "
+            "change its start",
+            twin.name, p.x(), p.y(), p.z(), found.position_error, found.angle_error,
+            joints_at_limits(device.chain, problem, found.q)),
+        config, twin,
+        fmt::format("its nearest posture is {:.2f} m and {:.0f} degrees away", found.position_error,
+                    found.angle_error * 180.0 / M_PI));
   }
   // where no solution was permitted, the limits of the nearest one give the reason
   start.q_p = found.q.head(n_p);

@@ -15,6 +15,8 @@ enum class CommandName : std::uint8_t {
   kStop,      ///< controlled stop
   kScenario,  ///< starts another run: `name` of Choices
   kTwin,
+  kDevice,
+  kSurfaces,
   kLaw,
   kPerson,
   kSet,            ///< gives the setting `name` the value `value`

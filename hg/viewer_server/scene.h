@@ -87,12 +87,13 @@ enum class Source : std::uint8_t { kRun, kRecording };
 
 struct Choice {
   std::string name, title;
+  std::string group;  ///< heading that it stands below; empty: none
 };
 
 /// Options offered to a page, and the names of the chosen ones.
 struct Choices {
-  std::string scenario, twin, law, person;
-  std::vector<Choice> scenarios, twins, laws, people;
+  std::string scenario, twin, device, surfaces, law, person;
+  std::vector<Choice> scenarios, twins, devices, surface_sets, laws, people;
 };
 
 /// Value of the twin that a page may change: a field of its form.

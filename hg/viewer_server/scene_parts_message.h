@@ -135,6 +135,7 @@ template <typename Archive, Is<Choice> T>
 void fields(Archive& a, T& choice) {
   a("name", choice.name, "name in a command");
   a("title", choice.title, "name for people");
+  a("group", choice.group, "heading that it stands below; empty: none");
 }
 
 template <typename Archive, Is<Choices> T>
@@ -143,6 +144,11 @@ void fields(Archive& a, T& choices) {
   a("scenarios", choices.scenarios);
   a("twin", choices.twin, "name of the chosen twin; empty: that of the scenario");
   a("twins", choices.twins);
+  a("device", choices.device, "name of the chosen device; empty: that of the scenario");
+  a("devices", choices.devices);
+  a("surfaces", choices.surfaces,
+    "scenario whose virtual surfaces are met, none; empty: those of the scenario");
+  a("surface_sets", choices.surface_sets);
   a("law", choices.law);
   a("laws", choices.laws);
   a("person", choices.person,

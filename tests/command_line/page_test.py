@@ -157,6 +157,49 @@ class PageTest(TemporaryFolder):
             self.end(process)
         self.assertEqual(len(self.recordings()), 4)
 
+    def test_another_device_begins_and_one_that_does_not_fit_changes_nothing(self):
+        own = (self.folder / "models/arms/fr3/device.yaml").read_text().replace("name: Franka FR3", "name: My arm")
+        for key, folder in (("urdf", "models/arms/fr3"), ("tool", "models/arms"), ("simulation", "models/arms/fr3")):
+            own = re.sub(rf"^{key}: (\.\./)?", f"{key}: {folder}/", own, flags=re.MULTILINE)
+        (self.folder / "my_device.yaml").write_text(own)
+        with self.run_of("fr3/open_drawer", "--user", "mouse", "--no-recording") as (process, page):
+            choices = page.scene()["choices"]
+            self.assertEqual((choices["device"], choices["devices"][0]["name"]), ("", ""))
+            self.assertIn({"name": "ur10e", "title": "Universal Robots UR10e", "group": ""}, choices["devices"])
+            self.assertIn({"name": "fr3/tool", "title": "Tool", "group": "Franka FR3"}, choices["twins"])
+            self.assertIn("no such choice", self.refuse(page, "device", "../device.yaml"))
+            self.assertEqual(self.refuse(page, "device", "haptic_giant"),
+                             "the HapticGiant cannot hold the handle of the drawer where it starts (height out of reach)")
+            time_s = page.next("frame")["time_s"]
+            page.next("frame", lambda frame: frame["run"] == 1 and frame["mode"] == "running" and
+                      frame["time_s"] > time_s + 0.2)
+            for run, (name, title) in enumerate((("ur10e", "Universal Robots UR10e"), ("my_device.yaml", "My arm")), 2):
+                self.accept(page, "device", name)
+                page.next("frame", lambda frame, run=run: frame["run"] == run and frame["mode"] == "running")
+                scene = page.scene()
+                self.assertEqual((scene["title"], scene["device"]["name"], scene["choices"]["device"]),
+                                 ("Drawer", title, name))
+            self.accept(page, "scenario", "free_space")
+            page.next("frame", lambda frame: frame["run"] == 4)
+            self.assertEqual(page.scene()["device"]["name"], "HapticGiant")
+            self.end(process)
+
+    def test_surfaces_are_chosen_and_left_out(self):
+        with self.run_of("free_space", "--user", "mouse") as (process, page):
+            sets = [choice["name"] for choice in page.scene()["choices"]["surface_sets"]]
+            self.assertEqual(sets, ["", "none", "surfaces"])
+            self.accept(page, "surfaces", "surfaces")
+            page.next("frame", lambda frame: frame["run"] == 2 and frame["mode"] == "running")
+            scene = page.scene()
+            self.assertEqual((len(scene["surfaces"]), scene["choices"]["surfaces"]), (6, "surfaces"))
+            self.accept(page, "surfaces", "none")
+            page.next("frame", lambda frame: frame["run"] == 3)
+            self.assertEqual(page.scene()["surfaces"], [])
+            self.end(process)
+        for recording in self.recordings():
+            code, out, err = run("replay", recording)
+            self.assertEqual(code, 0, out + err)
+
     def test_after_a_stop_the_run_can_begin_again(self):
         with self.run_of("door", "--user", "mouse", "--no-recording") as (process, page):
             self.accept(page, "stop")
@@ -235,7 +278,7 @@ class PageTest(TemporaryFolder):
             setting = scene["settings"][0]
             for command in (("pause",), ("resume",), ("step", "", 1), ("speed", "", 0.5),
                             ("restart",), ("scenario", "path"), ("twin", "light"),
-                            ("law", "paper"), ("person", "none"),
+                            ("device", "fr3"), ("surfaces", "none"), ("law", "paper"), ("person", "none"),
                             ("set", setting["name"], setting["value"])):
                 self.assertEqual(self.refuse(page, *command), scene["refusal"], command)
             self.accept(page, "mark", "the lamp")

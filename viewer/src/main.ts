@@ -13,6 +13,7 @@ import type { Frame, Hand, Scene, Vec3 } from "./messages";
 import { element, write } from "./page";
 import { ChangePanel } from "./panels/change";
 import { EventsPanel } from "./panels/events";
+import { refusal_text } from "./panels/choices";
 import { FeelPanel } from "./panels/feel";
 import { JointsPanel } from "./panels/joints";
 import { Notices } from "./panels/notices";
@@ -85,7 +86,14 @@ class Page {
   constructor() {
     const live_frame = (): Frame | null => this.live_frame;
     const send = (hand: Hand): void => void this.store.connection.send(hand);
-    this.picture = open_picture({ live_frame, send, report: (key, text) => this.notices.show(key, text) });
+    this.picture = open_picture({
+      live_frame,
+      send,
+      stop: () => this.store.commands.send("emergency_stop"),
+      link: () => this.store.link,
+      page: () => this.store.page,
+      report: (key, text) => this.notices.show(key, text),
+    });
     this.drag = new Drag(this.picture.view, live_frame, send);
     this.drag.on_refused = () => this.explain_hand();
     this.hand_controls = new HandControls(this.drag);
@@ -124,7 +132,7 @@ class Page {
       on_refusal: (refusal) => {
         this.change.refuse(refusal);
         this.toolbar.refuse();
-        this.notices.show(refusal.command, `${refusal.command}: ${refusal.reason}`);
+        this.notices.show(refusal.command, refusal_text(refusal));
       },
       on_unreadable: (count, reason) => {
         const times = count === 1 ? "A message" : `${count} messages`;

@@ -27,7 +27,7 @@ export interface Scene {
   checkpoints: SceneCheckpoint[]; // places that the handle is to be brought to, in order
   choices: Choices;
   settings: Setting[];
-  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand")[]; // accepted commands
+  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "device" | "surfaces" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand")[]; // accepted commands
   refusal: string; // reason for refusing other commands; empty = all are accepted
   hand_stiffness_N_per_m: Vec3; // of the arm that pulls the hand to its target, along x, y, z of B
   hand_force_max_N: number; // largest pull of this arm
@@ -117,6 +117,10 @@ export interface Choices {
   scenarios: Choice[];
   twin: string; // name of the chosen twin; empty: that of the scenario
   twins: Choice[];
+  device: string; // name of the chosen device; empty: that of the scenario
+  devices: Choice[];
+  surfaces: string; // scenario whose virtual surfaces are met, none; empty: those of the scenario
+  surface_sets: Choice[];
   law: string;
   laws: Choice[];
   person: string; // person at the handle: a script, mouse, none; empty: that of the scenario
@@ -127,6 +131,7 @@ export interface Choices {
 export interface Choice {
   name: string; // name in a command
   title: string; // name for people
+  group: string; // heading that it stands below; empty: none
 }
 
 // a form field: a value of the twin
@@ -294,7 +299,7 @@ export interface Hold {
 export interface Command {
   type: "command";
   id: number; // any whole number of 0..2^53, comes back in the answer
-  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand";
+  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "device" | "surfaces" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand";
   name: string; // name of the chosen option or setting; else empty
   value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: run time, set: value, release_stop: page
 }

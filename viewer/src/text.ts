@@ -16,7 +16,19 @@ export function twin_text({ choices, twin }: Scene): string {
   return twin.name === "" ? "as in the scenario" : `as in the scenario (${twin.name})`;
 }
 
-function with_capital(text: string): string {
+// The same of the device.
+export function device_text({ choices, device }: Scene): string {
+  if (choices.device !== "") return device.name || choices.device;
+  return device.name === "" ? "as in the scenario" : `as in the scenario (${device.name})`;
+}
+
+// "as in the scenario (6)"; of a choice, "" = as it is listed.
+export function surfaces_text({ choices, surfaces }: Scene): string {
+  if (choices.surfaces !== "") return "";
+  return `as in the scenario (${surfaces.length === 0 ? "none" : surfaces.length})`;
+}
+
+export function with_capital(text: string): string {
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 

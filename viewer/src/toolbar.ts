@@ -7,7 +7,7 @@ import { hand_words } from "./hand/hand_words";
 import { type Icon, icon } from "./icons";
 import type { Frame, Scene } from "./messages";
 import { element, is_typing, make, make_button, write } from "./page";
-import { fill_choice } from "./panels/change";
+import { fill_choice } from "./panels/choices";
 import type { PlotDrawer } from "./plots/drawer";
 import { heading_text, mode_text, note_text, time_text } from "./text";
 import { choose_theme, current_theme, on_theme_change } from "./theme";

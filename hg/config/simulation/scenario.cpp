@@ -61,16 +61,24 @@ bool is_inside(const surfaces::Surface& surface, const Eigen::Vector3d& centre, 
   return is_near;
 }
 
-void check_spheres(Loader& loader, const surfaces::Surface& surface,
-                   const rendering::TwinModel& twin, const model::ChainData& start) {
+// Calls refuse(rule, where) for everything of the twin that starts inside of `surface`.
+template <class Refuse>
+void find_inside(const surfaces::Surface& surface, const rendering::TwinModel& twin,
+                 const Refuse& refuse) {
+  model::ChainData start(twin.chain);
+  start.update_poses(twin.q_start);
+  if (surfaces::is_inside(surface, start.pose(twin.end_effector).p)) {
+    refuse("the end effector of the twin must not start inside of one",
+           "'" + surface.name + "' around it");
+  }
   if (surface.contact != surfaces::Contact::kStop) return;
   for (const rendering::CollisionSphere& sphere : twin.spheres) {
     const Pose& T_B_link = start.pose(sphere.frame);
     const Eigen::Vector3d centre = T_B_link.p + T_B_link.R * sphere.p;
-    loader.rule(!is_inside(surface, centre, sphere.radius), "surfaces",
-                "a collision sphere of the twin must not start inside of one",
-                fmt::format("'{}' around that of link '{}'", surface.name,
-                            twin.chain.frame_names()[sphere.frame]));
+    if (!is_inside(surface, centre, sphere.radius)) continue;
+    refuse("a collision sphere of the twin must not start inside of one",
+           fmt::format("'{}' around that of link '{}'", surface.name,
+                       twin.chain.frame_names()[sphere.frame]));
   }
 }
 
@@ -82,9 +90,6 @@ std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
   describe_surfaces(loader, drafts);
   for (const SurfaceDraft& draft : drafts) names.push_back(draft.surface.name);
   if (file.faults.count() > faults) return {};
-  model::ChainData chain(twin.chain);
-  chain.update_poses(twin.q_start);
-  const Eigen::Vector3d start = chain.pose(twin.end_effector).p;
   std::vector<surfaces::Surface> surfaces;
   for (const SurfaceDraft& draft : drafts) {
     try {
@@ -93,10 +98,9 @@ std::vector<surfaces::Surface> load_surfaces(Loader& loader, LoaderFile& file,
       file.faults.add_all(error);
       continue;
     }
-    loader.rule(!surfaces::is_inside(surfaces.back(), start), "surfaces",
-                "the end effector of the twin must not start inside of one",
-                "'" + draft.surface.name + "' around it");
-    check_spheres(loader, surfaces.back(), twin, chain);
+    find_inside(surfaces.back(), twin, [&](const char* rule, const std::string& where) {
+      loader.rule(false, "surfaces", rule, where);
+    });
   }
   try {
     surfaces::check_surfaces(surfaces);
@@ -183,6 +187,19 @@ Scenario load_scenario(std::vector<SourceText> recorded) {
   const std::filesystem::path file = recorded.front().name;
   SourceReader reader(std::move(recorded));
   return load(file, reader);
+}
+
+Scenario load_scenario(const std::filesystem::path& file, SourceReader& reader) {
+  return load(file, reader);
+}
+
+void check_start_outside(const std::vector<surfaces::Surface>& surfaces,
+                         const rendering::TwinModel& twin) {
+  for (const surfaces::Surface& surface : surfaces) {
+    find_inside(surface, twin, [](const char* rule, const std::string& where) {
+      throw SetupError(fmt::format("surfaces: {}, got {}", rule, where));
+    });
+  }
 }
 
 void settle_law(Scenario& scenario) {

@@ -56,6 +56,14 @@ Scenario load_scenario(const std::filesystem::path& file);
 /// run.
 Scenario load_scenario(std::vector<SourceText> recorded);
 
+/// Loads a scenario from the files that `reader` has.
+Scenario load_scenario(const std::filesystem::path& file, SourceReader& reader);
+
+/// Throws SetupError where the end effector of the twin, or a collision sphere before a stop,
+/// starts inside of a surface.
+void check_start_outside(const std::vector<surfaces::Surface>& surfaces,
+                         const rendering::TwinModel& twin);
+
 /// Updates the limits; call it after changing law, bounds or control method of the device. Its
 /// motors are limits of the scenario if the law models them; events still name the same limits.
 /// Throws SetupError where an event waits for a motor that is no limit any more.

@@ -55,6 +55,7 @@ void visit_options(Plan& plan, Visitor&& v) {
   v("scenario", world.scenario, AnyText{});
   v("device", world.device, AnyText{});
   v("twin", world.twin, AnyText{});
+  v("surfaces", world.surfaces, AnyText{});
   v("user", world.user, AnyText{});
   v("rate-hz", world.rate_Hz, kRateRule);
   v("plant", world.plant, NameRule{"elastic", "ideal"});

@@ -58,6 +58,52 @@ TEST(Options, ARecordingOfAnEarlierVersionKeepsItsPartsOfTheLaw) {
   EXPECT_EQ(recorded.device.passivity.reaction, passivity::Reaction::kAct);
 }
 
+TEST(Options, SurfacesOfAnotherScenarioAreMetAndARecordingHasThem) {
+  const ScenarioOptions options = {.scenario = "free_space", .surfaces = "surfaces"};
+  const config::Scenario scenario = load(options);
+  ASSERT_EQ(scenario.surfaces.size(), 6u);
+  EXPECT_EQ(scenario.surfaces.front().name, "table");
+  EXPECT_EQ(scenario.title, "Free space");
+  EXPECT_TRUE(scenario.events.empty());
+  EXPECT_EQ(load_recorded(scenario.sources, to_text(options)).surfaces.size(), 6u);
+
+  const ScenarioOptions changed = {
+      .scenario = "free_space", .surfaces = "surfaces", .changes = {"twin.mass_scale=2"}};
+  EXPECT_EQ(load(changed).surfaces.size(), 6u);
+  EXPECT_TRUE(load({.scenario = "surfaces", .surfaces = "none"}).surfaces.empty());
+}
+
+TEST(Options, SurfacesThatDoNotFitAreRefused) {
+  const auto message = [](const std::string& surfaces) {
+    return message_of([&] { load({.scenario = "door", .surfaces = surfaces}); });
+  };
+  EXPECT_EQ(message("path"), "--surfaces path: this scenario has no surfaces");
+  EXPECT_NE(message("surface").find("did you mean 'surfaces'?"), std::string::npos);
+  // a ball around the handle of the door at its start
+  const std::string ball =
+      "surfaces:\n  - {name: ball, shape: sphere, radius_m: 0.3, placement: {x_m: 0.45, y_m: "
+      "-0.26, z_m: -0.8}}\n";
+  config::Scenario door = load({.scenario = "door"});
+  door.sources.front().content += ball;
+  EXPECT_NE(message_of([&] { load_recorded(door.sources, ""); }).find("must not start inside"),
+            std::string::npos);
+}
+
+TEST(Options, AnotherDeviceLosesTheNameAndRefusesTheFaultsOfTheScenariosOwn) {
+  const config::Scenario drawer = load({.scenario = "fr3/open_drawer", .device = "ur10e"});
+  EXPECT_EQ(drawer.title, "Drawer");
+  EXPECT_EQ(drawer.device.name, "Universal Robots UR10e");
+  config::Scenario own = load({.scenario = "fr3/open_drawer"});
+  own.sources.front().content +=
+      "faults:\n  - {at_s: 1, fault: motor_dead, of: fr3_joint7}\n";
+  const std::vector<config::SourceText> device = load({.scenario = "ur10e/open_drawer"}).sources;
+  own.sources.insert(own.sources.end(), device.begin(), device.end());
+  EXPECT_NE(message_of([&] {
+              load_recorded(own.sources, "--device models/arms/ur10e/device.yaml\n");
+            }).find("of its own device"),
+            std::string::npos);
+}
+
 TEST(Options, AnUnknownNameIsRefusedWithItsOption) {
   EXPECT_EQ(message_of([] { load({.scenario = "door", .law = "gaus"}); }),
             "--law: expected one of the names of --help, got 'gaus'");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "hg/config/simulation/scenario.h"
 #include "hg/controller/safety/collision/nearest.h"
 #include "hg/core/stacked.h"
@@ -34,6 +36,22 @@ TEST(FindStart, AvoidsPosturesInWhichShapesTouch) {
   config.pairs.watched = {{.a = 0, .b = 1, .lever = VectorPM::Ones(7)}};
   ASSERT_LT(collision::Nearest(config.shapes, config.pairs.watched).distance(chain), 0.0);
   EXPECT_GT(distance_at_start(scenario), 0.0);
+}
+
+TEST(FindStart, SaysForPeopleWhoChooseWhatIsInTheWay) {
+  const config::Scenario door = config::load_scenario("models/scenarios/door.yaml");
+  const config::Scenario drawer = config::load_scenario("models/arms/fr3/open_drawer.yaml");
+  const auto why = [](const config::DeviceConfig& device, const config::Twin& twin) {
+    try {
+      find_start(device, twin);
+    } catch (const StartError& error) {
+      return error.device + ", " + error.twin + ": " + error.why;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(why(door.device, drawer.twin), "HapticGiant, drawer: height out of reach");
+  EXPECT_EQ(why(drawer.device, door.twin),
+            "Franka FR3, door: its nearest posture is 0.50 m and 6 degrees away");
 }
 
 }  // namespace

@@ -1,27 +1,15 @@
-// What of the run can be changed: twin, law, person, and a form field for each Setting of the
+// What of the run can be changed: its parts from lists, and a form field for each Setting of the
 // scene; undo, reset and save.
 
 import type { Commands, Refusal } from "../data/commands";
-import type { Choice, Scene, Setting, Values } from "../messages";
+import type { Scene, Setting, Values } from "../messages";
 import { download, make, make_button } from "../page";
-import { twin_text } from "../text";
 import { UndoList, changed, changes_yaml } from "./changed_values";
+import { ChoiceFields } from "./choices";
 import { SettingField } from "./setting_field";
 
-const CHOICES = [
-  ["twin", "Twin", "twins"],
-  ["law", "Law", "laws"],
-  ["person", "Who holds the handle", "people"],
-] as const;
 const UNLIMITED = "had no limit; start the run again (R) to put that back";
-const PLAYED = "A recording is played: its twin, law and person cannot be changed.";
-
-export function fill_choice(select: HTMLSelectElement, choices: Choice[], chosen: string): void {
-  const options = choices.map(({ name, title }) => new Option(title, name));
-  if (!choices.some(({ name }) => name === chosen)) options.unshift(new Option("as given", chosen));
-  select.replaceChildren(...options);
-  select.value = chosen;
-}
+const PLAYED = "A recording is played: nothing of its run can be changed.";
 
 const WHOLE = "Whole twin";
 const REFERENCE = "Wrench at which it rests";
@@ -43,6 +31,7 @@ export function headings(settings: Setting[]): string[] {
 export class ChangePanel {
   private fields: SettingField[] = [];
   private scene: Scene | null = null;
+  private readonly choices = new ChoiceFields((command, name) => this.commands.send(command, name));
   private values: (number | null)[] = []; // as the program said last
   private readonly steps = new UndoList();
   private readonly undo = make_button("Undo", "Takes the last change back", () => this.take_back());
@@ -66,16 +55,7 @@ export class ChangePanel {
     this.section.replaceChildren();
     const refusal = scene.source === "recording" ? PLAYED : scene.refusal;
     if (refusal !== "") this.section.append(make("p", "quiet", refusal));
-    for (const [command, title, list] of CHOICES) {
-      const choices = scene.choices[list];
-      if (choices.length === 0 || !scene.commands.includes(command)) continue;
-      const select = make("select");
-      select.id = `choose-${command}`;
-      fill_choice(select, choices, scene.choices[command]);
-      if (command === "twin") select.selectedOptions[0]!.text = twin_text(scene);
-      select.addEventListener("change", () => this.commands.send(command, select.value));
-      this.section.append(make("label", "field", make("span", "", title), select));
-    }
+    this.section.append(...this.choices.load(scene));
     const can_set = scene.commands.includes("set");
     const set = (setting: Setting, value: number, before: number | null): void => {
       this.steps.note(setting.name, before, performance.now());
@@ -107,10 +87,7 @@ export class ChangePanel {
       this.fields.find(({ setting }) => setting.name === refusal.name)?.refuse(refusal.reason);
       return;
     }
-    for (const [command] of CHOICES) {
-      const select = document.getElementById(`choose-${command}`) as HTMLSelectElement | null;
-      if (command === refusal.command && select) select.value = this.scene.choices[command];
-    }
+    this.choices.refuse(refusal);
   }
 
   private show_tools(): void {

@@ -6,7 +6,7 @@ import { remember, remembered } from "../remembered";
 const TABS = [
   ["feel", "Feel", "Why do I feel this?"],
   ["joints", "Joints", "Joints of twin and device"],
-  ["change", "Change", "Twin, law, person and parameters"],
+  ["change", "Change", "Twin, device, surfaces, law, person and parameters"],
   ["safety", "Safety", "What stops it, and the operator's panel"],
   ["events", "Events", "What has happened"],
 ] as const;

@@ -19,7 +19,6 @@ import {
   pictures,
   scene_of,
   start_program,
-  wear_headset,
 } from "./browser.mjs";
 
 const SMALLEST_DEVICE = 3000; // pixels that the device covers
@@ -192,37 +191,6 @@ export async function connection_comes_back({ browser, program, expect }) {
   await close();
 }
 
-export async function headset_holds_the_handle({ browser, program, expect }) {
-  const { page, problems, close } = await open_page(browser, cheap(program.link), {}, wear_headset);
-  const view = await page.evaluate(() => window.hapticgiant.on_screen([0, 0, 0]));
-  for (const kind of ["vr", "ar"]) {
-    await page.click(`#enter-${kind}`);
-    const worn = await page_comes_to(page, () => window.hapticgiant.is_hand_tracked);
-    expect(worn, `${kind.toUpperCase()} begins and sees a controller`);
-    await page.evaluate(() => window.xr_device.controllers.right.position.set(0.2, 1.2, -0.4));
-    await pictures(page); // until three has its position
-    await page.evaluate(() => window.xr_device.controllers.right.updateButtonValue("trigger", 1));
-    expect(await comes_true(page, (f) => f.hand.active), "the trigger takes hold of the handle");
-    const { hand } = await frame_of(page);
-    await page.evaluate(() => window.xr_device.controllers.right.position.set(0.2, 1.2, -0.5));
-    const follows = await comes_true(
-      page,
-      (f) => Math.hypot(...f.hand.p_B_m.map((x, i) => x - hand.p_B_m[i])) > 0.05,
-    );
-    expect(follows, "its target follows the controller");
-    await page.evaluate(() => window.xr_device.controllers.right.updateButtonValue("trigger", 0));
-    expect(await comes_true(page, (f) => !f.hand.active), "letting go of the trigger lets go");
-    await page.evaluate(() => window.xr_device.activeSession?.end());
-    await page.waitForFunction(() => !window.xr_device.activeSession, null, PATIENCE);
-    await pictures(page);
-    const now = await page.evaluate(() => window.hapticgiant.on_screen([0, 0, 0]));
-    const moved = Math.hypot(now.x - view.x, now.y - view.y);
-    expect(moved < 1, `the page looks from where it did before: ${moved.toFixed(1)} px`);
-  }
-  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
-  await close();
-}
-
 // The demonstration server follows no commands.
 async function follows(page, command) {
   return (await scene_of(page)).commands.includes(command);
@@ -263,6 +231,32 @@ export async function changes_reach_the_program({ browser, program, expect }) {
   await undo_reset_save({ page: first.page, box, wanted, value, expect });
   await first.close();
   await second.close();
+}
+
+export async function device_and_surfaces_are_chosen({ browser, program, expect }) {
+  const { page, problems, close } = await open_page(browser, cheap(program.link));
+  if (!(await follows(page, "device"))) return close();
+  await page.click("#tab-change");
+  const before = await frame_of(page);
+  await page.selectOption("#choose-device", "fr3");
+  const problem = "#choose-device-problem";
+  await page.locator(problem).waitFor();
+  const reason = await page.textContent(problem);
+  expect(/^The Franka FR3 cannot hold the handle of the door/.test(reason), `it is refused below: ${reason}`);
+  expect((await page.inputValue("#choose-device")) === "", "the choice is put back");
+  const lives_on = await comes_true(page, (f) => f.time_s > before.time_s + 0.3 && f.mode === "running");
+  expect(lives_on && (await frame_of(page)).run === before.run, "the run continues");
+  await page.selectOption("#choose-surfaces", "surfaces");
+  expect(await comes_true(page, (f) => f.run === before.run + 1), "with surfaces another run begins");
+  await drawn(page);
+  const { surfaces } = await scene_of(page);
+  expect(surfaces.length === 6, `it has ${surfaces.length} surfaces`);
+  const chosen = await page.locator("#choose-surfaces option:checked").textContent();
+  expect(/Surfaces/.test(chosen) && !(await page.isVisible(problem)), `the list says so: ${chosen}`);
+  const width = await page.locator("#change").evaluate((part) => part.scrollWidth - part.clientWidth);
+  expect(width <= 0, `no list sticks out of the panel: ${width} px`);
+  expect(problems.length === 0, `no errors or foreign requests: ${problems.join("; ") || "none"}`);
+  await close();
 }
 
 // The tools above the values: the box holds `wanted`, the files `value`.

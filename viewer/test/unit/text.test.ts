@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import {
+  device_text,
   effort_text,
   felt_text,
   heading_text,
@@ -8,10 +9,12 @@ import {
   joint_text,
   note_text,
   share_between,
+  surfaces_text,
   time_text,
   twin_text,
   unit_text,
 } from "../../src/text";
+import type { SceneSurface } from "../../src/messages";
 import { budget, frame, scene, wrench } from "./examples";
 
 describe("names of device and twin", () => {
@@ -32,6 +35,28 @@ describe("names of device and twin", () => {
   it("are in the choice of the twin", () => {
     expect(twin_text(chosen("", "cupboard", ""))).toBe("as in the scenario (cupboard)");
     expect(twin_text(chosen("my/gate_twin.yaml", "gate", "gate"))).toBe("Gate");
+  });
+
+  it("are in the choice of the device", () => {
+    const own = chosen("", "drawer", "");
+    expect(device_text(own)).toBe("as in the scenario (Franka FR3)");
+    expect(device_text({ ...own, choices: { ...own.choices, device: "fr3" } })).toBe("Franka FR3");
+  });
+});
+
+describe("surfaces_text", () => {
+  it("counts those of the scenario, and leaves a choice as it is listed", () => {
+    expect(surfaces_text(scene)).toBe("as in the scenario (none)");
+    const table: SceneSurface = {
+      name: "table",
+      shape: "plane",
+      p_B_m: [0, 0, 0],
+      quaternion_B: [0, 0, 0, 1],
+      size_m: [0, 0, 0],
+      triangles_m: [],
+    };
+    expect(surfaces_text({ ...scene, surfaces: [table] })).toBe("as in the scenario (1)");
+    expect(surfaces_text({ ...scene, choices: { ...scene.choices, surfaces: "none" } })).toBe("");
   });
 });
 
