@@ -94,8 +94,7 @@ TEST(Options, AnotherDeviceLosesTheNameAndRefusesTheFaultsOfTheScenariosOwn) {
   EXPECT_EQ(drawer.title, "Drawer");
   EXPECT_EQ(drawer.device.name, "Universal Robots UR10e");
   config::Scenario own = load({.scenario = "fr3/open_drawer"});
-  own.sources.front().content +=
-      "faults:\n  - {at_s: 1, fault: motor_dead, of: fr3_joint7}\n";
+  own.sources.front().content += "faults:\n  - {at_s: 1, fault: motor_dead, of: fr3_joint7}\n";
   const std::vector<config::SourceText> device = load({.scenario = "ur10e/open_drawer"}).sources;
   own.sources.insert(own.sources.end(), device.begin(), device.end());
   EXPECT_NE(message_of([&] {
