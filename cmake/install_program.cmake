@@ -44,7 +44,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/python/hapticgiant/as_folder.py
   ${PROJECT_SOURCE_DIR}/python/hapticgiant/figures.py
   ${PROJECT_SOURCE_DIR}/python/hapticgiant/samples.py
   DESTINATION ${share}/python/hapticgiant COMPONENT debian)
-foreach(part report sweep study imus design)
+foreach(part report sweep study imus design render)
   list(APPEND python_parts ${PROJECT_SOURCE_DIR}/python/hapticgiant/${part})
 endforeach()
 install(DIRECTORY ${python_parts}

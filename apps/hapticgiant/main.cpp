@@ -32,7 +32,7 @@ constexpr char kFirstSteps[] =
 
 void group(hg::apps::Command program) {
   program.describe(kFirstSteps);
-  program.group("Runs", {"run", "replay", "explain", "plot", "compare", "export"});
+  program.group("Runs", {"run", "replay", "render", "explain", "plot", "compare", "export"});
   program.group("Your own device and twin", {"new", "check", "identify", "tune", "design", "imus"});
   program.group("The machine", {"doctor", "bus", "commission", "start-test"});
   program.group("Studies and experiments",

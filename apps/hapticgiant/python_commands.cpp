@@ -14,6 +14,7 @@ struct PythonCommand {
 };
 
 constexpr PythonCommand kCommands[] = {
+    {"render", "A recording as a video, a GIF or a picture (docs/start/viewer.md)."},
     {"sweep", "Many runs over a table of parameters, here or on a cluster (docs/start/sweep.md)."},
     {"imus",
      "Where inertial sensors observe best the joints of any URDF "

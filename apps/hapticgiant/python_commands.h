@@ -1,4 +1,4 @@
-/// The subcommands that are written in Python: `sweep`, `imus`, `study`.
+/// The subcommands that are written in Python: `render`, `sweep`, `imus`, `study`.
 #pragma once
 
 namespace hg::apps {

@@ -41,7 +41,7 @@ INLINE = re.compile(r"`((?:build/release/)?hapticgiant [^`]+)`")
 COMMAND = re.compile(r"^(?:build/release/)?hapticgiant (.+)$")
 ELSEWHERE = re.compile(
     r"--device-address|\bbus\b"  # machines, or a second terminal
-    r"|\bsubmit\b|--engine|\bmerge\b|\bbridge\b|--lsl"  # clusters, other programs
+    r"|\bsubmit\b|--engine|\bmerge\b|\bbridge\b|\brender\b|--lsl"  # clusters, other programs
     r"|--docs\b|--request\b|study (?:report|forget)")  # what writes into the documents, or needs what was done before
 STANDS_FOR = re.compile(r"(?<![\w'\"])(?!USB|[A-Z0-9]{1,2}\b)[A-Z][A-Z_]{2,}\b|\.\.\.|[\[\]<>|;&$*]")
 FILE = re.compile(r"^[\w./-]+\.(?:yaml|yml|urdf|mcap|hqp|csv|json|svg|png|npz)$")

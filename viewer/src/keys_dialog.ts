@@ -6,7 +6,10 @@ import { element, is_typing, make, make_button } from "./page";
 
 const PUSH = `${RISE_N_PER_S} N more for each second that the key is held, up to ${LARGEST_N} N; a released key lets go at once`;
 
-const CAMERA: [string, string] = ["1 2 3 4", "camera: orbit, follow, top, first person"];
+const CAMERA: [string, string][] = [
+  ["1 2 3 4", "camera: orbit, follow, top, first person"],
+  ["V", "copy the camera, for hapticgiant render"],
+];
 const TOUCH = "By touch: drag the ring at the handle";
 const TOUCH_CAMERA = "drag elsewhere to look around, two fingers to move and zoom";
 
@@ -30,7 +33,7 @@ const GROUPS: [string, [string, string][]][] = [
       ["P", "pause, continue"],
       [".", "one step"],
       ["R", "from the start"],
-      CAMERA,
+      ...CAMERA,
       ["?", "these keys"],
     ],
   ],
@@ -46,7 +49,7 @@ export class KeysDialog {
     const title = make("h2", "", "Keys");
     title.id = "keys-title";
     const lists = GROUPS.flatMap(([name, all]) => {
-      const keys = all.filter((key) => has_cameras || key !== CAMERA);
+      const keys = all.filter((key) => has_cameras || !CAMERA.includes(key));
       const rows = keys.flatMap(([key, what]) => [make("dt", "", key), make("dd", "", what)]);
       return [make("h3", "", name), make("dl", "", ...rows)];
     });

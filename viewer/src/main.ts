@@ -3,6 +3,7 @@
 import { TICK_MS } from "./data/freshness";
 import { Store } from "./data/store";
 import { token, watch_token } from "./data/token";
+import { Film, is_film } from "./film";
 import { Drag } from "./hand/drag";
 import { HandControls } from "./hand/hand_controls";
 import type { Pixel } from "./hand/hand_view";
@@ -48,6 +49,7 @@ export interface PageState {
   readonly is_flat: boolean; // without WebGL
   readonly handle_on_screen: Pixel | null;
   on_screen(p_B: Vec3): Pixel;
+  readonly film: Film | null; // show=picture
 }
 
 declare global {
@@ -80,6 +82,7 @@ class Page {
   );
   private readonly events = new EventsPanel(element("events"));
   private readonly plots = new PlotDrawer(element("plots"), this.store);
+  private readonly film: Film | null;
   private frames = 0;
   private panels_ms = 0;
 
@@ -101,7 +104,9 @@ class Page {
     const keys = new KeysDialog(this.picture.has_cameras);
     build_page_tools(this.plots, () => keys.toggle());
     this.listen();
-    this.picture.run((now_ms) => this.draw(now_ms));
+    const prepare = (now_ms: number): void => this.draw(now_ms);
+    this.film = is_film() ? new Film(this.store, prepare, () => this.picture.draw()) : null;
+    if (!this.film) this.picture.run(prepare);
     setInterval(() => this.show_link(), TICK_MS); // also while nothing is drawn
     document.addEventListener("visibilitychange", () => {
       if (document.hidden) this.store.holder.end();
@@ -263,6 +268,7 @@ class Page {
         return store.frame && picture.on_screen(store.frame.p_B_H_m);
       },
       on_screen: (p_B: Vec3) => picture.on_screen(p_B),
+      film: this.film,
     });
   }
 }

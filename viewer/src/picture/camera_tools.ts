@@ -4,6 +4,7 @@ import { hand_words } from "../hand/hand_words";
 import { icon } from "../icons";
 import { element, is_typing, make, make_check_box } from "../page";
 import { remembered, remember } from "../remembered";
+import { view_text } from "../scene/asked_view";
 import { type Cameras, VIEWS, type View } from "../scene/cameras";
 import { LAYERS, LAYER_NAMES, type Layers } from "../scene/layers";
 
@@ -15,6 +16,7 @@ export class CameraTools {
   constructor(
     private readonly cameras: Cameras,
     layers: Layers,
+    private readonly say: (text: string) => void,
   ) {
     this.views.id = "view";
     this.views.title = "Camera (1 to 4)";
@@ -24,6 +26,7 @@ export class CameraTools {
     addEventListener("keydown", (event) => {
       const view = VIEWS[Number(event.key) - 1];
       if (view && !is_typing(event)) this.choose(view);
+      else if (event.key === "v" && !is_typing(event)) void this.copy();
     });
     element("view-tools").prepend(this.views, layers_menu(layers));
   }
@@ -33,6 +36,13 @@ export class CameraTools {
     const first = view ?? remembered(STORED_AS, VIEWS, "orbit");
     this.views.value = first;
     if (first !== "orbit") this.cameras.choose(first);
+  }
+
+  // The option of `hapticgiant render` that looks from here.
+  private async copy(): Promise<void> {
+    const option = `--view=${view_text(this.cameras.sight)}`;
+    const is_copied = await navigator.clipboard?.writeText(option).then(() => true, () => false);
+    this.say(is_copied ? `Copied: ${option}` : option);
   }
 
   private choose(view: View): void {

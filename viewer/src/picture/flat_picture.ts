@@ -99,6 +99,8 @@ export class FlatPicture implements Picture, HandView {
     requestAnimationFrame(draw);
   }
 
+  draw(): void {} // `show` has drawn it
+
   is_near(pixel: Pixel, p_B: Vec3): boolean {
     const found = this.views.find((view) => view.is_near(pixel, p_B));
     if (found) this.held = found;

@@ -20,6 +20,7 @@ export interface Picture {
   release(): void; // of a headset's hand
   on_screen(p_B: Vec3): Pixel;
   run(prepare: (now_ms: number) => void): void; // before every repaint
+  draw(): void; // what is prepared, at once
 }
 
 // What a picture needs of the page.

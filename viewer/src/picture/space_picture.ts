@@ -5,6 +5,7 @@ import type { Pixel } from "../hand/hand_view";
 import type { Event, Frame, Scene, Vec3 } from "../messages";
 import { Legend } from "../guide/legend";
 import { element } from "../page";
+import { asked_view } from "../scene/asked_view";
 import { Cameras } from "../scene/cameras";
 import { FirstView } from "../scene/first_view";
 import { Layers } from "../scene/layers";
@@ -25,7 +26,7 @@ export class SpacePicture implements Picture {
     this.legend.apply_layers();
   });
   private readonly legend = new Legend(this.layers);
-  private readonly tools = new CameraTools(this.cameras, this.layers);
+  private readonly tools = new CameraTools(this.cameras, this.layers, (text) => this.input.report("view", text));
   private readonly headset: Headset;
   private readonly happened_before: Event[] = []; // also before their world was there
   private world: World | null = null;
@@ -100,8 +101,10 @@ export class SpacePicture implements Picture {
 
   private look(world: World, frame: Frame): void {
     this.has_looked = true;
+    const asked = asked_view();
     const first = new FirstView(world.sights(frame));
-    this.cameras.begin_with(() => first.sight(this.stage.camera));
+    const is_place = asked !== null && typeof asked === "object";
+    this.cameras.begin_with(() => (is_place ? asked : first.sight(this.stage.camera)));
   }
 
   release(): void {
@@ -116,12 +119,17 @@ export class SpacePicture implements Picture {
     this.stage.run(prepare);
   }
 
+  draw(): void {
+    this.stage.draw();
+  }
+
   // From where a person who drags the handle to places on the floor sees them: from above.
   private frame_device(scene: Scene): void {
     this.device = scene.device.name;
     this.cameras.frame(scene.box);
     this.has_looked = false;
     const is_walked = document.body.dataset.show === "hand" && scene.checkpoints.length > 0;
-    this.tools.begin(is_walked ? "top" : null);
+    const asked = asked_view();
+    this.tools.begin(typeof asked === "string" ? asked : is_walked ? "top" : null);
   }
 }

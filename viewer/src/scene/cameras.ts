@@ -42,6 +42,11 @@ export class Cameras {
     this.controls.addEventListener("start", () => (this.is_moved = true));
   }
 
+  // Where one looks from now, and at what.
+  get sight(): Sight {
+    return { from: this.camera.position, at: this.controls.target };
+  }
+
   get current(): View {
     return this.view;
   }

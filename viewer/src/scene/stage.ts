@@ -58,7 +58,7 @@ export class Stage {
   private readonly grid = new Grid();
   private readonly contact = new ContactShadow();
   private readonly box_lines = new LineBasicMaterial({ transparent: true, opacity: 0.55 });
-  private is_see_through = false;
+  is_see_through = false; // a headset shows the real room
 
   constructor(private readonly parent: HTMLElement) {
     this.renderer = new WebGLRenderer({
@@ -99,9 +99,13 @@ export class Stage {
       } catch (error) {
         reportError(error); // three would never draw again
       }
-      if (!is_in_headset) this.contact.update(this.renderer, this.scene);
-      this.renderer.render(this.scene, this.camera);
+      this.draw();
     });
+  }
+
+  draw(): void {
+    if (!this.renderer.xr.isPresenting) this.contact.update(this.renderer, this.scene);
+    this.renderer.render(this.scene, this.camera);
   }
 
   // What `root` shows stands on the floor.

@@ -41,6 +41,11 @@ export class Trail {
     this.line.frustumCulled = false;
   }
 
+  clear(): void {
+    this.points.length = 0;
+    this.line.geometry.setDrawRange(0, 0);
+  }
+
   add(point: Vec3): void {
     const last = this.points.at(-1);
     const step = last ? Math.hypot(...point.map((x, i) => x - last[i]!)) : Infinity;

@@ -27,6 +27,7 @@ import { points_on, thinned } from "./voxels";
 import { ways_of_handle } from "./ways";
 
 const TABLE_POINTS = 0.2; // m between them
+const MOST_STEP_S = 1; // a longer one, or one back, is to another place of a recording: trails begin anew
 
 interface Gauge {
   view: JointGauge;
@@ -41,7 +42,9 @@ export class World {
   private readonly handle: HandleView;
   private readonly handle_trail = new Trail(FORCE_COLOR);
   private readonly elbow_trail = new Trail(ELBOW_COLOR);
+  private readonly both_trails = [this.handle_trail, this.elbow_trail];
   private readonly trails = new Group();
+  private noted_s = 0;
   private readonly gauges: Gauge[];
   private readonly surroundings: Surroundings;
   private readonly surfaces: SurfacesView;
@@ -122,6 +125,9 @@ export class World {
   }
 
   note(frame: Frame): void {
+    const step_s = frame.time_s - this.noted_s;
+    this.noted_s = frame.time_s;
+    if (step_s < 0 || step_s > MOST_STEP_S) for (const trail of this.both_trails) trail.clear();
     this.handle_trail.add(frame.p_B_H_m);
     this.elbow_trail.add(frame.p_B_elbow_m);
   }
