@@ -14,6 +14,7 @@ constexpr double kBlock = 0.1;         // s
 constexpr int kLeftOut = 4;            // blocks in which the arm itself jerks
 constexpr double kForce = 0.5;         // N, change of the wrench that is a touch
 constexpr double kLever = 0.08;        // m, of its torque
+constexpr double kMostOff = 15.0;      // N, of a first zero: more is a push
 constexpr double kMet = 0.05;          // N, between a zero and the wrench that it has met
 constexpr double kSame = 0.15;         // N, change of a force that stays the same
 constexpr double kTravel = 0.03;       // m, on which the force of a hand changes by more
@@ -155,7 +156,7 @@ void look(double dt, const RestInput& input, RestState& rest) noexcept {
 
 // Whether time and turning explain how far the steady wrench is from the zero.
 bool is_explained(const RestInput& input, const RestState& rest) noexcept {
-  if (!rest.is_known) return true;
+  if (!rest.is_known) return is_within(rest.mean, kMostOff);
   const double turned = (input.up_S - rest.known_up).norm();
   const double force = kForce + kDrift * rest.known_s + payload_force(input, 9.81 * turned);
   return is_within(rest.mean - rest.zero, force);

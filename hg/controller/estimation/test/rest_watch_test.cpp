@@ -212,6 +212,14 @@ TEST(RestWatch, LetsTheTwinBeWhereSomethingElseMovesOrHoldsIt) {
   EXPECT_EQ(coasting.run(1, 0.0, 10.0).zero, Vector6::Zero().eval());
 }
 
+// A machine that leans on the handle, or a weight hung on it, is no drift of a sensor.
+TEST(RestWatch, AFirstZeroIsNoLargeForce) {
+  Trial pushed = {.force = [](double) { return 20.0; }};
+  const RestState rest = pushed.run(1, 0.0, 10.0);
+  EXPECT_EQ(rest.zero, Vector6::Zero().eval());
+  EXPECT_EQ(braking_rate(rest), 0.0);
+}
+
 TEST(RestWatch, AKnownZeroIsGivenUpWhereTheToolHasTurned) {
   Trial trial;
   const RestState known = trial.run(1, 0.0, 5.0);
