@@ -8,30 +8,6 @@
 
 namespace hg::collision {
 
-/// Time in which joints come to rest that slow down in one proportion, decelerations().
-struct Proportion {
-  const Braking& braking;
-  const VectorPM& dq;
-  double duration = 0.0;  ///< s; 0 where none moves
-
-  Proportion(const Braking& b, const VectorPM& speed) noexcept : braking(b), dq(speed) {
-    double sum = 0.0;
-    for (Eigen::Index i = b.separate; i < dq.size(); ++i) {
-      const double share = dq[i] / b.deceleration[i];
-      const double fourth = share * share * share * share;
-      sum += fourth * fourth;
-    }
-    duration = std::sqrt(std::sqrt(std::sqrt(sum)));
-  }
-
-  /// Change of the duration with the speed of joint i.
-  double per_speed(Eigen::Index i) const noexcept {
-    const double share = std::abs(dq[i]) / braking.deceleration[i] / duration;
-    const double cube = share * share * share;
-    return std::copysign(cube * cube * share / braking.deceleration[i], dq[i]);
-  }
-};
-
 /// Braking with all joints at once from the state at time 0.
 struct BrakingPath {
   const VectorPM& reaction;

@@ -61,11 +61,26 @@ Braking braking_of(const DeviceModel& device, double gantry) {
   return braking;
 }
 
+namespace {
+
+// Time in which joints come to rest that slow down in one proportion; 0 where none moves.
+double braking_time(const Braking& braking, const VectorPM& dq) noexcept {
+  double sum = 0.0;
+  for (Eigen::Index i = braking.separate; i < dq.size(); ++i) {
+    const double share = dq[i] / braking.deceleration[i];
+    const double fourth = share * share * share * share;
+    sum += fourth * fourth;
+  }
+  return std::sqrt(std::sqrt(std::sqrt(sum)));
+}
+
+}  // namespace
+
 VectorPM decelerations(const Braking& braking, const VectorPM& q, const VectorPM& dq) noexcept {
   constexpr double kHardest = 1.5;    // times A_i, in front of an end
   constexpr double kShortest = 0.01;  // s of remaining way; nearer ends count as this far
   VectorPM result = braking.deceleration;
-  const double time = Proportion(braking, dq).duration;
+  const double time = braking_time(braking, dq);
   if (!(time > 0.0)) return result;
   for (Eigen::Index i = braking.separate; i < q.size(); ++i) {
     const double speed = std::abs(dq[i]);

@@ -17,6 +17,7 @@ constexpr double kRound = 3e-3;  // m: pairs whose distances differ by less shar
 constexpr double kGentle = 0.6;  // share of the ratings with which the law is to brake
 constexpr double kOnset = 0.04;  // s: motors build up their torques meanwhile
 constexpr double kLeastShare = 1e-3;
+constexpr double kStep = 1e-6;  // s, and rad/s or m/s, of differences
 
 }  // namespace
 
@@ -82,27 +83,17 @@ void Guard::add_change(const Foreseen& nearest, const BrakingPath& path, const B
     per_position.noalias() += sign * J.topRows<3>().transpose() * normal;
     per_position.noalias() += sign * J.bottomRows<3>().transpose() * turn;
   }
-  task.rate += per_position.dot(path.dq);
-  const int separate = gentle.separate;
-  for (Eigen::Index i = 0; i < separate; ++i) {
-    const double rest = path.reaction[i] + std::abs(path.dq[i]) / path.deceleration[i];
-    task.per_acceleration[i] += per_position[i] * std::min(nearest.time, rest);
-  }
-  // x_i = q_i + dq_i (t - s^2 / (2 T)) with s = t - r_i, at most T, and T that grows with all
-  // speeds
-  const Proportion together(gentle, path.dq);
-  if (!(together.duration > 0.0)) return;
-  double per_duration = 0.0;
-  for (Eigen::Index i = separate; i < path.q.size(); ++i) {
-    const double since = std::clamp(nearest.time - path.reaction[i], 0.0, together.duration);
-    const double share_of_time = since / together.duration;
-    const double way =
-        std::min(nearest.time, path.reaction[i]) + since - 0.5 * share_of_time * since;
-    task.per_acceleration[i] += per_position[i] * way;
-    per_duration += per_position[i] * path.dq[i] * 0.5 * share_of_time * share_of_time;
-  }
-  for (Eigen::Index i = separate; i < path.q.size(); ++i) {
-    task.per_acceleration[i] += per_duration * together.per_speed(i);
+  // the ends of joints bend the path, so that the way at that time changes with both
+  const VectorPM there = path.positions(nearest.time);
+  const VectorPM q = path.q + kStep * path.dq;
+  const BrakingPath later(gentle, q, path.dq);
+  task.rate += per_position.dot(later.positions(nearest.time) - there) / kStep;
+  VectorPM faster = path.dq;
+  for (Eigen::Index i = 0; i < path.q.size(); ++i) {
+    faster[i] += kStep;
+    const BrakingPath other(gentle, path.q, faster);
+    task.per_acceleration[i] += per_position.dot(other.positions(nearest.time) - there) / kStep;
+    faster[i] = path.dq[i];
   }
 }
 
@@ -119,8 +110,6 @@ CollisionTask Guard::keep_apart(const VectorPM& q, const VectorPM& dq,
   Braking gentle = braking_;
   gentle.deceleration *= kGentle;
   gentle.reaction.array() += kOnset;
-  gentle.lowest.resize(0);
-  gentle.highest.resize(0);
   const BrakingPath path(gentle, q, dq);
   foresee(near, path, state);
   const auto least_left = [&] { return std::ranges::min(near, {}, &Foreseen::left).left; };

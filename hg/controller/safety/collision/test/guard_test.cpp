@@ -342,9 +342,8 @@ TEST(Guard, TakesNoTurnOnTheSpotForACollision) {
 
 // The change that the law is given is that of the distance it is given, and braking as foreseen
 // never shrinks it.
-TEST(Guard, KeepsApartByTheChangeOfTheForeseenDistance) {
+void expect_kept_apart(const TestDevice& device) {
   constexpr double kStep = 1e-5;  // s
-  const TestDevice device = device_of(folding_urdf());
   Guard guard(device.config, device.braking, device.chain);
   const unsigned seed = 22;
   SCOPED_TRACE("seed " + std::to_string(seed));
@@ -367,14 +366,28 @@ TEST(Guard, KeepsApartByTheChangeOfTheForeseenDistance) {
     if (std::abs(change - foreseen) > 0.02 * (0.1 + std::abs(foreseen))) ++wrong;
     Braking gentle = device.braking;
     gentle.deceleration *= 0.6;
-    VectorPM braking(8);
-    for (int i = 0; i < 8; ++i) {
-      braking[i] = -std::copysign(deceleration_of(gentle, wanderer.dq, i), wanderer.dq[i]);
-    }
+    gentle.reaction.array() += 0.04;
+    VectorPM braking = decelerations(gentle, wanderer.q, wanderer.dq);
+    for (int i = 0; i < 8; ++i) braking[i] = -std::copysign(braking[i], wanderer.dq[i]);
     EXPECT_GT(task.rate + task.per_acceleration.dot(braking), -0.05) << n;
   }
   EXPECT_GT(checked, 40);
   EXPECT_LT(wrong, checked / 20) << checked;  // another place has become the nearest
+}
+
+TEST(Guard, KeepsApartByTheChangeOfTheForeseenDistance) {
+  expect_kept_apart(device_of(folding_urdf()));
+}
+
+// A joint brakes harder in front of its end, and the others swing round it.
+TEST(Guard, KeepsApartAlsoWhereJointsMeetTheirEnds) {
+  TestDevice device = device_of(folding_urdf());
+  device.braking.lowest = device.braking.highest = VectorPM::Zero(8);
+  for (Eigen::Index i = 0; i < 8; ++i) {
+    device.braking.lowest[i] = device.range[static_cast<std::size_t>(i)].lb;
+    device.braking.highest[i] = device.range[static_cast<std::size_t>(i)].ub;
+  }
+  expect_kept_apart(device);
 }
 
 TEST(Guard, GivesTheSameBitsFromTheSameState) {
