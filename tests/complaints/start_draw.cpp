@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLength = 0.3;                      // m, at which a rotation counts
 constexpr double kSmallest = 1e-6, kLargest = 2e-2;  // rad and m, beyond a limit
-constexpr double kClear = 1e-3;                      // m, beyond the safe distance
+constexpr double kClear = 3e-4;                      // m, beyond the safe distance
 constexpr double kInRoom = 5.0;                      // m, of a box that is not in the way
 constexpr double kForce = 20.0, kTorque = 2.0;       // N, Nm: the hardest push
 constexpr double kOfRating = 0.3;      // of its acceleration that the push asks of any joint
