@@ -1,5 +1,6 @@
 // The picture of a run, whichever way it is drawn: in space, or flat where there is no WebGL.
 
+import type { Link } from "../data/freshness";
 import type { HandView, Pixel } from "../hand/hand_view";
 import type { Event, Frame, Hand, Scene, Vec3 } from "../messages";
 
@@ -27,5 +28,8 @@ export interface Picture {
 export interface PictureInput {
   live_frame(): Frame | null; // what a hand acts upon
   send(hand: Hand): void;
+  stop(): void; // the emergency stop, from within a headset
+  link(): Link;
+  page(): number; // of this connection
   report(key: string, problem: string): void;
 }

@@ -35,9 +35,7 @@ export class SpacePicture implements Picture {
 
   constructor(private readonly input: PictureInput) {
     this.view = new CameraView(this.stage, this.cameras);
-    this.headset = new Headset(this.stage, input.live_frame, input.send, (problem) =>
-      input.report("headset", problem),
-    );
+    this.headset = new Headset(this.stage, input);
     this.stage.canvas.setAttribute("role", "img");
     this.stage.canvas.setAttribute("aria-label", "Device, twin, handle and force in space");
     on_theme_change(() => this.world?.paint(current_theme()));
@@ -94,6 +92,7 @@ export class SpacePicture implements Picture {
     if (!this.has_looked) this.look(this.world, frame);
     this.legend.show(frame.ghost !== null);
     this.world.show(frame, target, axis);
+    this.headset.update(this.world.scene, frame);
     const is_first_person = this.cameras.current === "first person" || this.is_worn;
     this.world.person.hide_body(is_first_person);
     if (!this.is_worn) this.cameras.update(frame.p_B_H_m, this.world.person.eyes);

@@ -39,3 +39,19 @@ export function placed_rig(
   const position = handle.clone().addScaledVector(back, STAND_BACK).setZ(floor_z);
   return { position, quaternion: new Quaternion().setFromRotationMatrix(basis) };
 }
+
+// The same with the handle above `on_floor`, a place of the headset's space, which is turned so that
+// a wearer whose head is at `head` stands before it.
+export function placed_at(
+  on_floor: Vector3,
+  head: Vector3,
+  handle: Vector3,
+  to_user: Vector3,
+  floor_z: number,
+): { position: Vector3; quaternion: Quaternion } {
+  const { quaternion } = placed_rig(handle, to_user, floor_z);
+  const azimuth = Math.atan2(head.x - on_floor.x, head.z - on_floor.z);
+  quaternion.multiply(new Quaternion().setFromAxisAngle(new Vector3(0, 1, 0), -azimuth));
+  const offset = on_floor.clone().setY(0).applyQuaternion(quaternion);
+  return { position: handle.clone().setZ(floor_z).sub(offset), quaternion };
+}

@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 
 import { turned } from "../../src/hand/turn";
 import { elbow_between } from "../../src/scene/reach";
-import { grip_target, placed_rig } from "../../src/xr/grip";
+import { grip_target, placed_at, placed_rig } from "../../src/xr/grip";
 
 describe("turned", () => {
   it("turns about the vertical and about the view's right", () => {
@@ -64,5 +64,23 @@ describe("elbow_between", () => {
       new Vector3(0, 0, 1),
     );
     expect(elbow.toArray()).toEqual([1, 0, 0]);
+  });
+});
+
+describe("placed_at", () => {
+  it("puts the handle above the place on the floor, turned to the wearer, wherever the head is", () => {
+    const handle = new Vector3(1, 2, -0.8);
+    const to_user = new Vector3(0, -1, 0.2);
+    for (const [x, z] of [[0, 0], [2, 0.5], [-1, -3]] as const) {
+      const place = new Vector3(0.4, 0.02, -1.5);
+      const head = new Vector3(x, 1.6, z);
+      const { position, quaternion } = placed_at(place, head, handle, to_user, -2);
+      const in_B = (point: Vector3): Vector3 => point.clone().applyQuaternion(quaternion).add(position);
+      const below = in_B(place.clone().setY(0));
+      expect(below.distanceTo(new Vector3(1, 2, -2))).toBeLessThan(1e-9);
+      const towards = in_B(head).sub(below).setZ(0).normalize();
+      expect(towards.dot(new Vector3(0, -1, 0))).toBeCloseTo(1, 9);
+      expect(in_B(head).z).toBeCloseTo(-0.4, 9); // true height above the floor
+    }
   });
 });
