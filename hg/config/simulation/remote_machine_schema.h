@@ -17,6 +17,7 @@ struct TeleoperationDraft {
   std::vector<std::string> joints;  ///< of the twin, those that are not floating
   std::vector<teleoperation::AxisLimits> joint_limits;
   std::vector<double> joint_starts;
+  bool is_machine = true;  ///< All joints turn, and they are 1 to 7
   Eigen::Vector3d tool_start = Eigen::Vector3d::Zero();
   Eigen::Vector3d lowest = Eigen::Vector3d::Constant(-0.5);
   Eigen::Vector3d highest = Eigen::Vector3d::Constant(0.5);
@@ -28,12 +29,27 @@ struct TeleoperationDraft {
 inline TeleoperationDraft teleoperation_of(const rendering::TwinModel& twin) {
   TeleoperationDraft draft;
   for (const rendering::TwinDof& dof : twin.dofs) {
+    draft.is_machine = draft.is_machine && dof.q_index >= 0 && dof.is_angle;
     if (dof.q_index < 0) continue;
     draft.joints.push_back(dof.name);
     draft.joint_limits.push_back({.range = {dof.limits.q_min, dof.limits.q_max}});
     draft.joint_starts.push_back(twin.q_start[dof.q_index]);
   }
+  draft.is_machine = draft.is_machine && twin.dofs.size() <= kMaxPort;
   return draft;
+}
+
+// Springs and dampers that the simulation of a machine with this mass can follow, per mass.
+inline constexpr double kStiffestPerMass = 1e6;    // 1/s^2
+inline constexpr double kMostDampedPerMass = 1e3;  // 1/s
+
+/// Rules on a spring and a damper of the machine, or of what it meets.
+template <class V>
+void check_impedance(V& v, double stiffness, double damping, double mass, std::string_view key) {
+  v.rule(stiffness <= kStiffestPerMass * mass, key, "at most 1e6 1/s^2 times what moves",
+         model::to_text(stiffness) + " for " + model::to_text(mass));
+  v.rule(damping <= kMostDampedPerMass * mass, key, "damping of at most 1e3 1/s times what moves",
+         model::to_text(damping) + " for " + model::to_text(mass));
 }
 
 template <class V>
@@ -69,41 +85,58 @@ void describe_joint_wall(V& v, const TeleoperationDraft& d, teleoperation::Wall&
 }
 
 template <class V>
+void describe_tool(V& v, TeleoperationDraft& d) {
+  teleoperation::SimulatedMachineConfig& machine = d.config->machine;
+  v.vector("start_m", d.tool_start, {.lb = -1e3, .ub = 1e3}, "tool: where it starts, in its base");
+  v.vector("lowest_m", d.lowest, {.lb = -1e3, .ub = 1e3}, "tool: lower end of its range");
+  v.vector("highest_m", d.highest, {.lb = -1e3, .ub = 1e3}, "tool: upper end of its range");
+  v.rule((d.highest - d.lowest).minCoeff() > 0.0, "highest_m", "must be above lowest_m");
+  const bool is_within =
+      (d.tool_start - d.lowest).minCoeff() >= 0.0 && (d.highest - d.tool_start).minCoeff() >= 0.0;
+  v.rule(is_within, "start_m", "the start must be within lowest_m and highest_m");
+  v.number("speed_m_per_s", d.v_max, kPositive, "tool: largest speed along each axis");
+  v.number("acceleration_m_per_s2", d.a_max, kPositive, "tool: largest acceleration");
+  v.number("mass_kg", machine.impedance.mass, kPositive, "tool: what moves with it");
+  v.number("stiffness_N_per_m", machine.impedance.stiffness, kPositive,
+           "tool: of the machine's own controller");
+  v.number("damping_Ns_per_m", machine.impedance.damping, kPositive,
+           "tool: of the machine's own controller");
+  v.number("force_max_N", machine.force_max, kPositive, "tool: largest force along each axis");
+}
+
+template <class V>
+void describe_joints_of_machine(V& v, TeleoperationDraft& d) {
+  teleoperation::SimulatedMachineConfig& machine = d.config->machine;
+  v.number("speed_rad_per_s", d.v_max, kPositive, "joints: largest speed; ranges are the twin's");
+  v.number("acceleration_rad_per_s2", d.a_max, kPositive, "joints: largest acceleration");
+  v.number("inertia_kg_m2", machine.impedance.mass, kPositive, "joints: of each");
+  v.number("stiffness_Nm_per_rad", machine.impedance.stiffness, kPositive,
+           "joints: of the machine's own controller");
+  v.number("damping_Nms_per_rad", machine.impedance.damping, kPositive,
+           "joints: of the machine's own controller");
+  v.number("torque_max_Nm", machine.force_max, kPositive, "joints: largest torque of each");
+}
+
+template <class V>
 void describe_remote(V& v, TeleoperationDraft& d) {
-  teleoperation::TeleoperationConfig& config = *d.config;
-  teleoperation::SimulatedMachineConfig& machine = config.machine;
-  const bool is_tool = config.mapping == teleoperation::Mapping::kTool;
+  teleoperation::SimulatedMachineConfig& machine = d.config->machine;
+  const bool is_tool = d.config->mapping == teleoperation::Mapping::kTool;
   const bool covers_tool = v.covers(is_tool), covers_joints = v.covers(!is_tool);
-  if (covers_tool) {
-    v.vector("start_m", d.tool_start, {.lb = -1e3, .ub = 1e3},
-             "tool: where it starts, in its base");
-    v.vector("lowest_m", d.lowest, {.lb = -1e3, .ub = 1e3}, "tool: lower end of its range");
-    v.vector("highest_m", d.highest, {.lb = -1e3, .ub = 1e3}, "tool: upper end of its range");
-    v.number("speed_m_per_s", d.v_max, kPositive, "tool: largest speed along each axis");
-    v.number("acceleration_m_per_s2", d.a_max, kPositive, "tool: largest acceleration");
-    v.number("mass_kg", machine.impedance.mass, kPositive, "tool: what moves with it");
-    v.number("stiffness_N_per_m", machine.impedance.stiffness, kPositive,
-             "tool: of the machine's own controller");
-    v.number("damping_Ns_per_m", machine.impedance.damping, kPositive,
-             "tool: of the machine's own controller");
-    v.number("force_max_N", machine.force_max, kPositive, "tool: largest force along each axis");
-  }
-  if (covers_joints) {
-    v.number("speed_rad_per_s", d.v_max, kPositive, "joints: largest speed; ranges are the twin's");
-    v.number("acceleration_rad_per_s2", d.a_max, kPositive, "joints: largest acceleration");
-    v.number("inertia_kg_m2", machine.impedance.mass, kPositive, "joints: of each");
-    v.number("stiffness_Nm_per_rad", machine.impedance.stiffness, kPositive,
-             "joints: of the machine's own controller");
-    v.number("damping_Nms_per_rad", machine.impedance.damping, kPositive,
-             "joints: of the machine's own controller");
-    v.number("torque_max_Nm", machine.force_max, kPositive, "joints: largest torque of each");
-  }
+  if (covers_tool) describe_tool(v, d);
+  if (covers_joints) describe_joints_of_machine(v, d);
+  const double mass = machine.impedance.mass;
+  const char* stiffness = is_tool ? "stiffness_N_per_m" : "stiffness_Nm_per_rad";
+  check_impedance(v, machine.impedance.stiffness, machine.impedance.damping, mass, stiffness);
   v.list(
       "walls",
       [&](auto& child) {
         teleoperation::Wall& wall = machine.walls.emplace_back();
         if (covers_tool) describe_tool_wall(child, wall);
         if (covers_joints) describe_joint_wall(child, d, wall);
+        check_impedance(child, wall.stiffness, wall.damping, mass, stiffness);
+        if (!is_tool) return;
+        child.rule(!(wall.normal.dot(d.tool_start) < wall.offset), "through_m",
+                   "the tool must not start inside of it");
       },
       "what it meets");
 }

@@ -75,6 +75,8 @@ void describe(V& v, TeleoperationDraft& d) {
   v.choice("mapping", config.mapping, kMappings,
            "tool: the end effector of the twin leads the tool of the remote machine; joints: the "
            "twin is the model of the machine, and its joints lead those of the machine");
+  v.rule(config.mapping == teleoperation::Mapping::kTool || d.is_machine, "mapping",
+         "joints needs a twin of one to seven joints, all of which turn");
   v.choice("method", config.method.kind, kTeleoperationMethods,
            "of bilateral control, docs/concepts/teleoperation.md");
   v.group(

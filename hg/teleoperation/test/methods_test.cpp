@@ -10,6 +10,7 @@
 #include "hg/core/random.h"
 #include "hg/teleoperation/passivity_control.h"
 #include "hg/teleoperation/trial.h"
+#include "hg/teleoperation/wave_variables.h"
 
 namespace hg::teleoperation {
 namespace {
@@ -81,6 +82,23 @@ TEST(Methods, WaveVariablesArePassiveOnAnyNetwork) {
   }
 }
 
+TEST(WaveReservoir, SavesWhatThePortHasNotTakenAndPaysNoMoreThanItHas) {
+  const auto one = [](double value) { return PortVector::Constant(1, value); };
+  WaveReservoir reservoir;
+  reservoir.start(1);
+  reservoir.fill(one(0.01));
+  reservoir.fill(one(0.008));
+  EXPECT_DOUBLE_EQ(reservoir.left(), 0.01) << "energies only grow";
+  reservoir.settle(one(0.001), one(0.004));
+  EXPECT_DOUBLE_EQ(reservoir.left(), 0.007);
+  EXPECT_DOUBLE_EQ(reservoir.pay(0, 0.014), 0.5);
+  EXPECT_EQ(reservoir.pay(0, 1.0), 0.0);
+  EXPECT_EQ(reservoir.use(one(3.0), 1e-3)[0], 0.0);
+  reservoir.fill(one(0.01 + 2e-3));
+  EXPECT_DOUBLE_EQ(reservoir.use(one(1.0), 1e-3)[0], 1.0);
+  EXPECT_NEAR(reservoir.left(), 1.5e-3, 1e-15);
+}
+
 TEST(Methods, WaveVariablesComeToRestWithConstantDelay) {
   for (const person::HandPreset hand : {person::HandPreset::kNormal, person::HandPreset::kStiff}) {
     EXPECT_TRUE(play_trial(trial(MethodKind::kWaveVariables, 0.05, 5e3, hand)).is_stable);
@@ -123,6 +141,20 @@ TEST(Methods, ModelMediatedNeverGivesEnergyToTheHandOnAnyNetwork) {
     config.link = any_network(seed);
     EXPECT_LT(play_trial(config).created_leader, 5e-3) << "J, seed " << seed;
   }
+}
+
+TEST(Methods, ModelMediatedTouchesLightlyUntilTheLeaderKnows) {
+  double first_s = 0.0;
+  play_trial(trial(MethodKind::kModelMediated, 0.4, 5e3, person::HandPreset::kNormal),
+             [&](const TrialMoment& now) {
+               if (first_s == 0.0 && now.f_wall > 0.0) first_s = now.time_s;
+               const double since = now.time_s - first_s;
+               if (first_s > 0.0 && since > 0.5 && since < 0.8) {
+                 EXPECT_NEAR(now.f_wall, MethodConfig{}.touch_force, 0.5);
+                 EXPECT_LE(now.f_leader, 30.0);
+               }
+             });
+  EXPECT_GT(first_s, 1.0);
 }
 
 // The first press ends where the hand was when the news came; docs/concepts/teleoperation.md.
