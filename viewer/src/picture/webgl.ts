@@ -17,7 +17,10 @@ export function why_no_space(): string {
   return no_space_text(detail);
 }
 
+// Of a browser that says how it has tried, in lines, the code of the failure is kept, or its first line.
 export function no_space_text(detail: string): string {
-  const cause = detail === "" ? "" : ` (${detail.replace(/\.$/, "")})`;
+  const code = /FEATURE_\w+/.exec(detail)?.[0];
+  const words = code ?? detail.split("\n")[0]!.trim().replace(/[.:]$/, "");
+  const cause = words === "" ? "" : ` (${words})`;
   return `No 3-D picture: this browser offers no WebGL 2${cause}.`;
 }

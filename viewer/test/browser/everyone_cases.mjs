@@ -7,6 +7,7 @@ import {
   cheap,
   comes_true,
   drag_along,
+  drawn,
   frame_of,
   open_page,
   page_comes_to,
@@ -215,6 +216,67 @@ export async function a_tablet_shows_all_at_once({ browser, program, expect }) {
   expect(bar <= 0, `no tool of the bar sticks out: ${bar} px`);
   const feel = await page.locator("#feel").evaluate(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth);
   expect(feel <= 0, `no column of the panel sticks out: ${feel} px`);
+  await close();
+}
+
+// Fingers of a phone, as the browser itself gets them.
+async function fingers_of(page) {
+  const session = await page.context().newCDPSession(page);
+  const send = (type, places) =>
+    session.send("Input.dispatchTouchEvent", { type, touchPoints: places.map(({ x, y }, id) => ({ x, y, id })) });
+  return {
+    put: (...places) => send("touchStart", places),
+    move: (...places) => send("touchMove", places),
+    lift: () => send("touchEnd", []),
+  };
+}
+
+export async function fingers_open_the_door_and_turn_the_view({ browser, program, expect }) {
+  const phone = { viewport: PHONES["phone upright"], hasTouch: true, isMobile: true };
+  const { page, problems, close } = await open_page(browser, cheap(program.link), phone);
+  const fingers = await fingers_of(page);
+  const handle_px = () => page.evaluate(() => window.hapticgiant.handle_on_screen);
+  const seen = (p_B) => page.evaluate((p) => window.hapticgiant.on_screen(p), p_B);
+  const { p_B_H_m } = await frame_of(page);
+  const { p_B_root_m } = (await scene_of(page)).twin;
+
+  await fingers.put(await handle_px());
+  expect(await comes_true(page, (f) => f.hand.active), "a finger at the ring takes the handle");
+  for (const point of arc(p_B_H_m, p_B_root_m, Array.from({ length: 25 }, (_, i) => 0.05 * (i + 1)))) {
+    const { time_s } = await frame_of(page);
+    await fingers.move(await seen(point));
+    await comes_true(page, (f) => f.time_s > time_s + 0.06);
+  }
+  const opens = await comes_true(page, (f) => f.q_twin[0] > OPEN);
+  expect(opens, `it drags the door open: ${(await frame_of(page)).q_twin[0]} rad`);
+  await fingers.lift();
+  expect(await comes_true(page, (f) => !f.hand.active), "the lifted finger lets go");
+
+  const [at, beside] = [{ x: 60, y: 400 }, { x: 150, y: 400 }];
+  const before = await seen(p_B_root_m);
+  await fingers.put(at);
+  for (let x = at.x; x <= beside.x; x += 15) await fingers.move({ x, y: at.y });
+  await fingers.lift();
+  const turned = await page_comes_to(page, ([p, { x, y }]) => {
+    const now = window.hapticgiant.on_screen(p);
+    return Math.hypot(now.x - x, now.y - y) > 10;
+  }, [p_B_root_m, before]);
+  expect(turned && !(await frame_of(page)).hand.active, "a finger elsewhere turns the view, and holds nothing");
+  const size = async () => {
+    const [low, high] = [await seen(p_B_root_m), await seen([p_B_root_m[0], p_B_root_m[1], p_B_root_m[2] + 0.5])];
+    return Math.hypot(low.x - high.x, low.y - high.y);
+  };
+  await drawn(page);
+  const small = await size();
+  await fingers.put({ x: 60, y: 400 }, { x: 100, y: 400 });
+  for (let i = 1; i <= 6; i++) await fingers.move({ x: 60 - 2 * i, y: 400 }, { x: 100 + 4 * i, y: 400 });
+  await fingers.lift();
+  await drawn(page);
+  const large = await size();
+  expect(large > 1.2 * small, `two fingers that part come nearer: ${small.toFixed(0)} to ${large.toFixed(0)} px`);
+  const scrolled = await page.evaluate(() => [scrollX, scrollY, visualViewport.scale]);
+  expect(String(scrolled) === "0,0,1", `the page itself neither scrolls nor zooms: ${scrolled}`);
+  expect(...none(problems));
   await close();
 }
 
