@@ -33,41 +33,54 @@ async function open_door(page, take) {
   });
 }
 
-// Takes the picture when `test(frame)` holds, however slowly the machine draws: the script begins
-// again, because it has played on while the page was opened, and stands still for the picture.
-async function take_when(page, test, take, speed = "1") {
+// Takes the picture when the run is older than `after_s` and the hand feels more than `force_N`,
+// however slowly the machine draws: the script begins again, because it has played on while the page
+// was opened, and the page itself pauses it.
+async function take_when(page, take, { after_s = 0, force_N = 0, speed = "1" }) {
   const { run } = await frame_of(page);
   await page.keyboard.press("r");
   await comes_true(page, (f) => f.run !== run);
-  await page.selectOption("#speed", speed);
+  await page.click("#pause"); // the view is chosen at the beginning
+  await comes_true(page, (f) => f.run_state.is_paused);
   await drawn(page);
-  await comes_true(page, test);
+  await page.selectOption("#speed", speed);
   await page.click("#pause");
+  await page.evaluate(pause_when, [after_s, force_N]);
   await comes_true(page, (f) => f.run_state.is_paused);
   await pictures(page);
   await take();
 }
 
-const at = (time) => (page, take) => take_when(page, (f) => f.time_s > time, take);
+function pause_when([after_s, force_N]) {
+  return new Promise((done) => {
+    const timer = setInterval(() => {
+      const { frame } = window.hapticgiant;
+      if (frame.time_s < after_s || Math.hypot(...frame.force_N) < force_N) return;
+      clearInterval(timer);
+      document.querySelector("#pause").click();
+      done();
+    }, 20);
+  });
+}
+
+const when = (moment) => (page, take) => take_when(page, take, moment);
+const bucket_ends = when({ after_s: 9, force_N: 40, speed: "0.5" });
 
 // The table that is touched, from nearer by.
 async function touch_table(page, take) {
   const { x, y } = await page.evaluate(() => window.hapticgiant.handle_on_screen);
   await page.mouse.move(x, y - 100);
-  for (let i = 0; i < 4; i++) await page.mouse.wheel(0, -120);
-  const presses = (f) => f.contact?.surface === 0 && Math.hypot(...f.contact.force) > 10;
-  await take_when(page, presses, take);
+  for (let i = 0; i < 2; i++) await page.mouse.wheel(0, -120);
+  await take_when(page, take, { force_N: 10 });
 }
 
 // While the person pulls, so that the arrow is seen; slowly, because that is soon over.
-function pull(page, take) {
-  return take_when(page, (f) => Math.hypot(...f.force_N) > 8, take, "0.1");
-}
+const pull = when({ force_N: 8, speed: "0.1" });
 
 const PICTURES = [
   { name: "door", args: ["door", "--user", "mouse"], play: open_door },
-  { name: "viewer_excavator", args: ["excavator"], plots: true, play: at(13) },
-  { name: "viewer_free_space", args: ["free_space"], plots: true, play: at(21.2) },
+  { name: "viewer_excavator", args: ["excavator"], plots: true, play: bucket_ends },
+  { name: "viewer_free_space", args: ["free_space"], plots: true, play: when({ after_s: 21.2 }) },
   {
     name: "viewer_dark",
     args: ["door", "--user", "mouse"],
@@ -77,7 +90,7 @@ const PICTURES = [
   },
   { name: "viewer_surfaces", args: ["surfaces"], play: touch_table },
   { name: "own_arm", args: ["ur10e/open_drawer"], play: pull },
-  { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: at(13) },
+  { name: "viewer_tablet", args: ["excavator"], viewport: tablet, play: bucket_ends },
 ];
 
 // A busy machine may have no data for a moment: not in a picture.
