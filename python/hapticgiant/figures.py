@@ -14,6 +14,7 @@ WIDTH = 7.2  # inches: both columns of a paper
 LEGEND_ROW = 0.17  # inches, of the height that a row adds to a panel
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c564b")
 STYLES = ("-", (0, (4, 1.5)), (0, (1, 1)), (0, (5, 1, 1, 1)))
+SHADES = (-0.45, 0.5)  # of the curves of one run: towards black, towards white
 SETTINGS = {
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 7.5,
     "axes.titlesize": 8, "axes.labelsize": 7.5, "legend.fontsize": 6.8, "xtick.labelsize": 7,
@@ -122,14 +123,25 @@ def legend(panel, columns, **options):
     make_room(panel, share / (1.0 - share))
 
 
+def colours_of(runs, number, count):
+    """Of so many curves of a run: of one run a colour each; of several each run has a colour, its curves are shades
+    of it, from dark to light."""
+    if len(runs) == 1:
+        return [COLOURS[index % len(COLOURS)] for index in range(count)]
+    from matplotlib.colors import to_hex, to_rgb
+    base = np.array(to_rgb(COLOURS[number % len(COLOURS)]))
+    return [to_hex(base * (1 + share) if share < 0 else base + share * (1 - base))
+            for share in (np.linspace(*SHADES, count) if count > 1 else [0.0])]
+
+
 def draw_signals(panel, runs, entries, label, legend_columns=6):
     """Signals of run.json with their limits, dotted in the same colour."""
     for number, style in enumerate(STYLES[:len(runs)]):
-        for entry, colour in zip(entries, COLOURS * 4):
+        for entry, colour in zip(entries, colours_of(runs, number, len(entries))):
             if runs[number].has(entry["column"]):
                 panel.plot(runs[number].time, runs[number][entry["column"]], color=colour,
                            linestyle=style, label=entry["name"] if number == 0 else None)
-    for entry, colour in zip(entries, COLOURS * 4):
+    for entry, colour in zip(entries, colours_of(runs, 0, len(entries))):
         for side in ("lower", "upper"):
             if entry[side] is not None:
                 panel.axhline(entry[side], color=colour, linestyle=":", linewidth=0.9)
@@ -141,18 +153,20 @@ def draw_wrench(panel, runs):
     """Norms of force (left) and torque (right) of the user."""
     right = panel.twinx()
     right.grid(False)
-    for run, style in zip(runs, STYLES):
-        panel.plot(run.time, run["force_N"], color=COLOURS[0], linestyle=style)
-        right.plot(run.time, run["torque_Nm"], color=COLOURS[1], linestyle=style)
-    panel.set_ylabel("force in N", color=COLOURS[0])
-    right.set_ylabel("torque in Nm", color=COLOURS[1])
+    for number, (run, style) in enumerate(zip(runs, STYLES)):
+        force, torque = colours_of(runs, number, 2)
+        panel.plot(run.time, run["force_N"], color=force, linestyle=style)
+        right.plot(run.time, run["torque_Nm"], color=torque, linestyle=style)
+    force, torque = colours_of(runs, 0, 2)
+    panel.set_ylabel("force in N", color=force)
+    right.set_ylabel("torque in Nm", color=torque)
     for each in (panel, right):
         each.set_ylim(bottom=0)
 
 
 def draw_torques(panel, runs, entries):
     for number, run in enumerate(runs):
-        for entry, colour in zip(entries, COLOURS):
+        for entry, colour in zip(entries, colours_of(runs, number, len(entries))):
             panel.plot(run.time, run[entry["torque_column"]], color=colour,
                        linestyle=STYLES[number], label=entry["name"] if number == 0 else None)
     units = "/".join(sorted({entry["torque_unit"] for entry in entries}, reverse=True))
@@ -162,7 +176,7 @@ def draw_torques(panel, runs, entries):
 
 def draw_speeds(panel, runs, entry):
     for number, run in enumerate(runs):
-        panel.plot(run.time, run[entry["speed_column"]], color=COLOURS[0], linestyle=STYLES[number],
+        panel.plot(run.time, run[entry["speed_column"]], color=colours_of(runs, number, 1)[0], linestyle=STYLES[number],
                    label=entry["name"] if number == 0 else None)
     if entry["speed_max"] is not None:
         for sign in (-1, 1):
@@ -185,19 +199,20 @@ def draw_top_view(panel, runs, from_s=-np.inf, to_s=np.inf):
     """Motion of hand, elbow and gantry in the plane, with their limits."""
     facts = runs[0].facts
     gantry = facts["gantry"] if [joint["unit"] for joint in facts["gantry"]] == ["m", "m"] else []
-    curves = [("end effector", "hand_x_m", "hand_y_m", COLOURS[0])]
+    curves = [("end effector", "hand_x_m", "hand_y_m")]
     if facts["has_elbow"]:
-        curves.append(("elbow", "elbow_x_m", "elbow_y_m", COLOURS[1]))
+        curves.append(("elbow", "elbow_x_m", "elbow_y_m"))
     if gantry:
-        curves.append(("gantry", gantry[0]["column"], gantry[1]["column"], COLOURS[2]))
+        curves.append(("gantry", gantry[0]["column"], gantry[1]["column"]))
     for number, run in enumerate(runs):
         rows = (run.time >= from_s) & (run.time <= to_s) & (run["running"] > 0)
-        for name, x, y, colour in curves:
+        for (name, x, y), colour in zip(curves, colours_of(runs, number, len(curves))):
             panel.plot(run[x][rows], run[y][rows], color=colour, linestyle=STYLES[number],
                        label=name if number == 0 else None)
-    box(panel, facts["box"]["x"], facts["box"]["y"], COLOURS[0])
+    colours = colours_of(runs, 0, len(curves))
+    box(panel, facts["box"]["x"], facts["box"]["y"], colours[0])
     if gantry:
-        box(panel, *([joint["lower"], joint["upper"]] for joint in gantry), COLOURS[2])
+        box(panel, *([joint["lower"], joint["upper"]] for joint in gantry), colours[-1])
     panel.set_aspect("equal", adjustable="box", anchor="N")
     panel.set_xlabel("x in m")
     panel.set_ylabel("y in m")
@@ -357,8 +372,8 @@ def draw_doorway(panel, run):
 
 def draw_force(panel, runs):
     """Force of the user, and when the hand lets go."""
-    for run, style in zip(runs, STYLES):
-        panel.plot(run.time, run["force_N"], color=COLOURS[0], linestyle=style)
+    for number, (run, style) in enumerate(zip(runs, STYLES)):
+        panel.plot(run.time, run["force_N"], color=colours_of(runs, number, 1)[0], linestyle=style)
         person = run.facts["person"]
         let_go = person["time_s"][person["hold"] < 1.0]
         if len(let_go):
@@ -477,8 +492,8 @@ def captions(figure, runs):
         return
     from matplotlib.lines import Line2D
     from matplotlib.transforms import ScaledTranslation
-    handles = [Line2D([], [], color="black", linestyle=style, label=run.facts["note"])
-               for run, style in zip(runs, STYLES)]
+    handles = [Line2D([], [], color=colour, linestyle=style, label=run.facts["note"])
+               for run, style, colour in zip(runs, STYLES, COLOURS)]
     top = max(panel.get_position().y1 for panel in figure.axes)
     above = ScaledTranslation(0.0, 0.36, figure.dpi_scale_trans)
     figure.legend(handles=handles, loc="lower left", ncol=1, bbox_to_anchor=(0.05, top),

@@ -3,6 +3,7 @@
 Usage: report_test.py   (from anywhere; needs scipy, matplotlib and jinja2, no compiled part)
 """
 
+import colorsys
 import contextlib
 import io
 import pathlib
@@ -119,6 +120,18 @@ class Figures(unittest.TestCase):
                 with self.subTest(kind=kind, names=names):
                     self.check_runs([run_of(names, kind, f"run {number} of a long name")
                                      for number in range(4 if kind == "any" else 2)])
+
+    def test_runs_differ_by_colour_and_their_curves_by_shade(self):
+        names, runs = ["m1", "m2", "m3"], [run_of(["m1", "m2", "m3"], note=note) for note in ("one", "two")]
+        panel, alone = (FigureCanvasAgg(Figure()).figure.add_subplot() for _ in range(2))
+        figures.draw_signals(panel, runs, runs[0].facts["manipulator"], "rad")
+        hls = [colorsys.rgb_to_hls(*matplotlib.colors.to_rgb(line.get_color())) for line in panel.get_lines()[:6]]
+        for run in (hls[:3], hls[3:]):
+            self.assertLess(np.ptp([hue for hue, _, _ in run]), 0.03)
+            self.assertGreater(np.diff([lightness for _, lightness, _ in run]).min(), 0.05)
+        self.assertGreater(abs(hls[0][0] - hls[3][0]), 0.2)
+        figures.draw_signals(alone, runs[:1], runs[0].facts["manipulator"], "rad")
+        self.assertEqual([line.get_color() for line in alone.get_lines()[:3]], list(figures.COLOURS[:len(names)]))
 
     def test_computing_times(self):
         edges = list(np.geomspace(5.0, 500.0, 30))
