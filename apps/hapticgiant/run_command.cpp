@@ -1,5 +1,6 @@
 #include "apps/hapticgiant/run_command.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <iostream>
@@ -72,7 +73,11 @@ int run(const RunArguments& arguments) {
     writer.push(scenario::to_line(report), worth);
   });
   try {
-    return play(arguments, {&reports});
+    const int exit_code = play(arguments, {&reports});
+    const std::string failure = writer.end();
+    if (failure.empty()) return exit_code;
+    fmt::print(stderr, "--report-to {}: {}: reports are missing\n", *arguments.report_to, failure);
+    return exit_code == 0 ? kNotWritten : exit_code;
   } catch (const SetupError& error) {
     reports.refused(error.what());
     throw;

@@ -10,6 +10,9 @@
 namespace hg {
 namespace {
 
+// Longer ones are no names; the table of both is as large as their product.
+constexpr std::size_t kLongest = 200;
+
 bool same_letter(char a, char b) {
   return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
 }
@@ -17,6 +20,7 @@ bool same_letter(char a, char b) {
 // Letters that are wrong, missing, too many or swapped with their neighbour; three rows of the
 // table at a time (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  if (a.size() > kLongest || b.size() > kLongest) return std::max(a.size(), b.size());
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -39,6 +43,7 @@ std::string nearest_name(std::string_view name, std::span<const std::string> can
   std::string nearest;
   std::size_t smallest = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : candidates) {
+    if (candidate.size() > kLongest) continue;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < smallest) {
       smallest = distance;

@@ -8,7 +8,7 @@
 namespace hg {
 
 /// Candidate with the smallest edit distance to `name`, ignoring case; on a tie the first; empty
-/// without candidates.
+/// without candidates. Those with more than 200 letters are left out.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
 /// Candidate that `name` misspells: one wrong letter, or two from six letters on, or another case;

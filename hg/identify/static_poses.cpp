@@ -111,6 +111,8 @@ std::vector<std::string> cells(std::string_view line, char separator) {
   return result;
 }
 
+constexpr double kLargest = 1e6;  // m/s^2, N or Nm: no sensor shows more
+
 // Where commas do not separate cells, one may be that of a decimal.
 double number(const std::string& text, char separator, const std::string& where) {
   std::string plain = text;
@@ -120,6 +122,10 @@ double number(const std::string& text, char separator, const std::string& where)
   const auto [end, error] = std::from_chars(plain.data(), last, value);
   if (error != std::errc() || end != last || !std::isfinite(value)) {
     throw SetupError(where + ": expected a number, got '" + text + "'");
+  }
+  if (std::abs(value) > kLargest) {
+    throw SetupError(
+        fmt::format("{}: expected a reading of at most {:g}, got {:g}", where, kLargest, value));
   }
   return value;
 }
@@ -191,9 +197,10 @@ StaticPose measure_simulated(const config::SimulatedDeviceConfig& device, const 
 }
 
 std::vector<StaticPose> read_static_poses(const std::string& name, const std::string& text) {
+  const char end = text.find('\n') != std::string::npos ? '\n' : '\r';
   std::istringstream stream(text);
   std::string line;
-  std::getline(stream, line);
+  std::getline(stream, line, end);
   if (line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // a byte order mark
   const char separator = separator_of(line);
   const std::vector<std::string> header = cells(line, separator);
@@ -203,7 +210,7 @@ std::vector<StaticPose> read_static_poses(const std::string& name, const std::st
     int rows = 0;
   };
   std::map<std::string, Sum> sums;
-  for (int row = 2; std::getline(stream, line); ++row) {
+  for (int row = 2; std::getline(stream, line, end); ++row) {
     const std::vector<std::string> values = cells(line, separator);
     if (values == std::vector<std::string>{""}) continue;
     const std::string where = fmt::format("{}:{}", name, row);
@@ -223,6 +230,7 @@ std::vector<StaticPose> read_static_poses(const std::string& name, const std::st
   for (auto& [key, sum] : sums) {
     poses.push_back({sum.pose.a_S / sum.rows, sum.pose.w_S / sum.rows});
   }
+  if (poses.empty()) throw SetupError(name + ":1: expected rows of readings below the header");
   return poses;
 }
 

@@ -52,6 +52,14 @@ def kinds(reports):
 
 
 class RunProtocol(TemporaryFolder):
+    def test_reports_that_a_full_disk_takes_are_missing_and_the_exit_code_says_so(self):
+        with open("/dev/full", "wb", buffering=0) as full:
+            done = subprocess.run([PROGRAM, "run", "door", "--fast", "--no-viewer", "--no-recording", "--report-to",
+                                   str(full.fileno())], pass_fds=(full.fileno(),), capture_output=True, text=True,
+                                  check=False)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("No space left on device: reports are missing", done.stderr)
+
     def test_a_run_takes_one_request_and_says_what_happens(self):
         reports, code, out, err = Played({**FAST, "scenario": "door"}).end()
         self.assertEqual((code, err), (0, ""))

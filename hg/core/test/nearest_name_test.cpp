@@ -45,5 +45,13 @@ TEST(MisspeltName, IsOneLetterOrTwoOfSixAwayOrInAnotherCase) {
   EXPECT_EQ(misspelt_name("m1", {}), "");
 }
 
+// A megabyte without a separator is no name.
+TEST(NearestName, IsNoneOfWhatIsTooLongForAName) {
+  const std::string line(1'000'000, 'a');
+  EXPECT_EQ(nearest_name("a_x", std::vector<std::string>{line, "b_y"}), "b_y");
+  EXPECT_EQ(nearest_name("a_x", std::vector<std::string>{line}), "");
+  EXPECT_EQ(misspelt_name(line, std::vector<std::string>{"a_x"}), "");
+}
+
 }  // namespace
 }  // namespace hg

@@ -99,6 +99,9 @@ TEST(ReadStaticPoses, TakesTablesOfSpreadsheets) {
   };
   std::string decimal = with(row, ';');
   decimal.replace(decimal.find('.'), 1, ",");
+  std::string lines_of_old = header + "\n" + row + "\n";
+  std::ranges::replace(lines_of_old, '\n', '\r');
+  EXPECT_EQ(read_static_poses("poses.csv", lines_of_old).size(), 1u);
   const std::string quoted = "\"a_x\",\"a_y\",a_z,f_x,f_y,f_z,n_x,n_y,n_z";
   for (const std::string& text :
        {header + "\n" + row, with(header, ';') + "\r\n" + decimal + "\r\n",
@@ -113,6 +116,9 @@ TEST(ReadStaticPoses, TakesTablesOfSpreadsheets) {
 
 TEST(ReadStaticPoses, ReportsWhatIsWrongAndWhere) {
   const std::string header = "a_x,a_y,a_z,f_x,f_y,f_z,n_x,n_y,n_z\n";
+  EXPECT_EQ(refusal(header), "poses.csv:1: expected rows of readings below the header");
+  EXPECT_EQ(refusal(header + "1,2,3,4e160,5,6,7,8,9\n"),
+            "poses.csv:2: f_x: expected a reading of at most 1e+06, got 4e+160");
   EXPECT_EQ(refusal("a_x,a_y,a_z,f_x,f_y,fz,n_x,n_y,n_z\n"),
             "poses.csv:1: f_z: there is no such column, nearest is 'fz'; needs a_x, a_y, a_z, f_x, "
             "f_y, f_z, n_x, n_y, n_z");

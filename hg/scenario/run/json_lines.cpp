@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -104,12 +105,16 @@ class LineWriter::Queue {
     news_.notify_one();
   }
 
+  /// Why writing failed, an errno; 0: it did not, or the reader has closed. Once write_all() ends.
+  int error() const { return error_; }
+
   // runs until end(), and then until all is written or patience has ended
   void write_all() {
     std::string part;
     while (take(part)) {
       const ssize_t written = write(part);
       const bool is_gone = written < 0 && errno != EINTR && errno != EAGAIN;
+      if (is_gone && errno != EPIPE) error_ = errno;
       give_back(written > 0 ? static_cast<std::size_t>(written) : 0, is_gone);
     }
   }
@@ -150,6 +155,7 @@ class LineWriter::Queue {
   std::string waiting_;
   std::uint64_t lost_ = 0;  // lines, since the last report
   bool is_gone_ = false;    // the reader
+  int error_ = 0;
   std::optional<Clock::time_point> end_at_;
 };
 
@@ -172,9 +178,14 @@ LineWriter::LineWriter(int file) : queue_(std::make_unique<Queue>(checked(file))
   thread_ = std::thread([this] { queue_->write_all(); });
 }
 
-LineWriter::~LineWriter() {
-  queue_->end();
-  thread_.join();
+LineWriter::~LineWriter() { end(); }
+
+std::string LineWriter::end() {
+  if (thread_.joinable()) {
+    queue_->end();
+    thread_.join();
+  }
+  return queue_->error() == 0 ? std::string() : std::strerror(queue_->error());
 }
 
 void LineWriter::push(const std::string& line, Worth worth) { queue_->push(line, worth); }

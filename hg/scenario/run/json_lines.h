@@ -51,12 +51,14 @@ class LineWriter {
  public:
   /// Takes `file`, a descriptor that is open for writing, from 3 on. Throws SetupError.
   explicit LineWriter(int file);
-  /// Waits until all is read, at most two seconds.
   ~LineWriter();
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
   void push(const std::string& line, Worth worth);
+  /// Waits until all is read, at most two seconds; nothing may be pushed afterwards. Returns why
+  /// writing failed, as a full disk; empty if it did not, or if the reader has closed.
+  std::string end();
 
  private:
   class Queue;
