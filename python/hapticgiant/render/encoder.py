@@ -19,7 +19,7 @@ SAME = ["-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"] 
 CODECS = {".mp4": [*BT709, "-c:v", "libx264", "-preset", "slow", "-crf", "18", "-movflags", "+faststart", *SAME],
           ".webm": [*BT709, "-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-row-mt", "1", *SAME]}
 # the colours of all pictures first, then each pixel; only what has changed is written
-GIF = ("split[a][b];[a]palettegen=max_colors=192:stats_mode=diff[p];"
+GIF = ("split[a][b];[a]palettegen=max_colors=256:stats_mode=diff[p];"
        "[b][p]paletteuse=dither=bayer:bayer_scale=5:diff_mode=rectangle")
 
 

@@ -27,7 +27,7 @@ import { points_on, thinned } from "./voxels";
 import { ways_of_handle } from "./ways";
 
 const TABLE_POINTS = 0.2; // m between them
-const MOST_STEP_S = 1; // a longer one, or one back, is to another place of a recording: trails begin anew
+const MOST_STEP_S = 1; // a longer one, or one back, is to another place of a recording: trails begin there
 
 interface Gauge {
   view: JointGauge;

@@ -1,6 +1,6 @@
 // Headsets by WebXR: room and twin at true scale, a controller or a hand is the hand target. Trigger or
 // pinch takes hold of the handle from wherever the controller is and moves it alike. Nothing moves the
-// wearer but a squeeze, which places device and wearer anew.
+// wearer but a squeeze, which places device and wearer again.
 
 import { type PerspectiveCamera, Quaternion, Vector3 } from "three";
 
@@ -172,7 +172,7 @@ export class Headset {
     const { ray } = pointer;
     ray.addEventListener("connected", () => void this.begin_placing());
     ray.addEventListener("selectstart", () => this.select(pointer));
-    ray.addEventListener("squeezestart", () => this.place_anew());
+    ray.addEventListener("squeezestart", () => this.place_again());
     for (const end of ["selectend", "disconnected"] as const) {
       ray.addEventListener(end, () => this.grip?.pointer === pointer && this.release());
     }
@@ -183,7 +183,7 @@ export class Headset {
     if (this.is_placing && session) await this.placement.begin(session);
   }
 
-  private place_anew(): void {
+  private place_again(): void {
     if (this.grip) return;
     this.is_placing = this.stage.is_see_through;
     if (this.is_placing) void this.begin_placing();
