@@ -102,7 +102,6 @@ RemoteTarget TargetLimiter::step(const RemoteTarget& wanted, const PortVector& x
     const double goal = std::clamp(wanted.x[i], axis.range.lb, axis.range.ub);
     if (goal != wanted.x[i]) cause = RemoteCause::kRange;
     double speed = (goal - x[i]) / dt_;
-    const double needed = speed;
     // slow enough to stop at the goal, relative to the goal; ends of the range do not move
     const double moving = goal == wanted.x[i] ? std::abs(wanted.v[i]) : 0.0;
     const double to_end = speed > 0.0 ? axis.range.ub - x[i] : x[i] - axis.range.lb;
@@ -113,10 +112,12 @@ RemoteTarget TargetLimiter::step(const RemoteTarget& wanted, const PortVector& x
     if (is_fast) speed = std::clamp(speed, -axis.v_max, axis.v_max);
     speed = std::clamp(speed, v[i] - axis.a_max * dt_, v[i] + axis.a_max * dt_);
     target.x[i] = x[i] + speed * dt_;
-    if (std::abs(goal - target.x[i]) > kBehind && cause == RemoteCause::kNone) {
+    // near the goal the machine's damper works against what is wanted, else against the way there
+    const bool is_behind = std::abs(goal - target.x[i]) > kBehind;
+    target.v[i] = is_behind ? speed : std::clamp(wanted.v[i], -axis.v_max, axis.v_max);
+    if (is_behind && cause == RemoteCause::kNone) {
       cause = is_fast ? RemoteCause::kSpeed : RemoteCause::kAcceleration;
     }
-    target.v[i] = speed == needed ? std::clamp(wanted.v[i], -axis.v_max, axis.v_max) : speed;
     if (std::abs(wanted.f[i]) > axis.f_max) {
       target.f[i] = std::clamp(wanted.f[i], -axis.f_max, axis.f_max);
       cause = RemoteCause::kForce;

@@ -90,8 +90,7 @@ struct RemotePort {
   const PortVector& v;
   const PortVector& f;         ///< Force of the surroundings on the machine
   const PortVector& x_target;  ///< Target in the last period, as the limiter let it through
-  const PortVector& v_target;
-  const PortEnergy& energy;  ///< Of target and coupling force, until now
+  const PortEnergy& energy;    ///< Of target and coupling force, until now
 };
 
 /// Target of the machine's controller for the coming period.

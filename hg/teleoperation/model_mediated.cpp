@@ -8,15 +8,16 @@
 namespace hg::teleoperation {
 namespace {
 
-constexpr int kInARow = 3;            // samples with a force that begin a contact, or end it
-constexpr double kForget = 0.1;       // s, memory of the estimate
-constexpr double kMoved = 5e-3;       // m or rad, a surface elsewhere is another one
-constexpr double kTurned = 0.95;      // cosine, a surface that is turned is another one
-constexpr double kStiffest = 5e4;     // N/m, as for virtual surfaces
-constexpr double kSoftest = 50.0;     // N/m
-constexpr double kChanged = 0.1;      // share of the stiffness that makes a new model
-constexpr double kDamping = 0.35;     // share of critical damping of the rendered surface
-constexpr double kRampForce = 2.0;    // N, damping grows with the spring's force up to here
+constexpr int kInARow = 3;          // samples with a force that begin a contact, or end it
+constexpr double kForget = 0.1;     // s, memory of the estimate
+constexpr double kMoved = 5e-3;     // m or rad, a surface elsewhere is another one
+constexpr double kGone = 0.05;      // s without a force behind it; a damped wall lags as it is left
+constexpr double kTurned = 0.95;    // cosine, a surface that is turned is another one
+constexpr double kStiffest = 5e4;   // N/m, as for virtual surfaces
+constexpr double kSoftest = 50.0;   // N/m
+constexpr double kChanged = 0.1;    // share of the stiffness that makes a new model
+constexpr double kDamping = 0.35;   // share of critical damping of the rendered surface
+constexpr double kRampForce = 2.0;  // N, damping grows with the spring's force up to here
 constexpr double kShiftShare = 0.1;   // of the leader's speed by which its frame shifts back
 constexpr double kClearance = 1e-3;   // m, kept to the surface meanwhile
 constexpr double kShiftSpeed = 0.02;  // m/s, the same under load
@@ -47,7 +48,7 @@ void ContactEstimator::step(const PortVector& x, const PortVector& v,
   const double depth = model_.offset - model_.normal.dot(x);
   if (model_.is_touching) {
     refine(depth, -model_.normal.dot(v), f.dot(model_.normal));
-  } else if (model_.stiffness > 0.0 && depth > kMoved && below_ >= kInARow) {
+  } else if (model_.stiffness > 0.0 && depth > kMoved && below_ * dt_ > kGone) {
     model_.stiffness = 0.0;  // the surface is gone
     ++model_.number;
   }

@@ -7,6 +7,7 @@ namespace hg::teleoperation {
 RemoteHalf::RemoteHalf(const MethodConfig& method, const MachineImpedance& machine,
                        const LimiterConfig& limiter, double dt)
     : impedance_(machine),
+      dt_(dt),
       gate_((check_limiter(limiter), limiter)),
       limiter_(limiter, dt),
       method_(make_remote_method(method, machine, dt)) {}
@@ -33,7 +34,7 @@ RemoteTarget RemoteHalf::step(double now_s, const MachineState& machine,
   const bool is_measured = first_not_finite(machine.x, machine.v, machine.f) < 0;
   if (x_target_.size() == 0) {
     x_target_ = machine.x;
-    v_target_ = PortVector::Zero(size);
+    v_target_ = speed_ = PortVector::Zero(size);
     energy_.start(size);
   }
   observe(machine);
@@ -62,17 +63,14 @@ RemoteTarget RemoteHalf::step(double now_s, const MachineState& machine,
             .energy = energy_.taken};
   RemoteTarget wanted = {x_target_, PortVector::Zero(size), PortVector::Zero(size)};
   if (follows) {
-    wanted = method_->step({.x = machine.x,
-                            .v = machine.v,
-                            .f = machine.f,
-                            .x_target = x_target_,
-                            .v_target = v_target_,
-                            .energy = energy_},
-                           arrived, is_new_, packet);
+    wanted = method_->step(
+        {.x = machine.x, .v = machine.v, .f = machine.f, .x_target = x_target_, .energy = energy_},
+        arrived, is_new_, packet);
     is_new_ = false;
   }
-  const RemoteTarget target = limiter_.step(wanted, x_target_, v_target_, packet.cause);
+  const RemoteTarget target = limiter_.step(wanted, x_target_, speed_, packet.cause);
   moved_ = target.x - x_target_;
+  speed_ = moved_ / dt_;
   v_target_ = target.v;
   coupling_ = coupling(machine, x_target_);
   x_target_ = target.x;

@@ -30,6 +30,7 @@ class RemoteHalf {
   void observe(const MachineState& machine) noexcept;
 
   MachineImpedance impedance_;
+  double dt_;
   PacketGate gate_;
   TargetLimiter limiter_;
   std::unique_ptr<RemoteMethod> method_;
@@ -37,6 +38,7 @@ class RemoteHalf {
   std::uint32_t engagement_ = 0;  ///< In which the machine follows; 0 = it holds
   std::uint64_t sequence_ = 0;
   PortVector x_target_, v_target_, moved_;  ///< Target, and its way in the last period
+  PortVector speed_;                        ///< That way over the period
   PortVector coupling_;                     ///< At the begin of the last period
   PortEnergy energy_;
 };
