@@ -10,7 +10,6 @@ namespace hg::identify {
 namespace {
 
 constexpr std::size_t kRemembered = 256;  // commands; more than the longest latency
-constexpr double kSettling_s = 0.3;       // after the drives came on: brakes open
 
 }  // namespace
 
@@ -59,6 +58,7 @@ void FrictionTraces::add(const Sample& sample) {
   const SensorFrame& sensors = sample.sensors;
   const auto n = static_cast<Eigen::Index>(joints_.size());
   const bool follows = samples_ > 0 && sensors.sequence == last_ + 1;
+  if (samples_ > 0 && !follows) ++gaps_;
   ++samples_;
   last_ = sensors.sequence;
   const Given* given = at_work(sensors);

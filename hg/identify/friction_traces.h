@@ -14,6 +14,9 @@ namespace hg::identify {
 
 class FrictionTraces {
  public:
+  /// Time after the drives came on, or after a gap, that is left out: brakes open, s.
+  static constexpr double kSettling_s = 0.3;
+
   /// `current_lag`: time constant of the current, s. Throws SetupError for a device whose drives
   /// follow positions.
   FrictionTraces(const DeviceModel& device, double current_lag);
@@ -26,6 +29,7 @@ class FrictionTraces {
   const std::vector<FrictionTrace>& joints() const { return joints_; }
   std::uint64_t samples() const { return samples_; }  ///< number of added samples
   std::uint64_t used() const { return used_; }        ///< number of used samples
+  std::uint64_t gaps() const { return gaps_; }        ///< places where samples are missing
 
  private:
   struct Given {
@@ -42,7 +46,7 @@ class FrictionTraces {
   std::vector<Given> given_;  // ring buffer of commands
   VectorM current_, theta_;   // motor torques, Nm; motor positions of the last sample, unwrapped
   VectorM working_;           // active command since the last sample
-  std::uint64_t last_ = 0, samples_ = 0, used_ = 0;
+  std::uint64_t last_ = 0, samples_ = 0, used_ = 0, gaps_ = 0;
   int on_ = 0;  // number of consecutive samples with drives on
   bool is_cut_ = true;
 };

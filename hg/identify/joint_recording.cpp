@@ -102,6 +102,7 @@ void JointRecording::add(const Sample& sample) {
                     sensors.q_m.size(), sensors.q_p.size(), n, n_p_));
   }
   const bool follows = samples_ > 0 && sensors.sequence == last_ + 1;
+  if (samples_ > 0 && !follows) ++gaps_;
   ++samples_;
   last_ = sensors.sequence;
   const bool is_finite = sensors.q_m.allFinite() && sensors.theta_m.allFinite() &&
@@ -150,6 +151,12 @@ RecordedJoints read_joints(const std::string& file,
   Reader reader(file, std::move(device));
   std::vector<recording::Loss> losses = recording::read_recording(file, reader).losses;
   const JointRecording& joints = reader.joints();
+  if (joints.used() == 0 && joints.gaps() > 0) {
+    throw SetupError(fmt::format(
+        "{}{}: samples are missing in {} places, after each of which {:g} s are left out, so that "
+        "none is of use: record a run without losses",
+        recording::to_text(losses), file, joints.gaps(), kSettling_s));
+  }
   if (joints.used() == 0) {
     throw SetupError(fmt::format(
         "{}{}: none of its {} samples has drives that have been on for {:g} s and finite values: "

@@ -41,6 +41,7 @@ class JointRecording {
   std::vector<JointMotion> parts() const;  ///< stretches without gaps
   std::uint64_t samples() const { return samples_; }
   std::uint64_t used() const { return used_; }
+  std::uint64_t gaps() const { return gaps_; }  ///< places where samples are missing
 
  private:
   struct Moment {
@@ -55,7 +56,7 @@ class JointRecording {
   int n_p_;
   double settling_;  // samples
   std::vector<std::vector<Moment>> parts_;
-  std::uint64_t samples_ = 0, used_ = 0, last_ = 0;
+  std::uint64_t samples_ = 0, used_ = 0, gaps_ = 0, last_ = 0;
   int on_ = 0;
   bool is_cut_ = true;
 };

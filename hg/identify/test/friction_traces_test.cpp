@@ -68,6 +68,7 @@ TEST(FrictionTraces, CutsWhereSamplesAreLostOrDrivesAreOff) {
     traces.add(s);
   }
   EXPECT_EQ(traces.joints()[0].cuts.size(), 3u);
+  EXPECT_EQ(traces.gaps(), 1u);
 }
 
 TEST(FrictionTraces, UnwrapsJointsWithoutLimits) {

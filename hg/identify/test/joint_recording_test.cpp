@@ -38,6 +38,7 @@ TEST(JointRecording, UnwrapsAnglesAndCutsAtGaps) {
   const std::vector<JointMotion> parts = joints.parts();
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(joints.samples(), 2999u);
+  EXPECT_EQ(joints.gaps(), 1u);
   EXPECT_LT(parts[1].samples(), 1000);
   const JointMotion& part = parts[0];
   const Eigen::Index last = part.samples() - 1;
