@@ -114,6 +114,10 @@ export async function headset_hand_pinches({ browser, program, expect }) {
 function know_floor() {
   window.xr_device.installSEM(
     class {
+      environmentCanvas = document.createElement("canvas");
+      trackedPlanes = new Set();
+      trackedMeshes = new Set();
+
       computeHitTestResults(ray) {
         const direction = [-ray[8], -ray[9], -ray[10]];
         if (direction[1] > -0.1) return [];
