@@ -177,7 +177,8 @@ class OwnLoop(unittest.TestCase):
         self.step()
         record = self.record
         frames = {"sensors": self.sensors, "operator_input": self.operator,
-                  "command": self.command, "truth": hg._core.Truth()}
+                  "command": self.command, "truth": hg._core.Truth(),
+                  "teleoperation": hg._core.TeleoperationReport()}
         seen = set()
         for column in hg.run("door", duration_s=0.01):
             if column == "cycle_time_us":  # of the sample, no attribute of a frame
