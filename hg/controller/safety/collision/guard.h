@@ -123,12 +123,12 @@ class Guard {
                        const Place& to) noexcept;
 
   struct Foreseen;  // nearest place of a pair on a braking path
+  struct Change;    // of the distance there
 
   void foresee(std::span<Foreseen> near, const BrakingPath& path,
                const CollisionState& state) noexcept;
   void refine(Foreseen& best, const BrakingPath& path, double allowed) noexcept;
-  void add_change(const Foreseen& nearest, const BrakingPath& path, const Braking& gentle,
-                  double share, CollisionTask& task) noexcept;
+  Change change_at(const Foreseen& nearest, const BrakingPath& path, double share) noexcept;
   /// Poses of the frames that the shapes of a pair are fixed to, in B.
   std::array<Pose, 2> poses(int pair, const model::ChainData& chain) const noexcept;
   double distance(int pair, const model::ChainData& chain) noexcept;

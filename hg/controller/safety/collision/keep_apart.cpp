@@ -21,6 +21,17 @@ constexpr double kStep = 1e-6;  // s, and rad/s or m/s, of differences
 
 }  // namespace
 
+// How a distance changes with where the joints are at a time of the path.
+struct Guard::Change {
+  double time = 0.0;
+  VectorPM there, per_position;
+
+  /// Change on another path, m.
+  double on(const BrakingPath& path) const noexcept {
+    return per_position.dot(path.positions(time) - there);
+  }
+};
+
 struct Guard::Foreseen {
   int pair = -1;
   double time = 0.0;
@@ -60,41 +71,31 @@ void Guard::refine(Foreseen& best, const BrakingPath& path, double allowed) noex
   }
 }
 
-// Adds `share` of the change of the distance at the nearest place: at an end of the path, or where
-// it is smallest along it, it does not change with the time of the place.
-void Guard::add_change(const Foreseen& nearest, const BrakingPath& path, const Braking& gentle,
-                       double share, CollisionTask& task) noexcept {
+// `share` of the change of the distance at the nearest place with each joint's position there: at
+// an end of the path, or where it is smallest along it, it does not change with the time.
+Guard::Change Guard::change_at(const Foreseen& nearest, const BrakingPath& path,
+                               double share) noexcept {
   const Pair& pair = config_.pairs.watched[nearest.pair];
   const std::array<int, 2> frames = {config_.shapes[pair.a].frame, config_.shapes[pair.b].frame};
-  later_->update_kinematics(path.positions(nearest.time), path.dq);
+  Change change = {.time = nearest.time,
+                   .there = path.positions(nearest.time),
+                   .per_position = VectorPM::Zero(path.q.size())};
+  later_->update_kinematics(change.there, path.dq);
   const std::array<Pose, 2> T_B = poses(nearest.pair, *later_);
   const Distance::Witnesses found = distances_[nearest.pair].witnesses(T_B[0], T_B[1]);
   Eigen::Vector3d normal = found.b - found.a;
-  if (!(normal.norm() > 0.0)) return;
+  if (!(normal.norm() > 0.0)) return change;
   normal *= (found.distance < 0.0 ? -share : share) / normal.norm();
-
-  VectorPM per_position = VectorPM::Zero(path.q.size());
   for (const int side : {0, 1}) {
     if (frames[side] < 0) continue;
     const model::Jacobian& J = later_->jacobian(frames[side]);
     const Eigen::Vector3d& point = side == 0 ? found.a : found.b;
     const Eigen::Vector3d turn = (point - T_B[side].p).cross(normal);
     const double sign = side == 0 ? -1.0 : 1.0;
-    per_position.noalias() += sign * J.topRows<3>().transpose() * normal;
-    per_position.noalias() += sign * J.bottomRows<3>().transpose() * turn;
+    change.per_position.noalias() += sign * J.topRows<3>().transpose() * normal;
+    change.per_position.noalias() += sign * J.bottomRows<3>().transpose() * turn;
   }
-  // the ends of joints bend the path, so that the way at that time changes with both
-  const VectorPM there = path.positions(nearest.time);
-  const VectorPM q = path.q + kStep * path.dq;
-  const BrakingPath later(gentle, q, path.dq);
-  task.rate += per_position.dot(later.positions(nearest.time) - there) / kStep;
-  VectorPM faster = path.dq;
-  for (Eigen::Index i = 0; i < path.q.size(); ++i) {
-    faster[i] += kStep;
-    const BrakingPath other(gentle, path.q, faster);
-    task.per_acceleration[i] += per_position.dot(other.positions(nearest.time) - there) / kStep;
-    faster[i] = path.dq[i];
-  }
+  return change;
 }
 
 CollisionTask Guard::keep_apart(const VectorPM& q, const VectorPM& dq,
@@ -122,10 +123,26 @@ CollisionTask Guard::keep_apart(const VectorPM& q, const VectorPM& dq,
   double sum = 0.0;
   for (const Foreseen& place : near) sum += std::exp((least - place.left) / kRound);
   task.distance = least - kRound * std::log(sum);
-  task.per_acceleration = VectorPM::Zero(q.size());
+  std::array<Change, kMaxPairs> changes;
+  int changing = 0;
   for (const Foreseen& place : near) {
     const double share = std::exp((least - place.left) / kRound) / sum;
-    if (share > kLeastShare) add_change(place, path, gentle, share, task);
+    if (share > kLeastShare) changes[changing++] = change_at(place, path, share);
+  }
+  const auto change_on = [&](const BrakingPath& other) {
+    double change = 0.0;
+    for (int i = 0; i < changing; ++i) change += changes[i].on(other);
+    return change / kStep;
+  };
+  // by differences: the ends of joints bend the path, so that it changes with positions, too
+  const VectorPM later = q + kStep * dq;
+  task.rate = change_on(BrakingPath(gentle, later, dq));
+  task.per_acceleration = VectorPM::Zero(q.size());
+  VectorPM faster = dq;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    faster[i] = dq[i] + kStep;
+    task.per_acceleration[i] = change_on(BrakingPath(gentle, q, faster));
+    faster[i] = dq[i];
   }
   return task;
 }
