@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "hg/core/error.h"
+#include "hg/identify/settling.h"
 
 namespace hg::identify {
 namespace {

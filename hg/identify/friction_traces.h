@@ -14,9 +14,6 @@ namespace hg::identify {
 
 class FrictionTraces {
  public:
-  /// Time after the drives came on, or after a gap, that is left out: brakes open, s.
-  static constexpr double kSettling_s = 0.3;
-
   /// `current_lag`: time constant of the current, s. Throws SetupError for a device whose drives
   /// follow positions.
   FrictionTraces(const DeviceModel& device, double current_lag);

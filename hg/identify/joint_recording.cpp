@@ -9,12 +9,11 @@
 
 #include "hg/core/error.h"
 #include "hg/identify/recorded_device.h"
+#include "hg/identify/settling.h"
 #include "hg/scenario/recorded/recorded_scenario.h"
 
 namespace hg::identify {
 namespace {
-
-constexpr double kSettling_s = 0.3;  // after the drives came on: brakes open
 
 std::vector<std::string> joint_names(const DeviceModel& device) {
   std::vector<std::string> names;
@@ -151,12 +150,7 @@ RecordedJoints read_joints(const std::string& file,
   Reader reader(file, std::move(device));
   std::vector<recording::Loss> losses = recording::read_recording(file, reader).losses;
   const JointRecording& joints = reader.joints();
-  if (joints.used() == 0 && joints.gaps() > 0) {
-    throw SetupError(fmt::format(
-        "{}{}: samples are missing in {} places, after each of which {:g} s are left out, so that "
-        "none is of use: record a run without losses",
-        recording::to_text(losses), file, joints.gaps(), kSettling_s));
-  }
+  refuse_if_cut_up(file, losses, joints.used(), joints.gaps());
   if (joints.used() == 0) {
     throw SetupError(fmt::format(
         "{}{}: none of its {} samples has drives that have been on for {:g} s and finite values: "

@@ -7,6 +7,7 @@
 #include "hg/core/error.h"
 #include "hg/identify/friction_traces.h"
 #include "hg/identify/recorded_device.h"
+#include "hg/identify/settling.h"
 
 namespace hg::identify {
 namespace {
@@ -50,12 +51,7 @@ RecordedFriction identify_recorded_friction(const std::string& file,
   result.losses = recording::read_recording(file, reader).losses;
   const FrictionTraces& traces = reader.traces();
   const DeviceModel& model = reader.device().model;
-  if (traces.used() == 0 && traces.gaps() > 0) {
-    throw SetupError(fmt::format(
-        "{}{}: samples are missing in {} places, after each of which {:g} s are left out, so that "
-        "none is of use: record a run without losses",
-        recording::to_text(result.losses), file, traces.gaps(), FrictionTraces::kSettling_s));
-  }
+  refuse_if_cut_up(file, result.losses, traces.used(), traces.gaps());
   if (traces.used() == 0) {
     throw SetupError(fmt::format(
         "{}{}: none of its {} samples has drives that are on, motor encoders, joint torques and "
