@@ -5,12 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <initializer_list>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hg/core/error.h"
@@ -110,7 +112,8 @@ std::vector<fs::path> yaml_files_in(const fs::path& folder) {
   return files;
 }
 
-std::vector<ShippedFile> local_files(Keys keys) {
+// The working directory and its folders.
+std::vector<fs::path> local_folders() {
   std::vector<fs::path> folders = {"."};
   std::error_code error;
   for (fs::directory_iterator entry(".", error), end; !error && entry != end;
@@ -119,16 +122,7 @@ std::vector<ShippedFile> local_files(Keys keys) {
     if (folders.size() > kMostLookedAt) break;
     if (entry->is_directory(ignored)) folders.push_back(entry->path());
   }
-  std::vector<ShippedFile> found;
-  for (const fs::path& folder : folders) {
-    for (const fs::path& file : yaml_files_in(folder)) {
-      if (!value_in(file, keys)) continue;
-      const std::string title = title_of(file);
-      found.push_back({file.generic_string(), title.empty() ? file.generic_string() : title});
-    }
-  }
-  std::ranges::sort(found, {}, &ShippedFile::name);
-  return found;
+  return folders;
 }
 
 // Those of all arms, as "ARM/NAME".
@@ -252,9 +246,23 @@ std::vector<ShippedFile> shipped_twins() {
   return found;
 }
 
-std::vector<ShippedFile> local_scenarios() { return local_files(kOfOwnScenarios); }
-std::vector<ShippedFile> local_devices() { return local_files(kOfDevices); }
-std::vector<ShippedFile> local_twins() { return local_files(kOfTwins); }
+LocalFiles local_files() {
+  LocalFiles found;
+  const std::array kinds = {std::pair(kOfOwnScenarios, &found.scenarios),
+                            std::pair(kOfDevices, &found.devices),
+                            std::pair(kOfTwins, &found.twins)};
+  for (const fs::path& folder : local_folders()) {
+    for (const fs::path& file : yaml_files_in(folder)) {
+      for (const auto& [keys, files] : kinds) {
+        if (!value_in(file, keys)) continue;
+        const std::string title = title_of(file);
+        files->push_back({file.generic_string(), title.empty() ? file.generic_string() : title});
+      }
+    }
+  }
+  for (const auto& [keys, files] : kinds) std::ranges::sort(*files, {}, &ShippedFile::name);
+  return found;
+}
 
 bool has_surfaces(const fs::path& scenario) { return value_in(scenario, {"surfaces"}).has_value(); }
 

@@ -33,11 +33,12 @@ std::vector<ShippedFile> shipped_scenarios();
 std::vector<ShippedFile> shipped_devices();
 std::vector<ShippedFile> shipped_twins();
 
-/// Scenarios, devices and twins of users: those in the working directory and in its folders, by
-/// their paths. Of a folder with very many files, not all are looked at.
-std::vector<ShippedFile> local_scenarios();
-std::vector<ShippedFile> local_devices();
-std::vector<ShippedFile> local_twins();
+/// Files of users: those in the working directory and in its folders, by their paths. Of a folder
+/// with very many files, not all are looked at.
+struct LocalFiles {
+  std::vector<ShippedFile> scenarios, devices, twins;
+};
+LocalFiles local_files();
 
 /// Whether a scenario has surfaces of its own.
 bool has_surfaces(const std::filesystem::path& scenario);

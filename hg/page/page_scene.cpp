@@ -12,6 +12,7 @@
 #include "hg/config/shipped_files.h"
 #include "hg/controller/safety/rules.h"
 #include "hg/model/urdf_parts.h"
+#include "hg/scenario/names.h"
 #include "hg/scenario/recorded/robot_models.h"
 #include "hg/scenario/start_posture.h"
 #include "hg/workspace/workspace.h"
@@ -197,9 +198,7 @@ std::vector<Choice> choices_of(const std::vector<config::ShippedFile>& shipped,
   std::vector<Choice> choices;
   for (const config::ShippedFile& file : shipped) {
     const std::string device = devices.empty() ? "" : device_of(file.name, devices);
-    std::string title = title_of(file.title);
-    if (title.ends_with(", " + device)) title.erase(title.size() - device.size() - 2);
-    choices.push_back({file.name, title, device});
+    choices.push_back({file.name, scenario::without_device(title_of(file.title), device), device});
   }
   for (const config::ShippedFile& file : own) {
     choices.push_back({file.name, fmt::format("{} ({})", title_of(file.title), file.name),
@@ -292,9 +291,10 @@ viewer_server::Choices page_choices(const scenario::ScenarioOptions& options,
   const std::vector<config::ShippedFile> devices = config::shipped_devices();
   const Choice as_in_scenario = {"", "as in the scenario", ""};
   viewer_server::Choices choices;
-  choices.scenarios = choices_of(config::shipped_scenarios(), config::local_scenarios(), devices);
-  choices.twins = choices_of(config::shipped_twins(), config::local_twins(), devices);
-  choices.devices = choices_of(devices, config::local_devices(), {});
+  const config::LocalFiles own_files = config::local_files();
+  choices.scenarios = choices_of(config::shipped_scenarios(), own_files.scenarios, devices);
+  choices.twins = choices_of(config::shipped_twins(), own_files.twins, devices);
+  choices.devices = choices_of(devices, own_files.devices, {});
   choices.people = choices_of_people();
   for (const auto& law : config::kLawPresets) {
     choices.laws.push_back({std::string(law.name), title_of(std::string(law.name)), ""});

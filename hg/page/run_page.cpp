@@ -151,11 +151,12 @@ RunPage::RunPage(const viewer_server::ServerOptions& options, const ShownRun& fi
       server_(with(desk_.get(), options), scene_of(first)),
       newest_(std::make_unique<Sample>()) {}
 
-viewer_server::Scene RunPage::scene_of(const ShownRun& run) const {
+viewer_server::Scene RunPage::scene_of(const ShownRun& run) {
   viewer_server::Scene scene = page_scene(*run.scenario);
   scene.run = number_;
   scene.duration_s = scenario::planned_duration_s(*run.scenario);
-  scene.choices = page_choices(*run.options, given_);
+  choices_ = page_choices(*run.options, given_);
+  scene.choices = choices_;
   scene.choices.law = config::preset_name(run.scenario->device.rendering);
   scene.settings = page_settings(form_);
   scene.refusal = run.fixed_by.empty() ? run.refusal : run.fixed_by;
@@ -483,7 +484,7 @@ std::string RunPage::choose(const Command& command, runtime::Runtime*, const Not
   ScenarioOptions options = *run_.options;
   const auto* chooser = std::ranges::find(kChoosers, command.name, &Chooser::command);
   if (chooser != std::end(kChoosers)) {
-    if (!is_choice(page_choices(options, given_).*chooser->list, command.argument)) {
+    if (!is_choice(choices_.*chooser->list, command.argument)) {
       return "there is no such choice: " + command.argument;
     }
     options.*chooser->option = command.argument;

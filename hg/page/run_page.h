@@ -31,8 +31,7 @@ namespace hg::page {
 /// A run as its page sees it. What is pointed at outlives the begin of the next run.
 struct ShownRun {
   const config::Scenario* scenario = nullptr;
-  /// Options that the scenario was loaded with
-  const scenario::ScenarioOptions* options = nullptr;
+  const scenario::ScenarioOptions* options = nullptr;  ///< with which the scenario was loaded
   /// Why the device neither waits nor starts again; empty = it does, being simulated here
   std::string refusal;
   /// Why pages start no other run and change neither its pace nor its twin; empty = they may
@@ -127,11 +126,12 @@ class RunPage {
   std::string choose(const viewer_server::Command& command, runtime::Runtime* runtime,
                      const Note& note);
 
-  viewer_server::Scene scene_of(const ShownRun& run) const;
+  viewer_server::Scene scene_of(const ShownRun& run);
   void publish();
 
   ShownRun run_;
   scenario::ScenarioOptions given_;  ///< with which the program was started
+  viewer_server::Choices choices_;   ///< of the scene that is shown
   Prepare prepare_;
   std::uint64_t number_ = 1;
   std::vector<config::FormField> form_;

@@ -73,6 +73,12 @@ std::vector<std::string> manipulator_units(const config::DeviceConfig& device) {
   return joint_units(device.model, device.model.n_p, device.model.n_m);
 }
 
+std::string without_device(std::string title, const std::string& device) {
+  const std::string end = ", " + device;
+  if (title.ends_with(end)) title.erase(title.size() - end.size());
+  return title;
+}
+
 analysis::Names part_names(const config::Scenario& scenario) {
   return {.joints = manipulator_joints(scenario.device),
           .gantry = gantry_joints(scenario.device),

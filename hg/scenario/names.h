@@ -23,6 +23,9 @@ std::vector<std::string> manipulator_units(const config::DeviceConfig& device);
 /// Names of the parts of the device for messages.
 analysis::Names part_names(const config::Scenario& scenario);
 
+/// A title without the name of its device at the end: "Drawer" of "Drawer, Franka FR3".
+std::string without_device(std::string title, const std::string& device);
+
 /// What a simulation leaves out, "ideal drives, ideal encoders, ideal force/torque sensor"; empty
 /// where all of them are as real ones.
 std::string idealisation(const config::SimulatedDeviceConfig& device);

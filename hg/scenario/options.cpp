@@ -18,17 +18,12 @@
 #include "hg/controller/rendering/catalogue.h"
 #include "hg/core/input_fault.h"
 #include "hg/core/nearest_name.h"
+#include "hg/scenario/names.h"
 
 namespace hg::scenario {
 namespace {
 
 constexpr char kNoSurfaces[] = "none";
-
-// The title without the name of a device that is not played any more: "Drawer, Franka FR3".
-void forget_device(std::string& title, const std::string& device) {
-  const std::string end = ", " + device;
-  if (title.ends_with(end)) title.erase(title.size() - end.size());
-}
 
 // applies --surfaces; returns the files that were read
 std::vector<config::SourceText> apply_surfaces(const std::string& name,
@@ -80,7 +75,7 @@ void apply(const ScenarioOptions& options, config::SourceReader& reader,
       throw SetupError(
           "--device: the scenario's faults and bystander are of its own device; leave them out");
     }
-    forget_device(scenario.title, scenario.device.name);
+    scenario.title = without_device(std::move(scenario.title), scenario.device.name);
     scenario.device =
         config::load_simulated_device(config::find_device(options.device, reader), reader);
     add_sources(scenario.device.sources);
