@@ -13,6 +13,9 @@
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
+#include "apps/hapticgiant/scenario_options.h"
+#include "hg/config/simulation/hand_schema.h"
+#include "hg/config/simulation/teleoperation_schema.h"
 #include "hg/core/enumerators.h"
 #include "hg/teleoperation/grid.h"
 
@@ -73,17 +76,6 @@ struct Worst {
   }
 };
 
-template <typename E>
-std::vector<std::string> names_of() {
-  std::vector<std::string> names;
-  for (const Enumerator<E>& one : enumerators<E>()) {
-    std::string name = words_of(one.name);
-    std::ranges::replace(name, ' ', '_');
-    names.push_back(name);
-  }
-  return names;
-}
-
 // Replaces values of the grid by those that are given; `scale` is the unit of the option.
 void choose(const std::vector<double>& given, double scale, std::vector<double>& values) {
   if (given.empty()) return;
@@ -91,12 +83,12 @@ void choose(const std::vector<double>& given, double scale, std::vector<double>&
   for (const double value : given) values.push_back(scale * value);
 }
 template <typename E>
-void choose(const std::vector<std::string>& given, std::vector<E>& values) {
+void choose(const std::vector<std::string>& given, config::Choices<E> choices,
+            std::vector<E>& values) {
   if (given.empty()) return;
   values.clear();
-  const std::vector<std::string> names = names_of<E>();
   for (const std::string& name : given) {
-    values.push_back(enumerators<E>()[std::ranges::find(names, name) - names.begin()].value);
+    values.push_back(std::ranges::find(choices, name, &config::Choice<E>::name)->value);
   }
 }
 
@@ -105,8 +97,8 @@ teleoperation::Grid grid_of(const TeleoperationArguments& arguments) {
   grid.seed = arguments.seed;
   grid.press = arguments.press;
   grid.hold = arguments.hold;
-  choose(arguments.methods, grid.methods);
-  choose(arguments.hands, grid.hands);
+  choose<MethodKind>(arguments.methods, config::kTeleoperationMethods, grid.methods);
+  choose<person::HandPreset>(arguments.hands, config::kHandPresets, grid.hands);
   choose(arguments.delays_ms, 1e-3, grid.delays);
   choose(arguments.jitters_ms, 1e-3, grid.jitters);
   choose(arguments.losses_percent, 1e-2, grid.losses);
@@ -158,9 +150,9 @@ void add_teleoperation(Command experiment, int& exit_code) {
     return command.add_option(name, values, help).delimiter(',').allow_extra_args(false);
   };
   list("--methods", arguments->methods, "only these, separated by commas")
-      .one_of(names_of<MethodKind>());
+      .one_of(names_of(config::kTeleoperationMethods));
   list("--hands", arguments->hands, "only these, separated by commas")
-      .one_of(names_of<person::HandPreset>());
+      .one_of(names_of(config::kHandPresets));
   const OptionCheck time = number_within(0.0, 1e4);
   list("--delays", arguments->delays_ms, "each way, ms").check(time);
   list("--jitters", arguments->jitters_ms, "largest further delay, ms").check(time);

@@ -121,10 +121,7 @@ PortVector LeaderHalf::step(double now_s, const LeaderInput& input, LeaderPacket
             .f = PortVector::Zero(size),
             .wave = PortVector::Zero(size),
             .energy = PortVector::Zero(size)};
-  const bool is_coupled = is_engaged && is_confirmed() && arrived_.x.size() == size;
-  if (is_coupled) {
-    is_started_ = true;
-  }
+  if (is_engaged && is_confirmed() && arrived_.x.size() == size) is_started_ = true;
   if (is_engaged && (is_started_ || arrived_.x.size() == size)) {
     RemotePacket quiet = arrived_;
     if (!is_started_) {  // what arrives is of an earlier engagement
