@@ -108,7 +108,6 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
   const int index = fault.index;
   if (index < 0) return {};
   const auto n_m = static_cast<int>(sensors.q_m.size());
-  const auto n_p = static_cast<int>(sensors.q_p.size());
   switch (fault.code) {
     case FaultCode::kSensorNotFinite:
       return value_in(sensors, index, names);
