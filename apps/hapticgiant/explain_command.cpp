@@ -104,10 +104,8 @@ int explain_recording(const std::string& file) {
   Reader reader;
   const recording::ReadResult read = recording::read_recording(file, reader);
   const char* cut_off =
-      read.losses.empty()
-          ? "; CUT OFF: the program ended before it could complete the file, at most its last "
-            "second is missing"
-          : "; CUT OFF: the program ended before it could complete the file";
+      "; CUT OFF: its end is missing. A program that ended early loses at most a second, an "
+      "incomplete copy any part";
   print_out(fmt::format("{}\n{:.3f} .. {:.3f} s of the run, {} samples{}\n{}\n", reader.title(),
                         reader.first_s(), reader.last_s(), reader.samples(),
                         read.is_complete ? "" : cut_off, recording::to_text(read.losses)));

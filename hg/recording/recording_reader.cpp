@@ -23,6 +23,7 @@ namespace {
 constexpr std::string_view kSamples = "/hapticgiant/sample";
 constexpr std::string_view kEvents = "/hapticgiant/events";
 constexpr char kOtherVersion[] = "its samples are of another version";
+constexpr char kTwoRuns[] = "it has more than one run";
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view what) {
   throw SetupError(file.string() + ": must be a recording of this program: " + std::string(what));
@@ -90,6 +91,41 @@ void hand_out(const std::filesystem::path& file, Receiver& receiver) {
   const bool is_read = mcap_sink_read(file.c_str(), &call, take, error.data(), error.size());
   if (call.thrown) std::rethrow_exception(call.thrown);
   if (!is_read) refuse(file, error.data());
+}
+
+std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
+  return time_ns - static_cast<std::uint64_t>(std::llround(1e9 * time_s));
+}
+
+// Other tools merge, reorder and concatenate files: refuses what is not one run in its order.
+class OneRun {
+ public:
+  explicit OneRun(const std::filesystem::path& file) : file_(file) {}
+
+  void take(int kind, std::string_view name, std::uint64_t time_ns) {
+    if (kind == mcap_metadata && name == "run" && std::exchange(has_run_, true)) {
+      refuse(file_, kTwoRuns);
+    }
+    if (kind != mcap_message || name != kSamples) return;
+    if (samples_ > 0 && time_ns <= last_ns_) {
+      refuse(file_, "sample " + std::to_string(samples_) + " is not later than the one before");
+    }
+    last_ns_ = time_ns;
+    ++samples_;
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  bool has_run_ = false;
+  std::uint64_t samples_ = 0, last_ns_ = 0;
+};
+
+// All samples of a run have the same time zero.
+void check_start(const std::filesystem::path& file, std::uint64_t known_ns, std::uint64_t time_ns,
+                 double time_s) {
+  const std::uint64_t its_ns = start_ns(time_ns, time_s);
+  const std::uint64_t apart = std::max(its_ns, known_ns) - std::min(its_ns, known_ns);
+  if (apart > 1'000'000) refuse(file, kTwoRuns);
 }
 
 // Unreadable parts, and the messages lost with them.
@@ -171,11 +207,11 @@ class Losses {
   bool has_own_ = false, has_others_ = false;  // topics that the file describes
 };
 
-std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
-  return time_ns - static_cast<std::uint64_t>(std::llround(1e9 * time_s));
-}
-
-[[noreturn]] void refuse_without_topic(const std::filesystem::path& file, const Losses& losses) {
+[[noreturn]] void refuse_without_topic(const std::filesystem::path& file, const Losses& losses,
+                                       bool is_complete) {
+  if (losses.empty() && !is_complete && !losses.is_of_another_tool()) {
+    refuse(file, "it is cut off before its first sample");
+  }
   const bool is_sound = losses.empty() || losses.is_of_another_tool();
   refuse(file, is_sound ? "it has no topic /hapticgiant/sample"
                         : "what describes its samples is damaged");
@@ -183,7 +219,9 @@ std::uint64_t start_ns(std::uint64_t time_ns, double time_s) {
 
 // Notifies a listener.
 struct Teller {
+  const std::filesystem::path& file;
   RecordingListener& listener;
+  OneRun one_run{file};
   Losses losses = {};
   std::uint64_t start = 0;  ///< log time at run time 0, ns
   bool has_samples = false, is_complete = false;
@@ -192,6 +230,7 @@ struct Teller {
   Sample sample = {};
 
   void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
+    one_run.take(kind, name, time_ns);
     losses.take(kind, name, time_ns);
     if (kind == mcap_end) is_complete = true;
     if (kind == mcap_attachment) {
@@ -209,7 +248,8 @@ struct Teller {
     }
     if (name != kSamples) return;
     if (messages::CdrReader(bytes).decode(sample)) {
-      start = start_ns(time_ns, sample.record.time_s);
+      if (samples == 0) start = start_ns(time_ns, sample.record.time_s);
+      check_start(file, start, time_ns, sample.record.time_s);
       listener.sample(sample);
     } else {
       error = "sample " + std::to_string(samples) + " is damaged";
@@ -237,13 +277,13 @@ std::string to_text(const std::vector<Loss>& losses) {
 }
 
 ReadResult read_recording(const std::filesystem::path& file, RecordingListener& listener) {
-  const auto teller = std::make_unique<Teller>(Teller{.listener = listener});
+  const auto teller = std::make_unique<Teller>(Teller{.file = file, .listener = listener});
   try {
     hand_out(file, *teller);
   } catch (const SetupError& error) {
     throw SetupError(to_text(teller->losses.since(teller->start)) + error.what());
   }
-  if (!teller->has_samples) refuse_without_topic(file, teller->losses);
+  if (!teller->has_samples) refuse_without_topic(file, teller->losses, teller->is_complete);
   if (!teller->error.empty()) refuse(file, teller->error);
   if (teller->samples == 0) refuse(file, "it has no sample");
   return {teller->is_complete, teller->losses.since(teller->start)};
@@ -253,13 +293,16 @@ namespace {
 
 // Passes messages on as they are.
 struct Passer {
+  const std::filesystem::path& file;
   MessageListener& listener;
+  OneRun one_run{file};
   Losses losses = {};
   std::uint64_t start = 0;  ///< log time at run time 0, ns
   bool has_samples = false, is_complete = false;
   std::string type;
 
   void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
+    one_run.take(kind, name, time_ns);
     losses.take(kind, name, time_ns);
     switch (kind) {
       case mcap_end:
@@ -294,9 +337,9 @@ struct Passer {
 }  // namespace
 
 ReadResult read_messages(const std::filesystem::path& file, MessageListener& listener) {
-  Passer passer{.listener = listener};
+  Passer passer{.file = file, .listener = listener};
   hand_out(file, passer);
-  if (!passer.has_samples) refuse_without_topic(file, passer.losses);
+  if (!passer.has_samples) refuse_without_topic(file, passer.losses, passer.is_complete);
   return {passer.is_complete, passer.losses.since(passer.start)};
 }
 
@@ -306,8 +349,9 @@ struct RecordedRun::Taker {
   std::uint64_t period_ns;
   std::uint64_t due_ns = 0;
   Moment last = {};  ///< last sample that was not kept
+  OneRun one_run{run.file_};
   Losses losses = {};
-  bool has_samples = false;
+  bool has_samples = false, is_complete = false;
   const char* error = "";
 
   void channel(std::string_view topic, std::string_view schema) {
@@ -330,8 +374,12 @@ struct RecordedRun::Taker {
   }
 
   void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
+    one_run.take(kind, name, time_ns);
     losses.take(kind, name, time_ns);
     switch (kind) {
+      case mcap_end:
+        is_complete = true;
+        return;
       case mcap_channel:
         return channel(name, text_of(bytes));
       case mcap_message:
@@ -348,19 +396,20 @@ struct RecordedRun::Taker {
 RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : file_(file) {
   Taker taker{*this, static_cast<std::uint64_t>(std::llround(1e9 * period_s))};
   hand_out(file, taker);
-  if (!taker.has_samples) refuse_without_topic(file, taker.losses);
+  if (!taker.has_samples) refuse_without_topic(file, taker.losses, taker.is_complete);
   if (*taker.error != '\0') refuse(file, taker.error);
   if (!taker.last.bytes.empty()) moments_.push_back(std::move(taker.last));
   if (moments_.empty()) refuse(file, "it has no sample");
-  const auto first = std::make_unique<Sample>();
-  read(0, *first);
-  begin_s_ = first->record.time_s;
-  losses_ = taker.losses.since(start_ns(moments_.front().time_ns, begin_s_));
+  const auto sample = std::make_unique<Sample>();
+  decode(0, *sample);
+  begin_s_ = sample->record.time_s;
+  start_ns_ = start_ns(moments_.front().time_ns, begin_s_);
+  losses_ = taker.losses.since(start_ns_);
+  read(moments_.size() - 1, *sample);  // a second run is refused at once
 }
 
 std::chrono::system_clock::time_point RecordedRun::start() const {
-  return std::chrono::system_clock::time_point(
-      std::chrono::nanoseconds(start_ns(moments_.front().time_ns, begin_s_)));
+  return std::chrono::system_clock::time_point(std::chrono::nanoseconds(start_ns_));
 }
 
 double RecordedRun::time_s(std::size_t index) const {
@@ -377,10 +426,15 @@ std::size_t RecordedRun::at(double time_s) const {
   return later - moments_.begin() - 1;
 }
 
-void RecordedRun::read(std::size_t index, Sample& sample) const {
+void RecordedRun::decode(std::size_t index, Sample& sample) const {
   if (!messages::CdrReader(moments_[index].bytes).decode(sample)) {
     throw SetupError(file_.string() + ": sample " + std::to_string(index) + " is damaged");
   }
+}
+
+void RecordedRun::read(std::size_t index, Sample& sample) const {
+  decode(index, sample);
+  check_start(file_, start_ns_, moments_[index].time_ns, sample.record.time_s);
 }
 
 }  // namespace hg::recording

@@ -78,7 +78,8 @@ ReadResult read_messages(const std::filesystem::path& file, MessageListener& lis
 class RecordedRun {
  public:
   /// Keeps one sample per `period_s` and the last one. Throws SetupError: no Rust, the file cannot
-  /// be read, it is no recording, has no sample, or is of a version with other samples.
+  /// be read, it is no recording, has no sample or more than one run, is out of order, or is of a
+  /// version with other samples.
   RecordedRun(const std::filesystem::path& file, double period_s);
 
   const std::vector<NamedText>& configuration() const noexcept { return configuration_; }
@@ -96,7 +97,7 @@ class RecordedRun {
   std::chrono::system_clock::time_point start() const;
   /// Index of the last kept sample up to `time_s`; of the first one for earlier times.
   std::size_t at(double time_s) const;
-  /// Decodes a kept sample. Throws SetupError when its bytes are damaged.
+  /// Decodes a kept sample. Throws SetupError when its bytes are damaged or of another run.
   void read(std::size_t index, Sample& sample) const;
 
  private:
@@ -105,9 +106,11 @@ class RecordedRun {
     std::vector<std::byte> bytes;
   };
   struct Taker;
+  void decode(std::size_t index, Sample& sample) const;
 
   std::filesystem::path file_;
   double begin_s_ = 0.0;
+  std::uint64_t start_ns_ = 0;  ///< log time at run time 0
   std::vector<NamedText> configuration_;
   std::vector<Event> events_;
   std::vector<Loss> losses_;

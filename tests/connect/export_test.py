@@ -21,6 +21,8 @@ import unittest
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 sys.path[:0] = ["tests/command_line", "tests/packages"]
 import recorded  # noqa: E402
+from mcap.reader import make_reader  # noqa: E402
+from mcap.writer import CompressionType, Writer  # noqa: E402
 from environment import make_environment  # noqa: E402
 from program import PROGRAM, TemporaryFolder, run  # noqa: E402
 
@@ -256,6 +258,67 @@ class Damaged(Export):
         self.assertEqual([float(row["time_s"]) for row in rows],
                          [sample.record.time_s for sample in SAMPLES[:len(rows)]])
         self.assertFalse(json.loads((self.folder / "door.json").read_text())["is_complete"])
+
+
+class OfOtherTools(Export):
+    """What other tools have rewritten, merged or sorted: read as it is, or refused."""
+
+    def rewrite(self, change=lambda messages: messages, runs=1, **options):
+        file = self.folder / "rewritten.mcap"
+        with DOOR.open("rb") as stream, file.open("wb") as out:
+            reader = make_reader(stream)
+            messages = list(reader.iter_messages(log_time_order=False))
+            writer = Writer(out, **options)
+            writer.start()
+            for _ in range(runs):
+                for record in reader.iter_metadata():
+                    writer.add_metadata(record.name, record.metadata)
+            topics = {}
+            for schema, channel, _ in messages:
+                if channel.id not in topics:
+                    number = writer.register_schema(schema.name, schema.encoding, schema.data)
+                    topics[channel.id] = writer.register_channel(
+                        channel.topic, channel.message_encoding, number)
+            for _, channel, message in change(messages):
+                writer.add_message(topics[channel.id], message.log_time, message.data,
+                                   message.publish_time, message.sequence)
+            writer.finish()
+        return file
+
+    def test_other_chunks_and_none_change_no_number(self):
+        self.export(DOOR, "--columns", "robot.*")
+        expected = (self.folder / "door.csv").read_bytes()
+        for options in ({"use_chunking": False}, {"compression": CompressionType.NONE},
+                        {"chunk_size": 3000}):
+            with self.subTest(options):
+                for written in self.folder.iterdir():
+                    written.unlink()
+                out = self.export(self.rewrite(**options), "--columns", "robot.*")
+                self.assertNotIn("DAMAGED", out)
+                self.assertEqual((self.folder / "door.csv").read_bytes(), expected)
+
+    def refused(self, file, why):
+        for options in (("--columns", "mode"), ("--format", "rosbag2")):
+            self.assertIn(why, self.export(file, *options, code=2))
+        code, out, err = run("explain", file)
+        self.assertEqual(code, 2, out)
+        self.assertIn(why, err)
+
+    def test_samples_out_of_order_are_refused(self):
+        half = len(SAMPLES)
+        for change in (lambda m: m[::-1], lambda m: m[half:] + m[:half], lambda m: m + m):
+            self.refused(self.rewrite(change), "is not later than the one before")
+
+    def test_two_runs_are_refused(self):
+        self.refused(self.rewrite(runs=2), "more than one run")
+
+    def test_a_compression_that_is_not_read_is_named(self):
+        self.refused(self.rewrite(compression=CompressionType.LZ4), "zstd or none, got lz4")
+
+    def test_a_start_that_was_cut_off_is_no_recording(self):
+        file = self.folder / "begin.mcap"
+        file.write_bytes(DOOR.read_bytes()[:400])
+        self.refused(file, "cut off before its first sample")
 
 
 class Rosbag2(Export):

@@ -344,6 +344,24 @@ TEST_F(RecordedRunTest, RefusesOtherFilesAndNamesThem) {
   EXPECT_NE(refusal(record(0)).find("no sample"), std::string::npos);
 }
 
+TEST_F(RecordedRunTest, RefusesSamplesOfTwoRuns) {
+  const auto refusal_of = [this](std::uint64_t cycles, double later_s) {
+    Recorder recorder(example_info(temporary_.path()));
+    for (std::uint64_t cycle = 0; cycle < 100; ++cycle) {
+      recorder.push_waiting(example_sample(cycle, kRate_Hz));
+    }
+    for (std::uint64_t cycle = 0; cycle < cycles; ++cycle) {
+      Sample sample = example_sample(cycle, kRate_Hz);
+      sample.record.time_s += later_s;
+      recorder.push_waiting(sample);
+    }
+    return refusal(recorder.close().file);
+  };
+  EXPECT_NE(refusal_of(50, 0.0).find("sample 100 is not later than the one before"),
+            std::string::npos);
+  EXPECT_EQ(refusal_of(50, 0.1), "");
+}
+
 // its chunks cannot be read, as of one that is packed in another way; the index names its topics
 TEST_F(RecordedRunTest, OfAnotherToolIsNotCalledDamaged) {
   const std::filesystem::path path = temporary_.path() / "other.mcap";

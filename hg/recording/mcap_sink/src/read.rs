@@ -193,12 +193,12 @@ fn sound(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
         Record::Footer(_) => 20,
         Record::SummaryOffset(_) => 17,
         Record::DataEnd(_) => 4,
-        Record::Message { .. } => return None, // only in chunks
         Record::MessageIndex(index) => 6 + 16 * index.records.len(),
         Record::Schema { header, data } => {
             14 + header.name.len() + header.encoding.len() + data.len()
         }
         Record::Chunk { header, data } => 40 + header.compression.len() + data.len(),
+        // any bytes may be a message, without a CRC
         _ => body.len(),
     };
     (length == body.len()).then_some(record)
@@ -228,6 +228,9 @@ struct Reader<'a, Take: FnMut(Item)> {
     unindexed: BTreeMap<u16, usize>,
     /// Something was damaged since the last chunk: that may have been a chunk.
     may_lack_chunk: bool,
+    /// Messages are in chunks, as this program writes them. Other tools may write none: then what
+    /// looks like a message is one.
+    is_chunked: Option<bool>,
     has_ended: bool,
     has_read_index: bool,
 }
@@ -316,6 +319,7 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
         };
         (self.take)(Item::Damage { part: &part });
         self.may_lack_chunk = true;
+        self.is_chunked.get_or_insert(true);
         if opcode == op::CHUNK {
             self.unindexed.clear();
         }
@@ -356,7 +360,15 @@ impl<Take: FnMut(Item)> Reader<'_, Take> {
         // the others have no CRC: where no record follows, the length may be wrong
         let next = if has_next { Some(end) } else { records.find(at + 1)? };
         let is_whole = match parsed {
-            Some(Record::Chunk { .. }) => self.hand_out_chunk(&record),
+            Some(Record::Chunk { header, .. }) => {
+                if header.compression == "lz4" {
+                    return Err(io::Error::other("its compression must be zstd or none, got lz4"));
+                }
+                self.is_chunked = Some(true);
+                self.hand_out_chunk(&record)
+            }
+            // of a damaged chunk
+            Some(Record::Message { .. }) if *self.is_chunked.get_or_insert(false) => false,
             Some(record)
                 if matches!(record, Record::Attachment { .. }) || next.is_none() || has_next =>
             {
@@ -413,6 +425,7 @@ pub fn read(path: &Path, take: impl FnMut(Item)) -> Result<(), Failure> {
         topics: BTreeMap::new(),
         unindexed: BTreeMap::new(),
         may_lack_chunk: false,
+        is_chunked: None,
         has_ended: false,
         has_read_index: false,
     };
