@@ -17,6 +17,7 @@
 #include "hg/config/simulation/hand_schema.h"
 #include "hg/config/simulation/teleoperation_schema.h"
 #include "hg/core/enumerators.h"
+#include "hg/core/interval.h"
 #include "hg/teleoperation/grid.h"
 
 namespace hg::apps {
@@ -46,24 +47,25 @@ std::string row_of(const GridCase& one) {
   const teleoperation::TrialResult& result = one.result;
   return fmt::format(
       "{},{},{},{},{},{},{},{:.3f},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},{:.3f},{"
-      ":.4f}\n",
+      ":.4f},{:.4f},{:.4f}\n",
       name_of(one.method), name_of(one.hand), 1e3 * one.delay, 1e3 * one.jitter, 100.0 * one.loss,
       one.wall, result.is_stable ? 1 : 0, 1e3 * result.vibration,
       1e3 * result.created / result.duration_s, 1e3 * result.created_leader / result.duration_s,
       result.peak_hand, one.peak_ratio, result.peak_wall, 1e3 * result.first_offset,
       1e3 * result.rest_offset, result.rest_force_error, 1e3 * result.position_rms,
-      result.force_rms);
+      result.force_rms, result.regulation_rms, one.regulation_ratio);
 }
 
 constexpr const char* kHeader =
     "method,hand,delay_ms,jitter_ms,loss_percent,wall_N_per_m,is_calm,vibration_mm_per_s,"
     "created_mJ_per_s,created_leader_mJ_per_s,peak_hand_N,peak_ratio,peak_wall_N,first_offset_mm,"
-    "rest_offset_mm,rest_force_error_N,position_rms_mm,force_rms_N\n";
+    "rest_offset_mm,rest_force_error_N,position_rms_mm,force_rms_N,"
+    "regulation_rms_N,regulation_ratio\n";
 
 // The worst of the trials of a method with a delay.
 struct Worst {
   int trials = 0, calm = 0;
-  double created = 0.0, offset = 0.0, ratio = 0.0, force = 0.0;
+  double created = 0.0, offset = 0.0, ratio = 0.0, force = 0.0, regulation = 0.0;
 
   void add(const GridCase& one) {
     const teleoperation::TrialResult& result = one.result;
@@ -73,6 +75,7 @@ struct Worst {
     offset = std::max(offset, 1e3 * result.rest_offset);
     ratio = std::max(ratio, one.peak_ratio);
     force = std::max(force, result.rest_force_error);
+    regulation = std::max(regulation, result.regulation_rms);
   }
 };
 
@@ -117,25 +120,32 @@ int experiment_teleoperation(const TeleoperationArguments& arguments) {
   });
   std::map<std::pair<MethodKind, double>, Worst> worst;
   std::string csv = kHeader;
+  std::pair unfelt = {kInfinity, 0.0};
   for (const GridCase& one : cases) {
+    const double error = one.result.regulation_rms / one.regulation_ratio;
+    unfelt = {std::min(unfelt.first, error), std::max(unfelt.second, error)};
     worst[{one.method, one.delay}].add(one);
     csv += row_of(one);
   }
   if (!arguments.csv.empty()) write_output(arguments.csv, csv);
   print_out("{} trials; the worst of each method and delay, each way:\n\n", cases.size());
-  print_out("{:20} {:>6} {:>9} {:>12} {:>10} {:>10} {:>10}\n", "method", "delay", "calm", "gives",
-            "apart", "force off", "peak");
+  print_out("{:20} {:>6} {:>9} {:>12} {:>10} {:>10} {:>10} {:>10}\n", "method", "delay", "calm",
+            "gives", "apart", "force off", "peak", "holds");
   for (const auto& [key, value] : worst) {
-    print_out("{:20} {:3.0f} ms {:4} of {:3} {:7.2f} mJ/s {:7.1f} mm {:8.2f} N {:8.2f} x\n",
-              name_of(key.first), 1e3 * key.second, value.calm, value.trials, value.created,
-              value.offset, value.force, value.ratio);
+    print_out(
+        "{:20} {:3.0f} ms {:4} of {:3} {:7.2f} mJ/s {:7.1f} mm {:8.2f} N {:8.2f} x {:8.2f} N\n",
+        name_of(key.first), 1e3 * key.second, value.calm, value.trials, value.created, value.offset,
+        value.force, value.ratio, value.regulation);
   }
   print_out(
       "\ncalm: slower than 2 mm/s rms in the last second of both presses. gives: energy that the\n"
       "hand gets beyond what it gave. apart, force off: hand and remote machine, felt and "
       "measured\n"
       "force at rest. peak: largest force of the hand over that of position force without "
-      "delay.\n");
+      "delay.\n"
+      "holds: rms of the wall's force against the wanted one while the wall moves; of a hand that\n"
+      "feels nothing {:.1f} to {:.1f} N.\n",
+      unfelt.first, unfelt.second);
   return 0;
 }
 

@@ -31,11 +31,14 @@ Grid full_grid() {
 
 std::vector<GridCase> play_grid(const Grid& grid,
                                 const std::function<void(const GridCase&)>& played) {
-  std::map<std::pair<double, person::HandPreset>, double> undelayed;
+  std::map<std::pair<double, person::HandPreset>, double> undelayed, unfelt;
   for (const double wall : grid.walls) {
     for (const person::HandPreset hand : grid.hands) {
       GridCase reference = {.method = MethodKind::kPositionForce, .wall = wall, .hand = hand};
-      undelayed[{wall, hand}] = play_trial(trial_of(reference, grid)).peak_hand;
+      TrialConfig config = trial_of(reference, grid);
+      undelayed[{wall, hand}] = play_trial(config).peak_hand;
+      config.is_felt = false;
+      unfelt[{wall, hand}] = play_trial(config).regulation_rms;
     }
   }
   std::vector<GridCase> cases;
@@ -58,8 +61,12 @@ std::vector<GridCase> play_grid(const Grid& grid,
     }
   }
   for (GridCase& one : cases) {
-    one.result = play_trial(trial_of(one, grid));
+    TrialConfig config = trial_of(one, grid);
+    config.make_leader = grid.make_leader;
+    config.make_remote = grid.make_remote;
+    one.result = play_trial(config);
     one.peak_ratio = one.result.peak_hand / undelayed.at({one.wall, one.hand});
+    one.regulation_ratio = one.result.regulation_rms / unfelt.at({one.wall, one.hand});
     if (played) played(one);
   }
   return cases;

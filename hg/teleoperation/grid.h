@@ -23,6 +23,9 @@ struct Grid {
   double press = 10.0;  ///< N, as of TrialConfig
   double hold = 4.0;    ///< s
   std::uint64_t seed = 1;
+  /// Halves of a method of others, as of TrialConfig, in place of those of `methods`.
+  decltype(TrialConfig::make_leader) make_leader;
+  decltype(TrialConfig::make_remote) make_remote;
 };
 
 /// The grid of the benchmark: frozen, so that results can be compared.
@@ -34,9 +37,10 @@ struct GridCase {
   person::HandPreset hand = person::HandPreset::kNormal;
   TrialResult result;
   double peak_ratio = 0.0;  ///< Largest force of the hand over that of position-force without delay
+  double regulation_ratio = 0.0;  ///< Error of the wall's force over that of a hand without feeling
 };
 
-/// Plays all trials, in a fixed order. `played` gets each result.
+/// Plays all trials, in a fixed order. `played` gets each result and may throw.
 std::vector<GridCase> play_grid(const Grid& grid,
                                 const std::function<void(const GridCase&)>& played = {});
 

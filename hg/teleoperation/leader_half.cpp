@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "hg/core/error.h"
 #include "hg/core/first_not_finite.h"
@@ -19,8 +20,8 @@ void check_leader(const LeaderConfig& config) {
   require(config.snapshot > 0.0, "snapshot must be positive", config.snapshot);
 }
 
-LeaderHalf::LeaderHalf(const MethodConfig& method, const LeaderConfig& config, double dt)
-    : config_((check_leader(config), config)), dt_(dt), method_(make_leader_method(method, dt)) {}
+LeaderHalf::LeaderHalf(std::unique_ptr<LeaderMethod> method, const LeaderConfig& config, double dt)
+    : config_((check_leader(config), config)), dt_(dt), method_(std::move(method)) {}
 
 void LeaderHalf::receive(const RemotePacket& packet, double now_s) noexcept {
   if (packet.sequence <= arrived_.sequence) return;

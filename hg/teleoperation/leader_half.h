@@ -38,7 +38,9 @@ struct LeaderInput {
 class LeaderHalf {
  public:
   /// Throws SetupError.
-  LeaderHalf(const MethodConfig& method, const LeaderConfig& config, double dt);
+  LeaderHalf(const MethodConfig& method, const LeaderConfig& config, double dt)
+      : LeaderHalf(make_leader_method(method, dt), config, dt) {}
+  LeaderHalf(std::unique_ptr<LeaderMethod> method, const LeaderConfig& config, double dt);
 
   void receive(const RemotePacket& packet, double now_s) noexcept;
   /// Force on the leader in the coming period, and the packet to send.

@@ -45,6 +45,8 @@ class SimulatedMachine final : public RemoteMachine {
   SimulatedMachine(const SimulatedMachineConfig& config, double dt);
   void read(MachineState& state) noexcept override;
   void write(const RemoteTarget& target) noexcept override;
+  /// Moves the surface of a wall along its normal, m or rad, at rest in every period.
+  void move_wall(std::size_t wall, double offset) noexcept { config_.walls[wall].offset = offset; }
 
  private:
   PortVector wall_force() const noexcept;

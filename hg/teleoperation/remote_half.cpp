@@ -1,16 +1,18 @@
 #include "hg/teleoperation/remote_half.h"
 
+#include <utility>
+
 #include "hg/core/first_not_finite.h"
 
 namespace hg::teleoperation {
 
-RemoteHalf::RemoteHalf(const MethodConfig& method, const MachineImpedance& machine,
+RemoteHalf::RemoteHalf(std::unique_ptr<RemoteMethod> method, const MachineImpedance& machine,
                        const LimiterConfig& limiter, double dt)
     : impedance_(machine),
       dt_(dt),
       gate_((check_limiter(limiter), limiter)),
       limiter_(limiter, dt),
-      method_(make_remote_method(method, machine, dt)) {}
+      method_(std::move(method)) {}
 
 void RemoteHalf::receive(const LeaderPacket& packet, double now_s) noexcept {
   is_new_ = gate_.take(packet, now_s) || is_new_;

@@ -18,6 +18,9 @@ class RemoteHalf {
  public:
   /// Throws SetupError.
   RemoteHalf(const MethodConfig& method, const MachineImpedance& machine,
+             const LimiterConfig& limiter, double dt)
+      : RemoteHalf(make_remote_method(method, machine, dt), machine, limiter, dt) {}
+  RemoteHalf(std::unique_ptr<RemoteMethod> method, const MachineImpedance& machine,
              const LimiterConfig& limiter, double dt);
 
   void receive(const LeaderPacket& packet, double now_s) noexcept;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "hg/core/error.h"
@@ -12,37 +13,57 @@ namespace {
 
 constexpr double kCalm = 2e-3;  // m/s
 
-// Goal of the hand: to `far`, rest, back to 0, twice.
+// Goal of the hand: to `far`, rest, back to 0, three times.
 class Path {
  public:
   Path(const TrialConfig& config, double far)
-      : far_(far), speed_(config.approach_speed), way_s_(far / speed_), hold_s_(config.hold) {}
+      : config_(config), far_(far), way_s_(far / config.approach_speed) {}
 
-  double duration_s() const noexcept { return 2.0 * kWait + 4.0 * way_s_ + 2.0 * hold_s_; }
-  // Whether the last second of a press is under way: 1 or 2, else 0.
-  int rests(double t) const noexcept {
-    for (int press = 1; press <= 2; ++press) {
-      const double end = press * (kWait + way_s_ + hold_s_) + (press - 1) * way_s_;
-      if (t > end - 1.0 && t <= end) return press;
-    }
-    return 0;
+  double duration_s() const noexcept {
+    return 3.0 * (kWait + 2.0 * way_s_) + 2.0 * config_.hold + config_.regulation;
+  }
+  // Press of time t, from 0, and the time since the goal has come to rest there.
+  struct Press {
+    int number;
+    double since;
+  };
+  Press press(double t) const noexcept {
+    const double period = kWait + 2.0 * way_s_ + config_.hold;
+    const int number = std::clamp(static_cast<int>(t / period), 0, 2);
+    return {number, t - number * period - kWait - way_s_};
+  }
+  bool rests(double t) const noexcept {
+    const auto [number, since] = press(t);
+    return number < 2 && since > config_.hold - 1.0 && since <= config_.hold;
+  }
+  // The first second of the third press is left out.
+  bool regulates(double t) const noexcept {
+    const auto [number, since] = press(t);
+    return number == 2 && since > 1.0 && since <= config_.regulation;
   }
   double goal(double t) const noexcept {
-    const double period = kWait + 2.0 * way_s_ + hold_s_;
-    const double s = t >= period ? t - period : t;
-    if (s < kWait) return 0.0;
-    if (s < kWait + way_s_) return speed_ * (s - kWait);
-    if (s < kWait + way_s_ + hold_s_) return far_;
-    return std::max(0.0, far_ - speed_ * (s - kWait - way_s_ - hold_s_));
+    const auto [number, since] = press(t);
+    const double hold = number < 2 ? config_.hold : config_.regulation;
+    const double speed = config_.approach_speed;
+    if (since < 0.0) return std::max(0.0, far_ + speed * since);
+    return std::max(0.0, far_ - speed * std::max(0.0, since - hold));
   }
   double speed(double t) const noexcept {
     constexpr double kStep = 1e-4;
     return (goal(t + kStep) - goal(t)) / kStep;
   }
+  // Where the wall is.
+  double wall(double t) const noexcept {
+    const auto [number, since] = press(t);
+    const bool moves = number == 2 && since > 0.0 && since <= config_.regulation;
+    const double phase = 2.0 * std::numbers::pi * since / config_.wall_period;
+    return config_.distance - (moves ? config_.wall_motion * std::sin(phase) : 0.0);
+  }
 
  private:
   static constexpr double kWait = 1.0;  // s
-  double far_, speed_, way_s_, hold_s_;
+  TrialConfig config_;
+  double far_, way_s_;
 };
 
 // A body in a hand, along x.
@@ -88,9 +109,10 @@ class Leader {
 class Figures {
  public:
   explicit Figures(const TrialConfig& config)
-      : behind_(static_cast<std::size_t>(config.link.delay / config.dt + 1.5), 0.0) {}
+      : press_(config.press),
+        behind_(static_cast<std::size_t>(config.link.delay / config.dt + 1.5), 0.0) {}
 
-  void add(const TrialMoment& now, int rests) noexcept {
+  void add(const TrialMoment& now, const Path& path) noexcept {
     result_.peak_hand = std::max(result_.peak_hand, std::abs(now.f_hand));
     result_.peak_wall = std::max(result_.peak_wall, std::abs(now.f_wall));
     result_.created = std::max(result_.created, -(now.energy_leader + now.energy_remote));
@@ -100,12 +122,16 @@ class Figures {
     ++samples_;
     position_ += (then - now.x_remote) * (then - now.x_remote);
     force_ += (now.f_leader - now.f_wall) * (now.f_leader - now.f_wall);
-    if (rests == 0) return;
+    if (path.regulates(now.time_s)) {
+      ++regulating_;
+      regulation_ += (now.f_wall - press_) * (now.f_wall - press_);
+    }
+    if (!path.rests(now.time_s)) return;
     ++resting_;
     speed_ += now.v_leader * now.v_leader;
-    (rests == 1 ? result_.first_offset : result_.rest_offset) =
-        std::abs(now.x_leader - now.x_remote);
-    if (rests == 2) result_.rest_force_error = std::abs(now.f_leader - now.f_wall);
+    const bool is_first = path.press(now.time_s).number == 0;
+    (is_first ? result_.first_offset : result_.rest_offset) = std::abs(now.x_leader - now.x_remote);
+    if (!is_first) result_.rest_force_error = std::abs(now.f_leader - now.f_wall);
   }
   TrialResult result(double duration_s) const noexcept {
     TrialResult result = result_;
@@ -115,14 +141,17 @@ class Figures {
     result.is_stable = result.vibration < kCalm;
     result.position_rms = std::sqrt(position_ / n);
     result.force_rms = std::sqrt(force_ / n);
+    result.regulation_rms =
+        std::sqrt(regulation_ / std::max(1.0, static_cast<double>(regulating_)));
     return result;
   }
 
  private:
+  double press_;
   TrialResult result_;
   std::vector<double> behind_;
-  std::size_t samples_ = 0, resting_ = 0;
-  double position_ = 0.0, force_ = 0.0, speed_ = 0.0;
+  std::size_t samples_ = 0, resting_ = 0, regulating_ = 0;
+  double position_ = 0.0, force_ = 0.0, speed_ = 0.0, regulation_ = 0.0;
 };
 
 SimulatedMachineConfig machine_of(const TrialConfig& config) {
@@ -147,6 +176,8 @@ void check_trial(const TrialConfig& config) {
   positive("distance", config.distance);
   positive("press", config.press);
   positive("hold", config.hold);
+  positive("regulation", config.regulation);
+  positive("wall_period", config.wall_period);
 }
 
 }  // namespace
@@ -154,8 +185,13 @@ void check_trial(const TrialConfig& config) {
 TrialResult play_trial(const TrialConfig& config, const TrialObserver& observer) {
   check_trial(config);
   const LimiterConfig limits = {.axes = {{.range = {-1.0, 1.0}, .v_max = 2.0, .a_max = 200.0}}};
-  LeaderHalf leader_half(config.method, config.leader, config.dt);
-  RemoteHalf remote_half(config.method, config.machine, limits, config.dt);
+  LeaderHalf leader_half(config.make_leader ? config.make_leader(config)
+                                            : make_leader_method(config.method, config.dt),
+                         config.leader, config.dt);
+  RemoteHalf remote_half(config.make_remote
+                             ? config.make_remote(config)
+                             : make_remote_method(config.method, config.machine, config.dt),
+                         config.machine, limits, config.dt);
   SimulatedMachine machine(machine_of(config), config.dt);
   Channel<LeaderPacket> to_remote(config.link, 0, config.dt);
   Channel<RemotePacket> to_leader(config.link, 1, config.dt);
@@ -174,11 +210,13 @@ TrialResult play_trial(const TrialConfig& config, const TrialObserver& observer)
         t, {.x = leader.x(), .v = leader.v(), .f_hand = f_hand, .is_clutch_closed = true}, sent);
     to_remote.send(sent, t);
     while (to_remote.receive(t, at_remote)) remote_half.receive(at_remote, t);
+    machine.move_wall(0, -path.wall(t));
     machine.read(state);
     machine.write(remote_half.step(t, state, answered));
     to_leader.send(answered, t);
     const TrialMoment now = {.time_s = t,
                              .goal = path.goal(t),
+                             .wall = path.wall(t),
                              .x_leader = leader.x()[0],
                              .x_remote = state.x[0],
                              .x_target = answered.x_target[0],
@@ -188,9 +226,9 @@ TrialResult play_trial(const TrialConfig& config, const TrialObserver& observer)
                              .f_wall = -state.f[0],
                              .energy_leader = leader_half.energy().net(),
                              .energy_remote = answered.energy_net};
-    figures.add(now, path.rests(t));
+    figures.add(now, path);
     if (observer) observer(now);
-    leader.move(f_hand[0] + f[0]);
+    leader.move(f_hand[0] + (config.is_felt ? f[0] : 0.0));
   }
   return figures.result(path.duration_s());
 }

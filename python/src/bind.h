@@ -16,5 +16,6 @@ void bind_signals(nb::module_& module);
 void bind_cycle(nb::module_& module);
 void bind_person(nb::module_& module);
 void bind_run(nb::module_& module);
+void bind_teleoperation(nb::module_& module);
 
 }  // namespace hg::python

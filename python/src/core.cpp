@@ -28,6 +28,8 @@ NB_MODULE(_core, module) {
   nb::module_ model = module.def_submodule("model", "Kinematics and dynamics of serial chains.");
   nb::module_ haptic_giant =
       module.def_submodule("haptic_giant", "Kinematics of the HapticGiant in closed form.");
+  nb::module_ teleoperation = module.def_submodule(
+      "teleoperation", "Trials of methods of bilateral control, with delay, jitter and loss.");
   bind_signals(module);
   bind_limits(limits);
   bind_hqp(hqp);
@@ -36,4 +38,5 @@ NB_MODULE(_core, module) {
   bind_cycle(module);
   bind_person(module);
   bind_run(module);
+  bind_teleoperation(teleoperation);
 }

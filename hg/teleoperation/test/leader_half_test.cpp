@@ -153,7 +153,7 @@ TEST(LeaderHalf, TheForceIsCutAtItsLimit) {
 }
 
 TEST(LeaderHalf, EngagesOnlyWhereBothSidesAreTogetherIfAsked) {
-  LeaderHalf half({}, {.snapshot = 0.02}, kDt);
+  LeaderHalf half(MethodConfig{}, {.snapshot = 0.02}, kDt);
   Bench bench;
   bench.half = std::move(half);
   bench.x[0] = 0.05;
@@ -191,7 +191,7 @@ TEST(LeaderHalf, DoesNotAllocate) {
 }
 
 TEST(LeaderHalf, RefusesConfigurationsThatMakeNoSense) {
-  EXPECT_THROW(LeaderHalf({}, {.silence = 0.0}, kDt), SetupError);
+  EXPECT_THROW(LeaderHalf(MethodConfig{}, {.silence = 0.0}, kDt), SetupError);
   EXPECT_THROW(LeaderHalf({.impedance = -1.0}, {}, kDt), SetupError);
 }
 
