@@ -5,6 +5,7 @@ import type { Ray } from "../hand/drag_plane";
 import type { HandView, Pixel } from "../hand/hand_view";
 import type { Event, Frame, Scene, Vec3 } from "../messages";
 import { element, make } from "../page";
+import { reached_until } from "../scene/reached";
 import { on_theme_change } from "../theme";
 import { Bodies } from "./bodies";
 import { FlatView } from "./flat_view";
@@ -77,9 +78,7 @@ export class FlatPicture implements Picture, HandView {
     this.bodies.pose(frame);
     const bodies = this.bodies.list(frame.contact);
     if (!this.has_looked) this.look(frame);
-    const names = this.events.filter(({ run }) => run === scene.run).map(({ name }) => name);
-    const is_reached = scene.checkpoints.map(({ name }) => names.includes(name));
-    const reached = is_reached.lastIndexOf(true) + 1;
+    const reached = reached_until(scene, this.events, frame.time_s);
     for (const view of this.views) view.draw({ scene, frame, bodies, target, reached });
   }
 

@@ -9,6 +9,7 @@ import { asked_view } from "../scene/asked_view";
 import { Cameras } from "../scene/cameras";
 import { FirstView } from "../scene/first_view";
 import { Layers } from "../scene/layers";
+import { reached_until } from "../scene/reached";
 import { Stage } from "../scene/stage";
 import { World } from "../scene/world";
 import { current_theme, on_theme_change } from "../theme";
@@ -28,7 +29,7 @@ export class SpacePicture implements Picture {
   private readonly legend = new Legend(this.layers);
   private readonly tools = new CameraTools(this.cameras, this.layers, (text) => this.input.report("view", text));
   private readonly headset: Headset;
-  private readonly happened_before: Event[] = []; // also before their world was there
+  private readonly events: Event[] = []; // also before their world was there
   private world: World | null = null;
   private device = ""; // that has been seen last
   private has_looked = false; // the first view has been chosen
@@ -69,7 +70,6 @@ export class SpacePicture implements Picture {
     if (!world) return;
     this.world?.dispose();
     this.world = world;
-    for (const { run, name } of this.happened_before) if (run === scene.run) world.happened(name);
     world.paint(current_theme());
     this.stage.scene.add(world.root);
   }
@@ -79,19 +79,18 @@ export class SpacePicture implements Picture {
   }
 
   happened(event: Event): void {
-    this.happened_before.push(event);
-    if (event.run === this.world?.scene.run) this.world.happened(event.name);
+    this.events.push(event);
   }
 
   forget_events(): void {
-    this.happened_before.length = 0;
+    this.events.length = 0;
   }
 
   show(frame: Frame, target: Vec3 | null, axis: Vec3 | null): void {
     if (!this.world) return;
     if (!this.has_looked) this.look(this.world, frame);
     this.legend.show(frame.ghost !== null);
-    this.world.show(frame, target, axis);
+    this.world.show(frame, target, axis, reached_until(this.world.scene, this.events, frame.time_s));
     this.headset.update(this.world.scene, frame);
     const is_first_person = this.cameras.current === "first person" || this.is_worn;
     this.world.person.hide_body(is_first_person);

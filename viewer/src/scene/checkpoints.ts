@@ -24,8 +24,6 @@ const FAINT = 0.45;
 const TEXTURE = 128; // pixels
 
 interface Mark {
-  name: string;
-  group: Group;
   paints: MeshBasicMaterial[];
   label: MeshBasicMaterial;
 }
@@ -34,50 +32,47 @@ export class Checkpoints {
   readonly group = new Group();
   private readonly marks: Mark[] = [];
   private readonly pointer = new Group();
-  private reached = 0; // events happen in their order
+  private reached = 0; // in their order
 
   constructor(places: SceneCheckpoint[], floor_z_m: number) {
     this.group.position.z = floor_z_m + ABOVE;
     if (places.length === 0) return;
-    for (const [index, place] of places.entries()) this.add(place, String(index + 1));
+    for (const place of places) this.add(place);
     this.pointer.add(new Mesh(arrow_shape(0, ARROW), paint(FORCE_COLOR, 0.9)));
     this.pointer.position.z = ABOVE;
     this.group.add(this.pointer);
     this.color();
   }
 
-  reach(name: string): void {
-    const index = this.marks.findIndex((mark) => mark.name === name);
-    if (index < this.reached) return; // also one that is not there
-    this.reached = index + 1;
-    this.marks[index]!.label.map = text_texture("\u2713");
-    this.color();
-  }
-
-  show(p_B_H: Vector3, attitude: Quaternion): void {
+  show(p_B_H: Vector3, attitude: Quaternion, reached: number): void {
+    if (reached !== this.reached) {
+      this.reached = reached;
+      this.color();
+    }
     const axis = new Vector3(0, 0, 1).applyQuaternion(attitude);
     this.pointer.position.setX(p_B_H.x).setY(p_B_H.y);
     this.pointer.rotation.z = Math.atan2(axis.y, axis.x);
   }
 
-  private add({ name, x_m, y_m, azimuth_rad }: SceneCheckpoint, number: string): void {
+  private add({ x_m, y_m, azimuth_rad }: SceneCheckpoint): void {
     const group = new Group();
     const disc = paint(TARGET_COLOR, 1);
     const arrow = paint(TARGET_COLOR, 1);
-    const label = new MeshBasicMaterial({ map: text_texture(number), transparent: true });
-    label.depthWrite = false;
+    const label = new MeshBasicMaterial({ transparent: true, depthWrite: false });
     const pointer = new Mesh(arrow_shape(RADIUS, ARROW), arrow);
     pointer.rotation.z = azimuth_rad;
     const words = new Mesh(new CircleGeometry(0.8 * RADIUS, 32), label);
     words.position.z = ABOVE;
     group.add(new Mesh(new CircleGeometry(RADIUS, 48), disc), pointer, words);
     group.position.set(x_m, y_m, 0);
-    this.marks.push({ name, group, paints: [disc, arrow], label });
+    this.marks.push({ paints: [disc, arrow], label });
     this.group.add(group);
   }
 
   private color(): void {
     for (const [index, { paints, label }] of this.marks.entries()) {
+      label.map?.dispose();
+      label.map = text_texture(index < this.reached ? "\u2713" : String(index + 1));
       const is_next = index === this.reached;
       for (const each of [...paints, label]) each.opacity = is_next ? 1 : FAINT;
       for (const each of paints) each.color.set(index < this.reached ? GOOD_COLOR : TARGET_COLOR);

@@ -132,20 +132,16 @@ export class World {
     this.elbow_trail.add(frame.p_B_elbow_m);
   }
 
-  // Its checkpoint, if there is one of that name, has been reached.
-  happened(event: string): void {
-    this.checkpoints.reach(event);
-  }
-
-  // `target`: where the handle is dragged to, null = it is not; `axis`: along which only.
-  show(frame: Frame, target: Vec3 | null, axis: Vec3 | null): void {
+  // `target`: where the handle is dragged to, null = it is not; `axis`: along which only;
+  // `reached`: number of checkpoints.
+  show(frame: Frame, target: Vec3 | null, axis: Vec3 | null, reached: number): void {
     this.pose(frame);
     this.show_gauges(frame);
     this.handle.show_wrench(frame.p_B_H_m, frame.force_N, frame.torque_Nm);
     this.handle.show_target(frame.p_B_H_m, target, axis);
     this.ghost.show(frame.ghost);
     this.surfaces.show(frame.p_B_E_m, frame.contact);
-    this.checkpoints.show(new Vector3(...frame.p_B_H_m), attitude_of(frame));
+    this.checkpoints.show(new Vector3(...frame.p_B_H_m), attitude_of(frame), reached);
     const eye = this.stage.camera.getWorldPosition(new Vector3());
     const seen = [frame.p_B_H_m, frame.p_B_E_m, frame.p_B_elbow_m];
     this.see_through.update(eye, seen.map((point) => new Vector3(...point)));
