@@ -15,6 +15,7 @@
 #include "hg/scenario/names.h"
 #include "hg/scenario/recorded/robot_models.h"
 #include "hg/scenario/start_posture.h"
+#include "hg/viewer_server/message.h"
 #include "hg/workspace/workspace.h"
 
 namespace hg::page {
@@ -170,6 +171,59 @@ Environment environment_of(config::Surroundings surroundings) {
   return Environment::kRoom;
 }
 
+// Where the remote machine is drawn: turned as the hand leads it, and beside the twin, where it
+// hides neither the hand nor the device.
+Pose remote_place(const config::Scenario& scenario) {
+  constexpr double kTwinAway = 2.3;  // m, between two machines of the size of a twin
+  constexpr double kToolAway = 0.7;  // m, between the hand and the range of a tool
+  const teleoperation::TeleoperationConfig& config = *scenario.teleoperation;
+  if (config.mapping == teleoperation::Mapping::kJoints) {
+    Pose place = scenario.twin.T_B_root;
+    place.p += kTwinAway * place.R.col(1);
+    return place;
+  }
+  const Pose hand = scenario::handle_start(scenario.twin.model);
+  const Eigen::Vector3d to_user = hand.R.col(2);
+  const Eigen::Vector3d away = Eigen::Vector3d(-to_user.x(), -to_user.y(), 0.0).normalized();
+  double reach = 0.0;
+  for (const teleoperation::AxisLimits& axis : config.limiter.axes) {
+    reach = std::max({reach, axis.range.ub, -axis.range.lb});
+  }
+  Pose place;
+  place.R = config.R_R_B.transpose();
+  place.p = hand.p + (kToolAway + std::min(reach, 1.0)) * away;
+  return place;
+}
+
+std::string link_text(const teleoperation::ChannelConfig& link) {
+  std::string text = fmt::format("{:g} ms each way", 1e3 * link.delay);
+  if (link.jitter > 0.0) text += fmt::format(", up to {:g} ms more", 1e3 * link.jitter);
+  if (link.loss > 0.0) text += fmt::format(", {:g} % lost", 100.0 * link.loss);
+  return text;
+}
+
+std::optional<viewer_server::SceneTeleoperation> scene_teleoperation(
+    const config::Scenario& scenario) {
+  if (!scenario.teleoperation) return {};
+  const teleoperation::TeleoperationConfig& config = *scenario.teleoperation;
+  const bool is_tool = config.mapping == teleoperation::Mapping::kTool;
+  viewer_server::SceneTeleoperation scene;
+  scene.mapping =
+      is_tool ? viewer_server::RemoteMapping::kTool : viewer_server::RemoteMapping::kJoints;
+  scene.method = viewer_server::word_of(config.method.kind);
+  scene.link = link_text(config.link);
+  scene.force_scale = config.force_scale;
+  scene.T_B_root = remote_place(scenario);
+  for (std::size_t i = 0; i < config.limiter.axes.size(); ++i) {
+    const std::string name = is_tool ? std::string(1, "xyz"[i]) : scenario.twin.model.dofs[i].name;
+    scene.axes.push_back({name, config.limiter.axes[i].range});
+  }
+  for (const teleoperation::Wall& wall : config.machine.walls) {
+    scene.walls.push_back({{wall.normal.begin(), wall.normal.end()}, wall.offset});
+  }
+  return scene;
+}
+
 // "Free space" of free_space
 std::string title_of(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -276,6 +330,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
     scene.surfaces.push_back(scene_surface(surface));
   }
   scene.shapes = scene_shapes(scenario.device);
+  scene.teleoperation = scene_teleoperation(scenario);
   for (const EventRule& event : scenario.events) {
     for (const Condition& condition : event.all_of) {
       if (condition.kind != ConditionKind::kHandleAt) continue;
@@ -331,6 +386,13 @@ std::vector<viewer_server::Setting> page_settings(const std::vector<config::Form
                         field.value, field.step, field.help});
   }
   return settings;
+}
+
+std::optional<viewer_server::TeleoperationView> teleoperation_view(const config::Scenario& scenario,
+                                                                   const Sample& sample) {
+  if (!scenario.teleoperation) return {};
+  return viewer_server::TeleoperationView{sample.teleoperation,
+                                          sample.operator_input.is_clutch_open};
 }
 
 viewer_server::SafetyView safety_view(const Sample& sample, const analysis::Names& names) {

@@ -1,6 +1,7 @@
 /// Scene and choices of a scenario for a page, fixed during a run.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hg/analysis/fault_figures.h"
@@ -25,6 +26,10 @@ viewer_server::Choices page_choices(const scenario::ScenarioOptions& options,
 bool is_choice(const std::vector<viewer_server::Choice>& choices, const std::string& name);
 
 std::vector<viewer_server::Setting> page_settings(const std::vector<config::FormField>& form);
+
+/// The other side of a teleoperation at `sample`; empty = there is none.
+std::optional<viewer_server::TeleoperationView> teleoperation_view(const config::Scenario& scenario,
+                                                                   const Sample& sample);
 
 /// Text on what stops the device at `sample`.
 viewer_server::SafetyView safety_view(const Sample& sample, const analysis::Names& names);

@@ -113,6 +113,7 @@ viewer_server::View RecordingPage::view() {
   run_.read(run_.at(playback_.position_s()), *sample_);
   view.record = sample_->record;
   view.safety = safety_view(*sample_, names_);
+  view.teleoperation = teleoperation_view(scenario_, *sample_);
   view.hand = sample_->operator_input.hand_target;
   view.cycle_time_us = view.cycle_time_max_us = sample_->cycle_time_us;
   view.status_text = scenario_.description;

@@ -95,6 +95,8 @@ std::string text_of_done(const Command& command) {
           command.value == 0.0 ? "the script" : fmt::format("page {}", command.value), page);
     case CommandName::kPanel:
       return fmt::format("{} by {}", command.value != 0.0 ? "on" : "off", page);
+    case CommandName::kClutch:
+      return fmt::format("{} by {}", command.value != 0.0 ? "opened" : "closed", page);
     default:
       return "requested in the page";
   }
@@ -102,6 +104,7 @@ std::string text_of_done(const Command& command) {
 
 std::string_view name_of_done(const Command& command) {
   if (command.name == CommandName::kEmergencyStop) return "emergency_stop";
+  if (command.name == CommandName::kClutch) return "clutch";
   return command.name == CommandName::kReleaseStop ? "release_stop"
                                                    : std::string_view(command.argument);
 }
@@ -126,6 +129,7 @@ std::span<const RunPage::Order> RunPage::orders() {
                                       {CommandName::kEmergencyStop, false, false, nullptr},
                                       {CommandName::kReleaseStop, false, false, nullptr},
                                       {CommandName::kAskForHand, true, true, nullptr},
+                                      {CommandName::kClutch, false, false, nullptr},
                                       {CommandName::kPause, true, true, &RunPage::set_pace},
                                       {CommandName::kResume, true, true, &RunPage::set_pace},
                                       {CommandName::kStep, true, true, &RunPage::set_pace},
@@ -168,6 +172,8 @@ viewer_server::Scene RunPage::scene_of(const ShownRun& run) {
 
 // Why `run` does not take this command; empty = it does.
 std::string RunPage::refusal_of(const Order& order, const ShownRun& run) {
+  const bool has_clutch = run.scenario->teleoperation.has_value();
+  if (order.name == CommandName::kClutch && !has_clutch) return "there is no remote machine";
   if (order.changes_run && !run.fixed_by.empty()) return run.fixed_by;
   return order.needs_simulation ? run.refusal : std::string();
 }
@@ -280,6 +286,7 @@ void RunPage::publish() {
   view_.singularity = analysis_->singularity(newest_->record);
   view_.run_state.position_s = newest_->record.time_s;
   view_.safety = safety_view(*newest_, names_);
+  view_.teleoperation = teleoperation_view(*run_.scenario, *newest_);
   server_.publish(view_);
   view_.cycle_time_max_us = 0.0;
   has_news_ = false;

@@ -98,6 +98,7 @@ RuntimeReport Runtime::join() {
 }
 
 void Runtime::run_cycle() noexcept HG_NONBLOCKING {
+  if (options_.desk != nullptr) session_.input().is_clutch_open = options_.desk->is_clutch_open();
   session_.read();
   Sample& sample = session_.sample();
   OperatorFrame& input = sample.operator_input;

@@ -46,7 +46,11 @@ std::vector<config::SourceText> apply_surfaces(const std::string& name,
 std::vector<config::SourceText> apply_person(const ScenarioOptions& options,
                                              config::SourceReader& reader,
                                              config::Scenario& scenario) {
-  if (!options.user.empty()) scenario.events.clear();
+  if (!options.user.empty()) {
+    scenario.events.clear();
+    // times of its own script
+    if (scenario.teleoperation) scenario.teleoperation->clutch_open.clear();
+  }
   if (options.user == "mouse") {
     scenario.person = person::PersonKind::kMouse;
   } else if (options.user == "none") {

@@ -73,6 +73,7 @@ void OperatorDesk::open() noexcept {
   bits_.fetch_and(kStop);
   end_was_asked_.store(false);
   is_script_stop_.store(false);
+  is_clutch_open_.store(false);
   is_open_.store(true);
 }
 

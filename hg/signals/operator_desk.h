@@ -49,6 +49,9 @@ class OperatorDesk {
   /// Releases the switches of `page`.
   void leave(std::uint64_t page) noexcept;
 
+  /// Opens or closes the clutch to a remote machine; it stays so when the page leaves.
+  void set_clutch(bool is_open) noexcept { is_clutch_open_.store(is_open); }
+
   /// Requests a controlled stop of the device.
   void ask_to_hold() noexcept;
   /// Requests the end of the run.
@@ -75,6 +78,8 @@ class OperatorDesk {
   /// Releases the switches of silent pages, then applies the inputs of the pages to `panel`, which
   /// holds the state set by the script.
   void look(std::int64_t now_ns, SafetyPanel& panel) noexcept;
+  /// Whether a page has opened the clutch to a remote machine.
+  bool is_clutch_open() const noexcept { return is_clutch_open_.load(std::memory_order_relaxed); }
   /// Reports whether the script presses the emergency stop.
   void tell_script_stop(bool is_pressed) noexcept { is_script_stop_.store(is_pressed); }
   /// Number of releases of the script's emergency stop by pages.
@@ -100,7 +105,8 @@ class OperatorDesk {
   std::atomic<std::uint32_t> bits_{0};  ///< Inputs and emergency stop of the pages
   std::array<std::atomic<std::int64_t>, kHeldInputs> heard_ns_{};  ///< Last message of the holder
   std::atomic<std::uint32_t> stops_{0}, holds_{0}, script_releases_{0}, lost_{0};
-  std::atomic<bool> is_open_{false}, end_was_asked_{false}, is_script_stop_{false};
+  std::atomic<bool> is_open_{false}, end_was_asked_{false}, is_script_stop_{false},
+      is_clutch_open_{false};
 
   // server thread only
   std::set<std::uint64_t> pressed_by_;

@@ -53,6 +53,7 @@ struct TeleoperationReport {
   PortVector x_leader, x_remote, f_leader, f_remote;
   double energy_leader = 0.0, energy_remote = 0.0, dissipated = 0.0;
   PortVector x_true, f_true;
+  double round_trip = 0.0, jitter = 0.0, loss = 0.0;
 };
 
 template <typename Archive, Is<TeleoperationReport> T>
@@ -75,6 +76,12 @@ void fields(Archive& a, T& report) {
     unit::kJointPosition);
   a("f_true", report.f_true, "force of its surroundings on it now; empty = not known",
     unit::kJointTorque);
+  a("round_trip", report.round_trip, "measured way of packets to the remote machine and back",
+    unit::kS);
+  a("jitter", report.jitter, "measured mean difference of the delays of two packets in a row",
+    unit::kS);
+  a("loss", report.loss, "measured share of packets from the remote machine that were lost",
+    unit::kNone);
 }
 
 }  // namespace hg

@@ -96,7 +96,10 @@ void Teleoperation::step(const TwinNow& now, TwinForce& force,
   find_port(now);
   while (to_leader_.receive(now.time_s, arrived_at_leader_)) {
     leader_.receive(arrived_at_leader_, now.time_s);
+    meter_.receive(arrived_at_leader_.sequence, arrived_at_leader_.sent_s,
+                   arrived_at_leader_.answered_s, now.time_s);
   }
+  meter_.step(now.time_s);
   f_leader_ = leader_.step(
       now.time_s, {.x = x_, .v = v_, .f_hand = f_hand_, .is_clutch_closed = is_clutch_closed(now)},
       leader_packet_);
@@ -116,7 +119,10 @@ void Teleoperation::step(const TwinNow& now, TwinForce& force,
             .energy_remote = arrived.energy_net,
             .dissipated = leader_.dissipated() + arrived.dissipated,
             .x_true = machine_state_.x,
-            .f_true = machine_state_.f};
+            .f_true = machine_state_.f,
+            .round_trip = meter_.round_trip(),
+            .jitter = meter_.jitter(),
+            .loss = meter_.loss()};
 }
 
 }  // namespace hg::teleoperation

@@ -19,6 +19,7 @@
 #include "hg/teleoperation/channel.h"
 #include "hg/teleoperation/leader_half.h"
 #include "hg/teleoperation/limiter.h"
+#include "hg/teleoperation/link_meter.h"
 #include "hg/teleoperation/machine.h"
 #include "hg/teleoperation/remote_half.h"
 
@@ -65,6 +66,7 @@ class Teleoperation final : public TwinForceSource {
   SimulatedMachine machine_;
   Channel<LeaderPacket> to_remote_;
   Channel<RemotePacket> to_leader_;
+  LinkMeter meter_;  ///< Of what arrives at the leader
   // the leader's port before the offset of an engagement
   PortVector x_, v_, f_hand_, f_leader_;
   Eigen::Vector3d p_before_ = Eigen::Vector3d::Zero();

@@ -99,7 +99,8 @@ void fields(Archive& a, T& command) {
   a("command", command.command);
   a("name", command.name, "name of the chosen option or setting; else empty");
   a("value", command.value,
-    "step: cycles, speed: 0.1..1 (recordings ..8), seek: run time, set: value, release_stop: page",
+    "step: cycles, speed: 0.1..1 (recordings ..8), seek: run time, set: value, release_stop: page, "
+    "clutch: 1 open, 0 closed",
     unit::kNone);
 }
 

@@ -27,6 +27,7 @@ enum class CommandName : std::uint8_t {
   kMark,           ///< records an event
   kReleaseStop,    ///< releases the stop pressed by page `value`; 0: by the script
   kAskForHand,     ///< asks the page that drags to let go
+  kClutch,         ///< clutch to a remote machine: `value` 1 opens, 0 closes it
 };
 
 /// Largest number of a page: whole numbers of JavaScript, 2^53.

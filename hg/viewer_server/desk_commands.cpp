@@ -38,6 +38,13 @@ std::string release(const Command& command, OperatorDesk& desk) {
          " does not press it";
 }
 
+std::string set_clutch(const Command& command, OperatorDesk& desk) {
+  if (command.value != 0.0 && command.value != 1.0) return "the clutch is 0 (closed) or 1 (open)";
+  if (!desk.is_open()) return std::string(kOver);
+  desk.set_clutch(command.value != 0.0);
+  return {};
+}
+
 }  // namespace
 
 std::optional<std::string> obey_at_desk(const Command& command,
@@ -52,6 +59,8 @@ std::optional<std::string> obey_at_desk(const Command& command,
       return release(command, desk);
     case CommandName::kPanel:
       return obey_panel(command, now_ns, desk);
+    case CommandName::kClutch:
+      return set_clutch(command, desk);
     case CommandName::kMode:
       if (command.argument != "hold") return {};
       desk.ask_to_hold();

@@ -92,6 +92,7 @@ void fields(Archive& a, T& frame) {
   a("safety", SafetyMessage{view});
   a("clients", frame.clients, "number of connected pages");
   a("ghost", view.ghost);
+  a("teleoperation", view.teleoperation, "null = there is no remote machine");
 }
 
 }  // namespace hg::viewer_server

@@ -29,6 +29,7 @@ void fields(Archive& a, T& scene) {
   a("surfaces", scene.surfaces);
   a("shapes", scene.shapes, "shapes of the device, watched for collisions with itself");
   a("checkpoints", scene.checkpoints, "places that the handle is to be brought to, in order");
+  a("teleoperation", scene.teleoperation, "null = there is no remote machine");
   a("choices", scene.choices);
   a("settings", scene.settings);
   a("commands", scene.commands, "accepted commands");

@@ -73,6 +73,12 @@ struct Ghost {
   CycleRecord record;
 };
 
+/// The other side of a teleoperation.
+struct TeleoperationView {
+  TeleoperationReport report;
+  bool is_clutch_open = false;  ///< A page has opened the clutch
+};
+
 /// Cause of a stop as text, and the panel of the simulated operator.
 struct SafetyView {
   std::string cause;    ///< cause of the stop or fault, one sentence; empty = none
@@ -95,6 +101,7 @@ struct View {
   RunState run_state;
   SafetyView safety;
   std::optional<Ghost> ghost;
+  std::optional<TeleoperationView> teleoperation;
 };
 
 }  // namespace hg::viewer_server

@@ -185,6 +185,12 @@ std::optional<std::string> Hub::take(Command command, MessageRate& rate) {
   if (command.name == CommandName::kAskForHand && follows(command.name)) {
     return rate.admit(now_s()) ? ask_for_hand(command.page) : "too many commands";
   }
+  if (command.name == CommandName::kClutch && follows(command.name)) {
+    const std::uint64_t page = holder().page;
+    if (page != 0 && page != command.page) {
+      return "page " + std::to_string(page) + " has the hand";
+    }
+  }
   if (desk != nullptr) {
     const auto answer = obey_at_desk(command, followed, now_ns(), *desk);
     command.stops = desk->stops();

@@ -52,7 +52,8 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     const std::string_view path = path_of(view(request.target()));
     const bool is_live = is_upgrade && path == kLivePath;
 
-    if (!is_own_host(view(request[http::field::host]), hub_.listener)) {
+    if (request.count(http::field::host) != 1 ||
+        !is_own_host(view(request[http::field::host]), hub_.listener)) {
       refuse(http::status::forbidden, "wrong host");
     } else if (!origin.empty() && !is_live && !is_own_origin(view(origin), hub_.listener)) {
       refuse(http::status::forbidden, "wrong origin");

@@ -125,10 +125,11 @@ Json all() {
 
 Json message_facts() {
   return all<Scene, SceneChain, SceneJoint, SceneFollower, SceneLimitMessage, Eigen::AlignedBox3d,
-             SceneSurface, SceneShape, SceneCheckpoint, Choices, Choice, Setting, FrameMessage,
-             FeltLimitMessage, ActiveLimitMessage, ContactReport, HandBudget, Vector6, Singularity,
-             RunState, SafetyMessage, Ghost, HandMessage, HoldMessage, CommandMessage,
-             WelcomeMessage, AnswerMessage, ValuesMessage, EventMessage>();
+             SceneSurface, SceneShape, SceneCheckpoint, SceneTeleoperation, SceneAxis, SceneWall,
+             Choices, Choice, Setting, FrameMessage, FeltLimitMessage, ActiveLimitMessage,
+             ContactReport, HandBudget, Vector6, Singularity, RunState, SafetyMessage, Ghost,
+             TeleoperationView, HandMessage, HoldMessage, CommandMessage, WelcomeMessage,
+             AnswerMessage, ValuesMessage, EventMessage>();
 }
 
 }  // namespace hg::pages

@@ -24,6 +24,7 @@ const GROUPS: [string, [string, string][]][] = [
       ["W A S D or arrows", `push: away, left, towards you, right (${PUSH})`],
       ["Q E", "push down, up; while the mouse drags: turn left, right"],
       ["Space", "press the lever"],
+      ["C", "clutch to a remote machine: open, close; open only while it is held for longer"],
       ["Shift or Z, X, Y, Alt", "while the mouse drags: up and down, along x, along y, turn"],
     ],
   ],

@@ -4,6 +4,7 @@ import { TICK_MS } from "./data/freshness";
 import { Store } from "./data/store";
 import { token, watch_token } from "./data/token";
 import { Film, is_film } from "./film";
+import { Clutch } from "./hand/clutch";
 import { Drag } from "./hand/drag";
 import { HandControls } from "./hand/hand_controls";
 import type { Pixel } from "./hand/hand_view";
@@ -18,6 +19,7 @@ import { EventsPanel } from "./panels/events";
 import { FeelPanel } from "./panels/feel";
 import { JointsPanel } from "./panels/joints";
 import { Notices } from "./panels/notices";
+import { RemotePanel } from "./panels/remote";
 import { SafetyPanel } from "./panels/safety";
 import { Tabs } from "./panels/tabs";
 import { PlotDrawer } from "./plots/drawer";
@@ -65,6 +67,7 @@ class Page {
   private readonly drag: Drag;
   private readonly push_keys: PushKeys;
   private readonly hand_controls: HandControls;
+  private readonly clutch: Clutch;
   private readonly holder = new HolderNote(this.store.commands, () => this.store.page);
   private readonly tabs = new Tabs();
   private readonly stop = new StopButton(this.store.commands, () => this.tabs.show("safety"));
@@ -72,6 +75,7 @@ class Page {
   private readonly replay = new ReplayBar(this.store);
   private readonly feel = new FeelPanel(element("feel"));
   private readonly joints = new JointsPanel(element("joints"));
+  private readonly remote = new RemotePanel(element("remote"), this.store);
   private readonly change = new ChangePanel(element("change"), this.store.commands, (problem) =>
     this.notices.show("change", problem),
   );
@@ -100,6 +104,7 @@ class Page {
     this.drag = new Drag(this.picture.view, live_frame, send);
     this.drag.on_refused = () => this.explain_hand();
     this.hand_controls = new HandControls(this.drag);
+    this.clutch = new Clutch(this.store.commands, live_frame);
     this.push_keys = new PushKeys(this.drag, this.picture.view);
     const keys = new KeysDialog(this.picture.has_cameras);
     build_page_tools(this.plots, () => keys.toggle());
@@ -171,11 +176,14 @@ class Page {
     this.stop.load(scene);
     this.replay.load(scene);
     this.joints.load(scene);
+    this.tabs.load(scene);
+    this.remote.load(scene);
     this.change.load(scene);
     this.safety.load(scene);
     this.plots.load(scene);
     this.hand_controls.load(scene);
     this.push_keys.load(scene);
+    this.clutch.load(scene);
     this.holder.load(scene);
     document.body.dataset.source = scene.source;
     await this.picture.load(scene, () => this.store.scene === scene);
@@ -222,6 +230,8 @@ class Page {
     this.replay.show(scene, frame);
     this.holder.show(frame);
     if (!element("feel").hidden) this.feel.show(scene, frame);
+    if (!element("remote").hidden) this.remote.show(scene, frame);
+    this.clutch.show(frame, this.drag.can_hold);
     if (!element("joints").hidden) this.joints.show(scene, frame);
     if (!element("safety").hidden) this.safety.show(frame);
     this.plots.show();

@@ -25,9 +25,10 @@ export interface Scene {
   surfaces: SceneSurface[];
   shapes: SceneShape[]; // shapes of the device, watched for collisions with itself
   checkpoints: SceneCheckpoint[]; // places that the handle is to be brought to, in order
+  teleoperation: SceneTeleoperation | null; // null = there is no remote machine
   choices: Choices;
   settings: Setting[];
-  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "device" | "surfaces" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand")[]; // accepted commands
+  commands: ("pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "device" | "surfaces" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand" | "clutch")[]; // accepted commands
   refusal: string; // reason for refusing other commands; empty = all are accepted
   hand_stiffness_N_per_m: Vec3; // of the arm that pulls the hand to its target, along x, y, z of B
   hand_force_max_N: number; // largest pull of this arm
@@ -109,6 +110,31 @@ export interface SceneCheckpoint {
   x_m: number; // position in B
   y_m: number; // position in B
   azimuth_rad: number; // azimuth of the hand axis, z of H, about z of B
+}
+
+// the remote machine of a teleoperation
+export interface SceneTeleoperation {
+  mapping: "tool" | "joints"; // what is led: its tool, or its joints, which are the twin's
+  method: string; // method of bilateral control
+  link: string; // the link as it was set up, in words
+  force_scale: number; // force on the leader over that on the machine
+  p_B_root_m: Vec3; // where its base is drawn
+  quaternion_B_root: Quaternion;
+  axes: SceneAxis[];
+  walls: SceneWall[];
+}
+
+// a coordinate of a remote machine
+export interface SceneAxis {
+  name: string; // x, y, z, or a joint of the twin
+  min: number | null; // [rad or m] null = unbounded
+  max: number | null; // [rad or m] null = unbounded
+}
+
+// a wall before a remote machine
+export interface SceneWall {
+  normal: number[]; // unit vector out of the wall, in coordinates of the machine
+  offset: number; // [rad or m] position of its surface along the normal
 }
 
 // options and the chosen ones
@@ -193,6 +219,7 @@ export interface Frame {
   safety: Safety;
   clients: number; // number of connected pages
   ghost: Ghost | null;
+  teleoperation: Teleoperation | null; // null = there is no remote machine
 }
 
 // limit that the user feels most; no wrench for limits of the twin
@@ -280,6 +307,24 @@ export interface Ghost {
   force_N: Vec3;
 }
 
+// the other side, in coordinates of the remote machine
+export interface Teleoperation {
+  link: "none" | "waiting" | "released" | "engaged" | "lost";
+  cause: "none" | "speed" | "acceleration" | "range" | "force" | "not_finite" | "jump" | "replayed" | "frozen" | "silent" | "released"; // why the remote machine does not follow, as it last said
+  is_clutch_open: boolean; // a page has opened the clutch
+  age_s: number; // time since the newest packet from the remote machine was sent
+  round_trip_s: number; // of packets, there and back
+  jitter_s: number; // mean difference of the delays of two packets in a row
+  loss: number; // share of packets from the remote machine that were lost
+  x_target: number[]; // [rad or m] where the leader wants the remote machine
+  x_remote: number[]; // [rad or m] where it last said it was
+  f_leader: number[]; // [Nm or N] force on the leader, at the scale of the remote machine
+  f_remote: number[]; // [Nm or N] force of its surroundings on the remote machine
+  energy_leader: number; // [J] net energy taken at the operator's port
+  energy_remote: number; // [J] net energy taken at the remote port
+  dissipated: number; // [J] energy dissipated by the method at both ports
+}
+
 // page -> program; inside a frame: the target in effect
 export interface Hand {
   type: "hand";
@@ -299,9 +344,9 @@ export interface Hold {
 export interface Command {
   type: "command";
   id: number; // any whole number of 0..2^53, comes back in the answer
-  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "device" | "surfaces" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand";
+  command: "pause" | "resume" | "step" | "speed" | "restart" | "stop" | "scenario" | "twin" | "device" | "surfaces" | "law" | "person" | "set" | "seek" | "panel" | "mode" | "emergency_stop" | "mark" | "release_stop" | "ask_for_hand" | "clutch";
   name: string; // name of the chosen option or setting; else empty
-  value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: run time, set: value, release_stop: page
+  value: number; // step: cycles, speed: 0.1..1 (recordings ..8), seek: run time, set: value, release_stop: page, clutch: 1 open, 0 closed
 }
 
 // program -> page: the first message of a connection

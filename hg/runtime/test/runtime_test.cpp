@@ -258,6 +258,19 @@ TEST_F(PagesAtWork, AnEmergencyStopIsInForceInTheNextCycle) {
   EXPECT_EQ(after(100), Mode::kReady) << "nothing is requested automatically after a stop";
 }
 
+TEST_F(PagesAtWork, TheClutchIsAnInputOfTheNextCycle) {
+  begin();
+  ASSERT_EQ(after(100), Mode::kRunning);
+  EXPECT_FALSE(next().operator_input.is_clutch_open);
+  desk_.set_clutch(true);
+  next();  // of the input that was composed before
+  EXPECT_TRUE(next().operator_input.is_clutch_open);
+  EXPECT_EQ(after(3), Mode::kRunning) << "it is no stop";
+  desk_.set_clutch(false);
+  next();
+  EXPECT_FALSE(next().operator_input.is_clutch_open);
+}
+
 TEST_F(PagesAtWork, HoldAndSwitchesStopItInTheNextCycle) {
   begin();
   ASSERT_EQ(after(100), Mode::kRunning);

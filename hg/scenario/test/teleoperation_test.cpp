@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -98,6 +99,80 @@ TEST(RemoteArm, WithoutALinkTheForceFadesAndTheToolHoldsUntilTheClutchIsUsed) {
   }
   EXPECT_EQ(at(29.5).remote.link, RemoteLink::kLost) << "the link is back, the clutch was not used";
   EXPECT_EQ(at(31.0).remote.link, RemoteLink::kEngaged);
+}
+
+// A run whose hand is dragged, as by a page.
+struct Dragged {
+  config::Scenario scenario = shipped("remote_arm");
+  std::unique_ptr<Session> session;
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< where the hand is dragged to
+
+  Dragged() {
+    scenario.person = person::PersonKind::kMouse;
+    session = std::make_unique<Session>(scenario);
+    while (session->sample().teleoperation.link != RemoteLink::kEngaged) {
+      const bool is_running = session->record().mode == Mode::kRunning;
+      session->input().hand_target = {.active = true, .p_B = session->record().T_B_H.p};
+      if (!session->advance() || session->record().time_s > 10.0) break;
+      if (!is_running) p = session->record().T_B_H.p;
+    }
+  }
+  const Sample& now() const { return session->sample(); }
+  void drag_to(double y, double duration_s) {
+    const double from = p.y();
+    const double begin_s = now().record.time_s;
+    while (now().record.time_s < begin_s + duration_s) {
+      p.y() = from + (y - from) * (now().record.time_s - begin_s) / duration_s;
+      session->input().hand_target = {.active = true, .p_B = p};
+      ASSERT_TRUE(session->advance());
+      if (watch) watch();
+    }
+  }
+  std::function<void()> watch;
+};
+
+TEST(RemoteArm, IsLedByAHandThatIsDraggedAndItsWallIsFelt) {
+  Dragged run;
+  ASSERT_EQ(run.now().teleoperation.link, RemoteLink::kEngaged);
+  double felt = 0.0, deepest = 0.0;
+  run.watch = [&] {
+    felt = std::max(felt, -run.now().operator_input.twin_force.w_E[1]);
+    deepest = std::max(deepest, run.now().teleoperation.x_true[1]);
+  };
+  const double start = run.p.y();
+  run.drag_to(start + 0.3, 3.0);
+  run.drag_to(start + 0.3, 2.0);
+  EXPECT_GT(deepest, 0.19);
+  EXPECT_LT(deepest, 0.215);
+  EXPECT_GT(felt, 4.0);
+}
+
+TEST(RemoteArm, DoesNotJumpWhenAnOperatorClosesTheClutchElsewhere) {
+  Dragged run;
+  const double start = run.p.y();
+  run.drag_to(start + 0.1, 1.5);
+  run.drag_to(start + 0.1, 1.0);
+  run.session->input().is_clutch_open = true;
+  run.drag_to(start - 0.15, 2.0);
+  run.drag_to(start - 0.15, 1.0);
+  EXPECT_EQ(run.now().teleoperation.link, RemoteLink::kReleased);
+  const double before = run.now().teleoperation.x_true[1];
+  EXPECT_NEAR(before, 0.1, 0.03) << "the tool has stayed";
+  EXPECT_LT(run.now().record.T_B_H.p.y() - start, -0.1) << "the hand has moved";
+  run.session->input().is_clutch_open = false;
+  double moved = 0.0;
+  const double closed = run.now().record.T_B_H.p.y();
+  run.watch = [&] {
+    const double led = std::abs(run.now().record.T_B_H.p.y() - closed);
+    const double way = std::abs(run.now().teleoperation.x_true[1] - before);
+    moved = std::max(moved, way - led);
+  };
+  run.drag_to(start - 0.15, 2.0);
+  EXPECT_EQ(run.now().teleoperation.link, RemoteLink::kEngaged);
+  EXPECT_LT(moved, 1e-3);
+  run.watch = nullptr;
+  run.drag_to(start - 0.05, 2.0);
+  EXPECT_GT(run.now().teleoperation.x_true[1] - before, 0.02) << "it follows from there";
 }
 
 TEST(Excavator, FarAwayMeetsTheGroundAndItsTwinFeelsIt) {

@@ -137,6 +137,18 @@ TEST(OperatorDesk, AnotherRunBeginsWithTheScriptsOwnSwitches) {
 }
 
 // Two threads as in a run; sanitizers look at it, too.
+TEST(OperatorDesk, TheClutchStaysAsItIsWhenItsPageLeavesAndIsClosedInAnotherRun) {
+  OperatorDesk desk;
+  desk.open();
+  EXPECT_FALSE(desk.is_clutch_open());
+  desk.set_clutch(true);
+  desk.leave(1);
+  EXPECT_TRUE(desk.is_clutch_open()) << "nothing moves because a page has gone";
+  EXPECT_EQ(desk.stops(), 0u);
+  desk.open();
+  EXPECT_FALSE(desk.is_clutch_open());
+}
+
 TEST(OperatorDesk, AStopThatIsHeldIsSeenInEveryLookWhateverElseIsEdited) {
   OperatorDesk desk;
   desk.open();

@@ -103,6 +103,8 @@ Scene make_scene() {
   scene.surfaces = {{.name = "table", .shape = SurfaceShape::kMesh, .triangles = {1.0}}};
   scene.shapes = {{.name = "hand_1", .link = "hand", .radius = 0.05, .length = 0.2}};
   scene.checkpoints = {{"first", 1.0, 2.0, 0.5}};
+  scene.teleoperation = {.method = "model_mediated", .axes = {{"x", {-0.5, kInfinity}}}};
+  scene.teleoperation->walls = {{{0.0, -1.0, 0.0}, -0.2}};
   scene.commands = {CommandName::kPause, CommandName::kSet};
   scene.twin.joints = {{"free", JointType::kFloating},
                        {"glide x", JointType::kPrismatic, "glide", Eigen::Vector3d::UnitY()}};
@@ -139,6 +141,7 @@ View make_view() {
   view.budget.inertia << 1, 0, 0, 0, 0, 2;
   view.singularity = {0.5, 1};
   view.ghost = Ghost{.time_s = 1.25};
+  view.teleoperation = TeleoperationView{};
   view.ghost->record.twin.q_a = ConfigurationA::Constant(1, 2.0);
   return view;
 }
@@ -209,13 +212,14 @@ std::vector<std::string> unit_faults(const Messages&... messages) {
 TEST(Messages, DeclareTheUnitOfEveryNumberOutsideOfTheNote) {
   const View view = make_view();
   const LimitCatalogue limits;
-  EXPECT_EQ(unit_faults(Scene{}, SceneChain{}, SceneJoint{}, SceneFollower{}, SceneLimitMessage{},
-                        Eigen::AlignedBox3d{}, SceneSurface{}, SceneShape{}, SceneCheckpoint{},
-                        Choices{}, Choice{}, Setting{}),
-            std::vector<std::string>{});
+  EXPECT_EQ(
+      unit_faults(Scene{}, SceneChain{}, SceneJoint{}, SceneFollower{}, SceneLimitMessage{},
+                  Eigen::AlignedBox3d{}, SceneSurface{}, SceneShape{}, SceneCheckpoint{}, Choices{},
+                  Choice{}, Setting{}, SceneTeleoperation{}, SceneAxis{}, SceneWall{}),
+      std::vector<std::string>{});
   EXPECT_EQ(unit_faults(FrameMessage{view, limits}, FeltLimitMessage{}, ActiveLimitMessage{},
                         ContactReport{}, HandBudget{}, Singularity{}, RunState{},
-                        SafetyMessage{view}, Ghost{}),
+                        SafetyMessage{view}, Ghost{}, TeleoperationView{}),
             std::vector<std::string>{});
   EXPECT_EQ(unit_faults(HandMessage{}, HoldMessage{}, CommandMessage{}, WelcomeMessage{},
                         AnswerMessage{}, ValuesMessage{}, EventMessage{}),

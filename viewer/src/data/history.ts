@@ -1,6 +1,6 @@
 // The numbers of the last frames, column by column, for plots and export.
 
-import type { Frame, Scene, SceneJoint } from "../messages";
+import type { Frame, Scene, SceneJoint, Teleoperation } from "../messages";
 
 const HISTORY_FRAMES = 7200; // two minutes at 60 Hz
 
@@ -75,6 +75,36 @@ export function coordinates_of(joints: SceneJoint[]): string[] {
 
 const AXES = ["x", "y", "z"];
 
+// Sizes, at the scale of the remote machine.
+const REMOTE_COLUMNS = [
+  "remote.force_leader",
+  "remote.force_remote",
+  "remote.energy_leader_J",
+  "remote.energy_remote_J",
+  "remote.dissipated_J",
+  "remote.apart",
+  "remote.age_s",
+];
+
+function remote_row(remote: Frame["teleoperation"]): (number | null)[] {
+  if (!remote) return REMOTE_COLUMNS.map(() => null);
+  return [
+    Math.hypot(...remote.f_leader),
+    Math.hypot(...remote.f_remote),
+    remote.energy_leader,
+    remote.energy_remote,
+    remote.dissipated,
+    apart(remote),
+    remote.age_s,
+  ];
+}
+
+// How far a remote machine is from where it is to be, m or rad; null: it is not led.
+export function apart({ link, x_target, x_remote }: Teleoperation): number | null {
+  const is_known = link === "engaged" && x_target.length > 0 && x_target.length === x_remote.length;
+  return is_known ? Math.hypot(...x_target.map((x, i) => x - x_remote[i]!)) : null;
+}
+
 // Joints of device and twin may have the same name.
 export function limit_column({ kind, name }: Scene["limits"][number]): string {
   return `active.${kind}.${name}`;
@@ -96,6 +126,7 @@ export function history_of(scene: Scene): Table {
     "cycle_time_us",
     "cycle_time_max_us",
     ...scene.limits.map(limit_column),
+    ...(scene.teleoperation ? REMOTE_COLUMNS : []),
   ]);
 }
 
@@ -121,5 +152,6 @@ export function row_of(scene: Scene, frame: Frame): (number | null | undefined)[
     frame.cycle_time_us,
     frame.cycle_time_max_us,
     ...states,
+    ...(scene.teleoperation ? remote_row(frame.teleoperation) : []),
   ];
 }

@@ -60,6 +60,7 @@ const FRAME: Record<keyof Omit<Frame, "type">, Test> = {
   safety: is_object,
   clients: is_number,
   ghost: or_null(is_object),
+  teleoperation: or_null(is_object),
 };
 
 const FIELDS: Record<Message["type"], Record<string, Test>> = {

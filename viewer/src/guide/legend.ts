@@ -8,11 +8,12 @@ import {
   ELBOW_COLOR,
   FORCE_COLOR,
   GHOST_COLOR,
+  REMOTE_COLOR,
   TORQUE_COLOR,
   TWIN_COLOR,
 } from "../theme";
 
-type Mark = "body" | "arrow" | "arc" | "line";
+type Mark = "body" | "target" | "arrow" | "arc" | "line";
 
 interface Line {
   layer: Layer;
@@ -24,6 +25,8 @@ interface Line {
 export const LEGEND: Line[] = [
   { layer: "device", color: DEVICE_COLOR, mark: "body", text: "robot (device)" },
   { layer: "twin", color: TWIN_COLOR, mark: "body", text: "twin" },
+  { layer: "remote", color: REMOTE_COLOR, mark: "body", text: "remote machine" },
+  { layer: "remote", color: REMOTE_COLOR, mark: "target", text: "where it is to be (ghost)" },
   { layer: "arrows", color: FORCE_COLOR, mark: "arrow", text: "force on the hand" },
   { layer: "arrows", color: TORQUE_COLOR, mark: "arc", text: "torque" },
   { layer: "trails", color: FORCE_COLOR, mark: "line", text: "way of the handle" },
@@ -31,12 +34,18 @@ export const LEGEND: Line[] = [
   { layer: "ghost", color: GHOST_COLOR, mark: "body", text: "second recording" },
 ];
 
+// What there is in some runs only: a second recording drawn through the first, a remote machine.
+interface Shown {
+  ghost: boolean;
+  remote: boolean;
+}
+
 const STORED_AS = "hapticgiant.legend";
 const STATES = ["open", "closed"] as const;
 
 export class Legend {
   private readonly lines: [Line, HTMLElement][];
-  private has_ghost = false;
+  private shown: Shown = { ghost: false, remote: false };
 
   constructor(private readonly layers: Layers) {
     this.lines = LEGEND.map((line) => {
@@ -54,16 +63,16 @@ export class Legend {
     this.apply_layers();
   }
 
-  // `has_ghost`: a second recording is drawn through the first.
-  show(has_ghost: boolean): void {
-    if (this.has_ghost === has_ghost) return;
-    this.has_ghost = has_ghost;
+  show(shown: Shown): void {
+    if (this.shown.ghost === shown.ghost && this.shown.remote === shown.remote) return;
+    this.shown = shown;
     this.apply_layers();
   }
 
   apply_layers(): void {
     for (const [{ layer }, item] of this.lines) {
-      item.hidden = !this.layers.is_shown(layer) || (layer === "ghost" && !this.has_ghost);
+      const is_there = layer === "ghost" || layer === "remote" ? this.shown[layer] : true;
+      item.hidden = !is_there || !this.layers.is_shown(layer);
     }
   }
 }

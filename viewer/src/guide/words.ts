@@ -141,6 +141,52 @@ export const WORDS: Entry[] = [
     also: [],
     text: "What no other line explains. Close to zero while the device runs.",
   },
+  // teleoperation
+  {
+    word: "remote machine",
+    also: ["remote"],
+    text: "A machine elsewhere that your hand leads. What it meets, you feel. Green on this page; see-through where it is to be.",
+  },
+  {
+    word: "teleoperation",
+    also: [],
+    text: "To lead a machine that is elsewhere, and to feel what it touches.",
+  },
+  {
+    word: "clutch",
+    also: [],
+    text: "Couples your hand to the remote machine. While it is open, the hand moves alone; when it closes, the machine stays where it is and follows from there.",
+  },
+  {
+    word: "link",
+    also: [],
+    text: "What carries packets between both sides: it has a delay, jitter, and losses.",
+  },
+  {
+    word: "jitter",
+    also: [],
+    text: "How much the delays of packets that follow each other differ, on average.",
+  },
+  {
+    word: "packet",
+    also: ["packets"],
+    text: "One message of one side to the other, sent once per cycle.",
+  },
+  {
+    word: "port",
+    also: ["operator's port", "remote port"],
+    text: "Where a side takes and gives energy: at your hand, and at the remote machine.",
+  },
+  {
+    word: "energy",
+    also: ["energies"],
+    text: "Force times way, in joules. Two ports that together only take energy cannot shake up by themselves.",
+  },
+  {
+    word: "dissipated",
+    also: [],
+    text: "Energy that the method has turned into nothing, so that no side gives more than it got.",
+  },
   // what can be changed
   {
     word: "law",

@@ -1,11 +1,13 @@
 // Tabs above the sections of the panel: by click, or by arrows from the one that has the focus.
 
+import type { Scene } from "../messages";
 import { element, make_button } from "../page";
 import { remember, remembered } from "../remembered";
 
 const TABS = [
   ["feel", "Feel", "Why do I feel this?"],
   ["joints", "Joints", "Joints of twin and device"],
+  ["remote", "Remote", "Teleoperation: the remote machine, the link to it, and who holds whom"],
   ["change", "Change", "Twin, device, surfaces, law, person and parameters"],
   ["safety", "Safety", "What stops it, and the operator's panel"],
   ["events", "Events", "What has happened"],
@@ -35,7 +37,19 @@ export class Tabs {
       part.tabIndex = 0; // it scrolls by keys
     }
     list.addEventListener("keydown", (event) => this.step(event));
-    this.show(remembered(STORED_AS, NAMES, "feel"));
+    this.buttons.get("remote")!.hidden = true;
+    const last = remembered(STORED_AS, NAMES, "feel");
+    this.show(last === "remote" ? "feel" : last);
+  }
+
+  // Of a run without a remote machine the tab `remote` is left out.
+  load({ teleoperation }: Scene): void {
+    const was_offered = !this.buttons.get("remote")!.hidden;
+    const is_offered = teleoperation !== null;
+    this.buttons.get("remote")!.hidden = !is_offered;
+    element("tabs").dataset.isFull = String(is_offered);
+    if (is_offered && !was_offered) this.show("remote");
+    else if (!is_offered && !element("remote").hidden) this.show("feel");
   }
 
   show(shown: Tab): void {
@@ -51,7 +65,8 @@ export class Tabs {
     const step = STEPS[event.key];
     const from = NAMES.findIndex((tab) => !element(tab).hidden);
     if (step === undefined || from < 0) return;
-    const next = NAMES[(from + step + NAMES.length) % NAMES.length]!;
+    const names = NAMES.filter((name) => !this.buttons.get(name)!.hidden);
+    const next = names[(names.indexOf(NAMES[from]!) + step + names.length) % names.length]!;
     event.preventDefault();
     this.show(next);
     this.buttons.get(next)!.focus();

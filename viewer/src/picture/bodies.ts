@@ -4,11 +4,12 @@ import { type Material, Mesh, type Object3D, Vector3 } from "three";
 
 import type { Frame, Scene, Vec3 } from "../messages";
 import { type ChainView, load_chain } from "../scene/chain_view";
+import { Remote } from "../scene/remote";
 import { SurfacesView } from "../scene/surfaces";
 import { surroundings_of } from "../scene/surroundings";
 import { outer_points } from "./outline";
 
-export type Kind = "device" | "twin" | "surface" | "wall";
+export type Kind = "device" | "twin" | "remote" | "target" | "surface" | "wall";
 
 export interface Body {
   kind: Kind;
@@ -17,6 +18,7 @@ export interface Body {
 }
 
 const as_is = (): void => {};
+const NO_ARROW = { share: 1, longest_m: 0 };
 
 export class Bodies {
   private readonly groups: [Kind, Object3D][];
@@ -26,6 +28,7 @@ export class Bodies {
     readonly scene: Scene,
     private readonly device: ChainView,
     private readonly twin: ChainView,
+    private readonly remote: Remote | null,
   ) {
     const surfaces = new SurfacesView(scene.surfaces);
     surfaces.show([0, 0, 0], null);
@@ -36,16 +39,18 @@ export class Bodies {
   }
 
   static async load(scene: Scene): Promise<Bodies> {
-    const [device, twin] = await Promise.all([
+    const [device, twin, remote] = await Promise.all([
       load_chain(scene.device, as_is),
       load_chain(scene.twin, as_is),
+      Remote.load(scene, NO_ARROW),
     ]);
-    return new Bodies(scene, device, twin);
+    return new Bodies(scene, device, twin, remote);
   }
 
   pose(frame: Frame): void {
     this.device.pose(frame.q_device);
     this.twin.pose(frame.q_twin);
+    this.remote?.show(frame.teleoperation);
   }
 
   // What lies behind first.
@@ -55,8 +60,18 @@ export class Bodies {
     for (const [i, body] of surfaces.entries()) body.is_touched = contact?.surface === i;
     return [
       ...this.fixed,
+      ...this.remote_bodies(),
       ...bodies_of("twin", this.twin.placement),
       ...bodies_of("device", this.device.placement),
+    ];
+  }
+
+  private remote_bodies(): Body[] {
+    if (!this.remote) return [];
+    return [
+      ...bodies_of("surface", this.remote.walls_group),
+      ...bodies_of("target", this.remote.target_root),
+      ...bodies_of("remote", this.remote.machine_root),
     ];
   }
 }

@@ -89,7 +89,7 @@ export class SpacePicture implements Picture {
   show(frame: Frame, target: Vec3 | null, axis: Vec3 | null): void {
     if (!this.world) return;
     if (!this.has_looked) this.look(this.world, frame);
-    this.legend.show(frame.ghost !== null);
+    this.legend.show({ ghost: frame.ghost !== null, remote: frame.teleoperation !== null });
     this.world.show(frame, target, axis, reached_until(this.world.scene, this.events, frame.time_s));
     this.headset.update(this.world.scene, frame);
     const is_first_person = this.cameras.current === "first person" || this.is_worn;

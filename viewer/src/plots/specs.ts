@@ -37,6 +37,7 @@ export function time_specs(scene: Scene): TimeSpec[] {
     ...joints("device", "Device joints", "device", manipulator),
     ...joints("gantry", "Gantry", "device", gantry),
     torques(manipulator),
+    ...remote(scene),
   ];
   return specs.filter(({ series }) => series.length > 0);
 }
@@ -120,6 +121,35 @@ function torques(manipulator: SceneJoint[]): TimeSpec {
     limits: [],
     smallest_span: 10,
   };
+}
+
+// Of a teleoperation: what its two ends feel, and how energy went.
+function remote({ teleoperation }: Scene): TimeSpec[] {
+  if (!teleoperation) return [];
+  const unit = teleoperation.mapping === "tool" ? "N" : "Nm";
+  const part = (label: string, column: string): Series => ({ label, column: `remote.${column}`, scale: 1 });
+  return [
+    {
+      id: "remote-energy",
+      title: "Energy of both ports",
+      unit: "J",
+      series: [
+        { ...part("operator's port", "energy_leader_J"), is_main: true },
+        { ...part("remote port", "energy_remote_J"), is_main: true },
+        part("dissipated", "dissipated_J"),
+      ],
+      limits: [],
+      smallest_span: 0.2,
+    },
+    {
+      id: "remote-force",
+      title: "Force at both ends",
+      unit,
+      series: [part("on your hand", "force_leader"), part("on the remote machine", "force_remote")],
+      limits: [],
+      smallest_span: 4,
+    },
+  ];
 }
 
 // First index whose time is not before `time`; times rise.

@@ -7,6 +7,7 @@ import {
   Matrix4,
   Mesh,
   MeshBasicMaterial,
+  type Object3D,
   PlaneGeometry,
   RingGeometry,
   Vector3,
@@ -63,7 +64,7 @@ export class JointGauge {
     const shape = new RingGeometry(radius + 1.6 * WIDTH, radius + 3.2 * WIDTH, STEPS);
     this.torque = new Mesh(shape, flat(TORQUE_COLOR, 0.9));
     this.torque_ring.add(this.torque);
-    this.place(joint);
+    stand_at(joint, [this.limit_ring, this.torque_ring]);
   }
 
   show(q: number, closeness: Closeness): void {
@@ -79,21 +80,6 @@ export class JointGauge {
     this.torque.rotation.z = q;
     this.torque.scale.y = torque_Nm < 0 ? -1 : 1;
     this.torque.material.color.set(share > 0.9 ? ACTIVE_COLOR : TORQUE_COLOR);
-  }
-
-  // The rings stand still with the parent link: z = axis, x = where the child points at zero.
-  private place(joint: URDFJoint): void {
-    const axis = joint.axis.clone().normalize();
-    const towards = child_direction(joint, axis);
-    const basis = new Matrix4().makeBasis(towards, new Vector3().crossVectors(axis, towards), axis);
-    for (const ring of [this.limit_ring, this.torque_ring]) {
-      const mount = new Group();
-      mount.position.copy(joint.position);
-      mount.quaternion.copy(joint.quaternion);
-      ring.quaternion.setFromRotationMatrix(basis);
-      mount.add(ring);
-      joint.parent!.add(mount);
-    }
   }
 
   private add_ends(radius: number, low: number, high: number): void {
@@ -112,6 +98,21 @@ export class JointGauge {
     back.position.z = -0.0015;
     this.needle.add(pointer, back);
     this.limit_ring.add(this.needle);
+  }
+}
+
+// The parts stand still with the parent link: z = axis, x = where the child points at zero.
+export function stand_at(joint: URDFJoint, parts: Object3D[]): void {
+  const axis = joint.axis.clone().normalize();
+  const towards = child_direction(joint, axis);
+  const basis = new Matrix4().makeBasis(towards, new Vector3().crossVectors(axis, towards), axis);
+  for (const part of parts) {
+    const mount = new Group();
+    mount.position.copy(joint.position);
+    mount.quaternion.copy(joint.quaternion);
+    part.quaternion.setFromRotationMatrix(basis);
+    mount.add(part);
+    joint.parent!.add(mount);
   }
 }
 

@@ -3,6 +3,7 @@
 export const LAYERS = {
   device: { title: "Device", is_on: true },
   twin: { title: "Twin", is_on: true },
+  remote: { title: "Remote machine", is_on: true },
   ghost: { title: "Second recording", is_on: true },
   surfaces: { title: "Virtual surfaces", is_on: true },
   checkpoints: { title: "Checkpoints", is_on: true },

@@ -2,7 +2,7 @@
 
 import { type Material, Color, Mesh, MeshStandardMaterial, type Object3D } from "three";
 
-import { DEVICE_COLOR, GHOST_COLOR, TWIN_COLOR, current_theme } from "../theme";
+import { DEVICE_COLOR, GHOST_COLOR, REMOTE_COLOR, TWIN_COLOR, current_theme } from "../theme";
 
 // How the shapes of a chain are drawn.
 interface Look {
@@ -13,6 +13,7 @@ interface Look {
 
 export const DEVICE: Look = { color: DEVICE_COLOR, share: 0.68, opacity: 1 };
 export const TWIN: Look = { color: TWIN_COLOR, share: 0.6, opacity: 0.85 }; // it is not there
+export const REMOTE: Look = { color: REMOTE_COLOR, share: 0.72, opacity: 1 };
 
 interface Surface {
   roughness: number;
@@ -53,15 +54,27 @@ export function paint_ghost(root: Object3D): void {
   });
 }
 
-const GHOST = new MeshStandardMaterial({
-  color: GHOST_COLOR,
-  roughness: 0.7,
-  transparent: true,
-  opacity: 0.32,
-  polygonOffset: true,
-  polygonOffsetFactor: 1,
-  polygonOffsetUnits: 4,
-});
+const GHOST = see_through(GHOST_COLOR, 0.32);
+const REMOTE_TARGET = see_through(0xb4dd6f, 0.42);
+
+// The same for where a remote machine is to be.
+export function paint_target(root: Object3D): void {
+  root.traverse((part) => {
+    if (part instanceof Mesh) part.material = REMOTE_TARGET;
+  });
+}
+
+function see_through(color: number, opacity: number): MeshStandardMaterial {
+  return new MeshStandardMaterial({
+    color,
+    roughness: 0.7,
+    transparent: true,
+    opacity,
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 4,
+  });
+}
 
 function paint(material: Material, look: Look): Material {
   const own = "color" in material ? (material.color as Color) : new Color(current_theme().link);

@@ -17,6 +17,7 @@ import { JointGauge } from "./joint_gauges";
 import type { Layer, Layers } from "./layers";
 import { DEVICE, TWIN, paint_shapes } from "./materials";
 import { Person } from "./person";
+import { Remote } from "./remote";
 import { scanner_zone } from "./scanner_zone";
 import type { Stage } from "./stage";
 import { SeeThrough } from "./see_through";
@@ -58,11 +59,11 @@ export class World {
     readonly scene: Scene,
     private readonly device: ChainView,
     private readonly twin: ChainView,
+    private readonly remote: Remote | null,
     private readonly stage: Stage,
     private readonly layers: Layers,
   ) {
-    const joints = scene.device.joints.map(({ name }) => device.joint(name));
-    this.arrow = arrow_size(joints.filter((joint) => joint !== null));
+    this.arrow = arrow_of(scene, device);
     this.handle = new HandleView(this.arrow);
     this.person = new Person(scene.floor_z_m, foot_of_arm(scene));
     const lowest = new Box3().setFromObject(device.placement).min.z;
@@ -77,6 +78,7 @@ export class World {
     this.root.add(device.placement, twin.placement, this.surroundings.group, this.ghost.group);
     this.root.add(this.person.group, this.trails, this.scanner, this.surfaces.group);
     this.root.add(this.checkpoints.group);
+    if (remote) this.root.add(remote.group);
     this.root.add(this.handle.pull, this.handle.arrows);
     stage.ground(this.root);
     this.apply_layers();
@@ -93,14 +95,19 @@ export class World {
       load_chain(scene.device, (root) => paint_shapes(root, DEVICE)),
       load_chain(scene.twin, (root) => paint_shapes(root, TWIN)),
     ]);
-    await Promise.all([device.complete, twin.complete]);
-    return new World(scene, device, twin, stage, layers);
+    const [remote] = await Promise.all([
+      Remote.load(scene, arrow_of(scene, device)),
+      device.complete,
+      twin.complete,
+    ]);
+    return new World(scene, device, twin, remote, stage, layers);
   }
 
   apply_layers(): void {
     const parts: [Layer, Object3D[]][] = [
       ["device", [this.device.placement]],
       ["twin", [this.twin.placement]],
+      ["remote", this.remote ? [this.remote.group] : []],
       ["ghost", [this.ghost.group]],
       ["surfaces", [this.surfaces.group]],
       ["checkpoints", [this.checkpoints.group]],
@@ -140,6 +147,7 @@ export class World {
     this.handle.show_wrench(frame.p_B_H_m, frame.force_N, frame.torque_Nm);
     this.handle.show_target(frame.p_B_H_m, target, axis);
     this.ghost.show(frame.ghost);
+    this.remote?.show(frame.teleoperation);
     this.surfaces.show(frame.p_B_E_m, frame.contact);
     this.checkpoints.show(new Vector3(...frame.p_B_H_m), attitude_of(frame), reached);
     const eye = this.stage.camera.getWorldPosition(new Vector3());
@@ -152,12 +160,14 @@ export class World {
     this.pose(frame);
     const { shoulder } = this;
     const { gantry_joints } = this.scene;
+    this.remote?.show(frame.teleoperation);
+    const remote = this.remote ? [this.remote.machine_root, this.remote.walls_group] : [];
     const frame_points = shoulder ? points_on(this.device.placement, shoulder) : [];
     const table = gantry_joints === 0 ? thinned(frame_points, TABLE_POINTS) : [];
     return {
       arm: points_on(shoulder ?? this.device.placement),
       frame: frame_points,
-      twin: points_on(this.twin.placement),
+      twin: [...points_on(this.twin.placement), ...remote.flatMap((part) => points_on(part))],
       person: this.person.parts.flatMap((part) => points_on(part)),
       around: [this.surroundings.group, this.surfaces.group].flatMap((part) => points_on(part)),
       handle: new Vector3(...frame.p_B_H_m),
@@ -192,6 +202,11 @@ export class World {
       view.show_torque(q, torque);
     }
   }
+}
+
+function arrow_of(scene: Scene, device: ChainView): ArrowSize {
+  const joints = scene.device.joints.map(({ name }) => device.joint(name));
+  return arrow_size(joints.filter((joint) => joint !== null));
 }
 
 function attitude_of(frame: Frame): Quaternion {

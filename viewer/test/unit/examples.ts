@@ -1,6 +1,14 @@
 // A small scene and a frame of it, for tests.
 
-import type { Budget, Frame, Scene, SceneJoint, Wrench } from "../../src/messages";
+import type {
+  Budget,
+  Frame,
+  Scene,
+  SceneJoint,
+  SceneTeleoperation,
+  Teleoperation,
+  Wrench,
+} from "../../src/messages";
 
 export function joint(name: string, more: Partial<SceneJoint> = {}): SceneJoint {
   return {
@@ -57,6 +65,7 @@ export const scene: Scene = {
   surfaces: [],
   shapes: [],
   checkpoints: [],
+  teleoperation: null,
   choices: {
     scenario: "door",
     scenarios: [],
@@ -156,4 +165,37 @@ export const frame: Frame = {
   },
   clients: 1,
   ghost: null,
+  teleoperation: null,
 };
+
+// A tool 100 ms away that meets a wall at y = 0.2 m.
+export const remote_tool: SceneTeleoperation = {
+  mapping: "tool",
+  method: "model_mediated",
+  link: "100 ms each way",
+  force_scale: 2,
+  p_B_root_m: [0, 0, 0],
+  quaternion_B_root: [0, 0, 0, 1],
+  axes: ["x", "y", "z"].map((name) => ({ name, min: -0.5, max: 0.5 })),
+  walls: [{ normal: [0, -1, 0], offset: -0.2 }],
+};
+
+export function remote_now(more: Partial<Teleoperation> = {}): Teleoperation {
+  return {
+    link: "engaged",
+    cause: "none",
+    is_clutch_open: false,
+    age_s: 0.1,
+    round_trip_s: 0.213,
+    jitter_s: 0.007,
+    loss: 0.05,
+    x_target: [0, 0.1, 0],
+    x_remote: [0, 0.097, 0],
+    f_leader: [0, 0, 0],
+    f_remote: [0, 0, 0],
+    energy_leader: 0,
+    energy_remote: 0,
+    dissipated: 0,
+    ...more,
+  };
+}
