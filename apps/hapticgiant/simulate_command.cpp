@@ -11,6 +11,7 @@
 #include "apps/hapticgiant/interruption.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/scenario_options.h"
+#include "apps/hapticgiant/simulate_remote.h"
 #include "apps/hapticgiant/version.h"
 #include "hg/analysis/summary.h"
 #include "hg/device/udp/device_server.h"
@@ -113,9 +114,16 @@ void add_simulate(Command app, int& exit_code) {
                    "like a machine: each client finds the device where the last one has left it, "
                    "and the person lets go of the handle once the override key is on (run "
                    "--move-to-start)");
+  command
+      .add_flag("--remote", arguments->is_remote,
+                "the remote machine of the scenario's teleoperation, for a leader elsewhere whose "
+                "scenario has teleoperation.remote.udp")
+      .excludes("--stays");
   command.add_option("--capture", arguments->capture,
                      "write every datagram to this pcap file (docs/reference/device_protocol.md)");
-  command.callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
+  command.callback([arguments, &exit_code] {
+    exit_code = arguments->is_remote ? simulate_remote(*arguments) : simulate(*arguments);
+  });
 }
 
 }  // namespace hg::apps

@@ -12,11 +12,12 @@ class Command;
 
 struct SimulateArguments {
   scenario::ScenarioOptions world;
-  std::string listen;    ///< address to listen on, HOST:PORT
-  std::string key_file;  ///< file of the key that clients must have; empty = none
-  bool is_fast = false;  ///< lock-step instead of real time
-  bool stays = false;    ///< each client finds the device where the last one has left it
-  std::string capture;   ///< pcap file of all datagrams; empty = none
+  std::string listen;      ///< address to listen on, HOST:PORT
+  std::string key_file;    ///< file of the key that clients must have; empty = none
+  bool is_fast = false;    ///< lock-step instead of real time
+  bool is_remote = false;  ///< the remote machine of its teleoperation instead of the device
+  bool stays = false;      ///< each client finds the device where the last one has left it
+  std::string capture;     ///< pcap file of all datagrams; empty = none
 };
 
 /// Serves one client after the other until Ctrl-C, each with a reset world unless the

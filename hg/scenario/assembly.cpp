@@ -230,10 +230,19 @@ std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& sc
 }
 
 std::unique_ptr<TwinForceSource> make_twin_force(const config::Scenario& scenario) {
+  return make_twin_force(scenario, nullptr);
+}
+
+std::unique_ptr<TwinForceSource> make_twin_force(
+    const config::Scenario& scenario, std::unique_ptr<teleoperation::RemoteSide> remote) {
   if (!scenario.teleoperation) return nullptr;
+  if (!remote && !scenario.teleoperation->address.udp.empty()) {
+    throw SetupError(
+        "teleoperation.remote.udp: a machine behind a network is led by 'hapticgiant run'");
+  }
   return std::make_unique<teleoperation::Teleoperation>(
       *scenario.teleoperation, scenario.twin.model.chain, scenario.twin.model.end_effector,
-      scenario.device.model.dt());
+      scenario.device.model.dt(), std::move(remote));
 }
 
 analysis::Summary make_summary(const config::Scenario& scenario) {

@@ -12,6 +12,10 @@
 #include "hg/simulator/person/person.h"
 #include "hg/simulator/simulation.h"
 
+namespace hg::teleoperation {
+class RemoteSide;
+}  // namespace hg::teleoperation
+
 namespace hg::scenario {
 
 /// The control cycle of the scenario's device and twin, with a solver capped where the faults of
@@ -41,8 +45,12 @@ std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& sc
 std::unique_ptr<device::Device> make_simulated_device(const config::Scenario& scenario,
                                                       simulator::Simulation world);
 
-/// What pushes the twin of the scenario from outside: its teleoperation. Null: nothing does.
+/// What pushes the twin of the scenario from outside: its teleoperation. Null: nothing does. Throws
+/// SetupError where the remote machine is behind a network.
 std::unique_ptr<TwinForceSource> make_twin_force(const config::Scenario& scenario);
+/// The same with a remote machine; null: simulated here.
+std::unique_ptr<TwinForceSource> make_twin_force(const config::Scenario& scenario,
+                                                 std::unique_ptr<teleoperation::RemoteSide> remote);
 
 /// Evaluation of a run of the scenario.
 analysis::Summary make_summary(const config::Scenario& scenario);

@@ -13,7 +13,6 @@
 
 #include "hg/core/interval.h"
 #include "hg/teleoperation/method.h"
-#include "hg/teleoperation/packet.h"
 
 namespace hg::teleoperation {
 

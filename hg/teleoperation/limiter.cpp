@@ -32,6 +32,13 @@ bool PacketGate::has_jumped(const LeaderPacket& packet) const noexcept {
   return way > config_.jump_speed * elapsed + kRounding;
 }
 
+void PacketGate::forget() noexcept {
+  newest_ = {};
+  used_s_ = 0.0;
+  repeated_ = frozen_ = 0;
+  cause_ = RemoteCause::kReleased;
+}
+
 bool PacketGate::take(const LeaderPacket& packet, double now_s) noexcept {
   const auto size = static_cast<Eigen::Index>(config_.axes.size());
   if (packet.engagement < newest_.engagement && packet.engagement != 0) {

@@ -13,7 +13,6 @@
 
 #include "hg/core/interval.h"
 #include "hg/teleoperation/method.h"
-#include "hg/teleoperation/packet.h"
 
 namespace hg::teleoperation {
 
@@ -44,6 +43,8 @@ class PacketGate {
   /// The same once per period: why the machine must hold, kNone if it follows.
   RemoteCause check(double now_s) noexcept;
   const LeaderPacket& newest() const noexcept { return newest_; }
+  /// Forgets the leader: another one begins.
+  void forget() noexcept;
 
  private:
   bool has_jumped(const LeaderPacket& packet) const noexcept;

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "hg/signals/remote_packets.h"
 #include "hg/signals/teleoperation.h"
-#include "hg/teleoperation/packet.h"
 
 namespace hg::teleoperation {
 

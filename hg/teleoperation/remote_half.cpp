@@ -14,6 +14,14 @@ RemoteHalf::RemoteHalf(std::unique_ptr<RemoteMethod> method, const MachineImpeda
       limiter_(limiter, dt),
       method_(std::move(method)) {}
 
+void RemoteHalf::begin(std::unique_ptr<RemoteMethod> method) noexcept {
+  method_ = std::move(method);
+  gate_.forget();
+  is_new_ = false;
+  engagement_ = 0;
+  sequence_ = 0;
+}
+
 void RemoteHalf::receive(const LeaderPacket& packet, double now_s) noexcept {
   is_new_ = gate_.take(packet, now_s) || is_new_;
 }

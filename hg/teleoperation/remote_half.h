@@ -10,7 +10,6 @@
 #include "hg/teleoperation/limiter.h"
 #include "hg/teleoperation/machine.h"
 #include "hg/teleoperation/method.h"
-#include "hg/teleoperation/packet.h"
 
 namespace hg::teleoperation {
 
@@ -23,6 +22,8 @@ class RemoteHalf {
   RemoteHalf(std::unique_ptr<RemoteMethod> method, const MachineImpedance& machine,
              const LimiterConfig& limiter, double dt);
 
+  /// Another leader begins, by this method: the machine holds, with its target where it is.
+  void begin(std::unique_ptr<RemoteMethod> method) noexcept;
   void receive(const LeaderPacket& packet, double now_s) noexcept;
   /// Target of the machine for the coming period, and the packet to send. The first call takes the
   /// machine's position as its target.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "hg/core/error.h"
 
@@ -31,13 +32,14 @@ const TeleoperationConfig& checked(const TeleoperationConfig& config,
 }  // namespace
 
 Teleoperation::Teleoperation(const TeleoperationConfig& config, const model::ChainModel& twin,
-                             int end_effector, double dt)
+                             int end_effector, double dt, std::unique_ptr<RemoteSide> remote)
     : config_(checked(config, twin)),
       twin_(twin),
       end_effector_(end_effector),
       leader_(config.method, config.leader, dt),
-      remote_(config.method, config.machine.impedance, config.limiter, dt),
-      machine_(config.machine, dt),
+      remote_(remote ? std::move(remote)
+                     : std::make_unique<SimulatedRemote>(config.method, config.limiter,
+                                                         config.machine, dt)),
       to_remote_(config.link, 0, dt),
       to_leader_(config.link, 1, dt) {
   f_hand_ = v_ = PortVector::Zero(config.machine.x_start.size());
@@ -75,12 +77,9 @@ bool Teleoperation::is_clutch_closed(const TwinNow& now) noexcept {
 }
 
 void Teleoperation::move_remote(double now_s) noexcept {
-  while (to_remote_.receive(now_s, arrived_at_remote_)) {
-    remote_.receive(arrived_at_remote_, now_s);
-  }
-  machine_.read(machine_state_);
-  machine_.write(remote_.step(now_s, machine_state_, remote_packet_));
-  to_leader_.send(remote_packet_, now_s);
+  while (to_remote_.receive(now_s, arrived_at_remote_)) remote_->send(arrived_at_remote_, now_s);
+  remote_->step(now_s);
+  while (remote_->receive(remote_packet_)) to_leader_.send(remote_packet_, now_s);
 }
 
 void Teleoperation::push(TwinForce& force) const noexcept {
@@ -118,11 +117,13 @@ void Teleoperation::step(const TwinNow& now, TwinForce& force,
             .energy_leader = leader_.energy().net(),
             .energy_remote = arrived.energy_net,
             .dissipated = leader_.dissipated() + arrived.dissipated,
-            .x_true = machine_state_.x,
-            .f_true = machine_state_.f,
             .round_trip = meter_.round_trip(),
             .jitter = meter_.jitter(),
             .loss = meter_.loss()};
+  if (const MachineState* truth = remote_->truth()) {
+    report.x_true = truth->x;
+    report.f_true = truth->f;
+  }
 }
 
 }  // namespace hg::teleoperation

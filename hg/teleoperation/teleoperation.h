@@ -1,4 +1,4 @@
-/// A device that leads a simulated remote machine over a simulated link.
+/// A device that leads a remote machine over a simulated link.
 ///
 /// Direct: the end effector of the twin leads the tool of the remote machine; motion and force are
 /// scaled, the clutch sets where both belong together. Indirect: the twin is the model of the
@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "hg/core/interval.h"
@@ -21,13 +22,19 @@
 #include "hg/teleoperation/limiter.h"
 #include "hg/teleoperation/link_meter.h"
 #include "hg/teleoperation/machine.h"
-#include "hg/teleoperation/remote_half.h"
+#include "hg/teleoperation/remote_side.h"
 
 namespace hg::teleoperation {
 
 enum class Mapping : std::uint8_t {
   kTool,    ///< direct: positions of the tool, three coordinates
   kJoints,  ///< indirect: joints of the twin, up to seven
+};
+
+/// Where a remote machine is that is not simulated in this process.
+struct RemoteAddress {
+  std::string udp;       ///< HOST:PORT; empty = it is simulated here
+  std::string key_file;  ///< secret that it has, too; empty = none
 };
 
 struct TeleoperationConfig {
@@ -37,6 +44,7 @@ struct TeleoperationConfig {
   ChannelConfig link;     ///< Of both directions, each with random numbers of its own
   LimiterConfig limiter;  ///< Of the remote machine
   SimulatedMachineConfig machine;
+  RemoteAddress address;
   double motion_scale = 1.0;  ///< Motion of the remote machine over that of the leader
   double force_scale = 1.0;   ///< Force on the leader over that on the remote machine
   Eigen::Matrix3d R_R_B =
@@ -46,9 +54,10 @@ struct TeleoperationConfig {
 
 class Teleoperation final : public TwinForceSource {
  public:
-  /// `end_effector` is a frame of the twin. Throws SetupError.
+  /// `end_effector` is a frame of the twin; `remote` is null for a simulated machine. Throws
+  /// SetupError.
   Teleoperation(const TeleoperationConfig& config, const model::ChainModel& twin, int end_effector,
-                double dt);
+                double dt, std::unique_ptr<RemoteSide> remote = nullptr);
 
   void step(const TwinNow& now, TwinForce& force, TeleoperationReport& report) noexcept override;
 
@@ -62,8 +71,7 @@ class Teleoperation final : public TwinForceSource {
   model::ChainData twin_;
   int end_effector_;
   LeaderHalf leader_;
-  RemoteHalf remote_;
-  SimulatedMachine machine_;
+  std::unique_ptr<RemoteSide> remote_;
   Channel<LeaderPacket> to_remote_;
   Channel<RemotePacket> to_leader_;
   LinkMeter meter_;  ///< Of what arrives at the leader
@@ -71,7 +79,6 @@ class Teleoperation final : public TwinForceSource {
   PortVector x_, v_, f_hand_, f_leader_;
   Eigen::Vector3d p_before_ = Eigen::Vector3d::Zero();
   double began_s_ = -1.0;  ///< When the run began; negative = it has not
-  MachineState machine_state_;
   LeaderPacket leader_packet_, arrived_at_remote_;
   RemotePacket remote_packet_, arrived_at_leader_;
 };

@@ -7,6 +7,7 @@
 
 #include "hg/device/udp/codec.h"
 #include "hg/device/udp/round_trip.h"
+#include "hg/device/udp/teleoperation_messages.h"
 #include "tests/fuzz/targets.h"
 
 namespace hg::fuzz {
@@ -60,6 +61,12 @@ void protocol(Bytes bytes) {
       return go_round<Goodbye>(datagram, header);
     case MessageType::kRoundTrip:
       return go_round<RoundTrip>(datagram, header);
+    case MessageType::kTerms:
+      return go_round<Terms>(datagram, header);
+    case MessageType::kLeader:
+      return go_round<LeaderMessage>(datagram, header);
+    case MessageType::kRemote:
+      return go_round<RemoteMessage>(datagram, header);
   }
   fail("a good header of no message");
 }

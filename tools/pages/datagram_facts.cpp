@@ -7,6 +7,7 @@
 
 #include "hg/device/udp/codec.h"
 #include "hg/device/udp/round_trip.h"
+#include "hg/device/udp/teleoperation_messages.h"
 
 namespace hg::pages {
 namespace {
@@ -83,7 +84,10 @@ Json datagram_facts() {
           message<SensorFrame>("Sensors"),
           message<CommandFrame>("Command"),
           message<Goodbye>("Goodbye"),
-          message<RoundTrip>("Round trip")};
+          message<RoundTrip>("Round trip"),
+          message<Terms>("Terms"),
+          message<LeaderMessage>("Leader"),
+          message<RemoteMessage>("Remote")};
 }
 
 }  // namespace hg::pages

@@ -120,6 +120,12 @@ void describe_joints_of_machine(V& v, TeleoperationDraft& d) {
 template <class V>
 void describe_remote(V& v, TeleoperationDraft& d) {
   teleoperation::SimulatedMachineConfig& machine = d.config->machine;
+  teleoperation::RemoteAddress& address = d.config->address;
+  v.words("udp", address.udp,
+          "HOST:PORT of the machine, in place of the simulated one, "
+          "docs/reference/device_protocol.md");
+  v.words("key_file", address.key_file, "udp: secret that the machine has, too");
+  v.rule(address.key_file.empty() || !address.udp.empty(), "key_file", "needs 'udp'");
   const bool is_tool = d.config->mapping == teleoperation::Mapping::kTool;
   const bool covers_tool = v.covers(is_tool), covers_joints = v.covers(!is_tool);
   if (covers_tool) describe_tool(v, d);

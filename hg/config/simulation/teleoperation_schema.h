@@ -97,7 +97,8 @@ void describe(V& v, TeleoperationDraft& d) {
   v.group(
       "parameters", [&](auto& child) { describe(child, config.method); }, "of the method");
   v.group(
-      "remote", [&](auto& child) { describe_remote(child, d); }, "the simulated remote machine");
+      "remote", [&](auto& child) { describe_remote(child, d); },
+      "the remote machine, simulated or behind a network");
 }
 
 template <class V>

@@ -9,7 +9,15 @@ namespace hg::udp {
 namespace {
 
 const char* words(Interface interface) noexcept {
-  return interface == Interface::kTorque ? "torques" : "positions";
+  switch (interface) {
+    case Interface::kPosition:
+      return "positions";
+    case Interface::kTorque:
+      return "torques";
+    case Interface::kRemote:
+      return "targets of a leader";
+  }
+  return "what is unknown";
 }
 
 const char* words(bool is_lock_step) noexcept {

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include "hg/device/udp/round_trip.h"
+#include "hg/device/udp/teleoperation_messages.h"
 
 namespace hg::udp {
 namespace {
@@ -28,6 +29,12 @@ std::size_t length_of(std::uint16_t type) noexcept {
       return with(size_of<Goodbye>());
     case MessageType::kRoundTrip:
       return with(size_of<RoundTrip>());
+    case MessageType::kTerms:
+      return with(size_of<Terms>());
+    case MessageType::kLeader:
+      return with(size_of<LeaderMessage>());
+    case MessageType::kRemote:
+      return with(size_of<RemoteMessage>());
   }
   return 0;
 }

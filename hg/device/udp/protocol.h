@@ -4,16 +4,11 @@
 /// Little endian, fixed layout. No allocation, noexcept.
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <string>
-#include <string_view>
 
 #include "hg/core/fields.h"
+#include "hg/device/udp/text.h"
 #include "hg/signals/frames.h"
 
 namespace hg::udp {
@@ -31,31 +26,14 @@ enum class MessageType : std::uint16_t {
   kCommand = 5,    ///< client: command frame
   kGoodbye = 6,    ///< either side: the session is over
   kRoundTrip = 7,  ///< device in real time: how late its commands come; may be ignored
-};
-
-/// Foreign text made safe for a terminal, in one line, by hg/core/visible.h.
-std::string printable(std::string_view text);
-
-/// Text of fixed capacity; longer text is cut.
-template <std::size_t kSize>
-struct Text {
-  std::array<char, kSize> bytes{};
-
-  Text() = default;
-  template <std::convertible_to<std::string_view> T>
-  Text(const T& value) noexcept {  // NOLINT(google-explicit-constructor)
-    const std::string_view text = value;
-    std::memcpy(bytes.data(), text.data(), std::min(text.size(), kSize));
-  }
-  /// Text as received; use printable() for display.
-  std::string_view view() const noexcept {
-    return {bytes.begin(), std::find(bytes.begin(), bytes.end(), '\0')};
-  }
-  std::string printable() const { return udp::printable(view()); }
+  kTerms = 8,      ///< leader of a remote machine, as kReady: the method of both halves
+  kLeader = 9,     ///< leader: a period of its side
+  kRemote = 10,    ///< remote machine: a period of its side
 };
 
 /// Command interface of the drives: positions (they follow CommandFrame::q_m), or torques (tau_m).
-enum class Interface : std::uint32_t { kPosition = 1, kTorque = 2 };
+/// kRemote: not a device, but the remote machine of a teleoperation (teleoperation_messages.h).
+enum class Interface : std::uint32_t { kPosition = 1, kTorque = 2, kRemote = 3 };
 
 /// Properties of a device on which both sides must agree.
 struct Description {
@@ -71,9 +49,10 @@ template <typename Archive, Is<Description> T>
 void fields(Archive& a, T& description) {
   a("device", description.device, "name of the device as in its device.yaml, UTF-8");
   a("n_p", description.n_p, "gantry axes, 0..2");
-  a("n_m", description.n_m, "joints of the manipulator, 6 or 7");
+  a("n_m", description.n_m, "joints of the manipulator, or coordinates of the remote machine");
   a("rate_Hz", description.rate_Hz, "rate of frames", unit::kHz);
-  a("interface", description.interface, "1: the drives follow q_m, 2: the drives give tau_m");
+  a("interface", description.interface,
+    "1: the drives follow q_m, 2: the drives give tau_m, 3: a remote machine");
   a("is_lock_step", description.is_lock_step,
     "0: real time, 1: lock-step, each side waits for the other");
 }

@@ -9,6 +9,8 @@
 #include "hg/core/error.h"
 #include "hg/doctor/gate.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/remote/remote_machine.h"
+#include "hg/scenario/run/version.h"
 
 namespace hg::scenario {
 namespace {
@@ -57,13 +59,19 @@ PreparedRun::PreparedRun(config::Scenario loaded, const ScenarioOptions& options
     : world(options),
       scenario(std::move(loaded)),
       cycle(make_cycle(scenario)),
-      twin_force(make_twin_force(scenario)) {
+      twin_force(make_twin_force(
+          scenario, connect_remote_machine(scenario, std::string("hapticgiant run ") + version(),
+                                           timing.is_fast))) {
   doctor::check_items(machine.despite);
   if (machine.address.empty()) {
     simulated = make_simulated_device(scenario);
   } else {
     connection = connect_to_run(machine, timing, records.folder, scenario);
     refusal = "the device at " + machine.address + " keeps its own time";
+  }
+  if (scenario.teleoperation && !scenario.teleoperation->address.udp.empty()) {
+    refusal =
+        "the remote machine at " + scenario.teleoperation->address.udp + " keeps its own time";
   }
 }
 

@@ -9,6 +9,7 @@
 #include "hg/core/test/unit_words.h"
 #include "hg/device/udp/codec.h"
 #include "hg/device/udp/round_trip.h"
+#include "hg/device/udp/teleoperation_messages.h"
 
 namespace hg::udp {
 namespace {
@@ -62,11 +63,15 @@ TEST(Layout, EveryFieldIsAligned) {
   expect_aligned(CommandFrame{});
   expect_aligned(Goodbye{});
   expect_aligned(RoundTrip{});
+  expect_aligned(Terms{});
+  expect_aligned(LeaderMessage{});
+  expect_aligned(RemoteMessage{});
 }
 
 TEST(Layout, EveryMessageFitsIntoADatagramThatNoNetworkDivides) {
-  for (const std::size_t size : {size_of<Hello>(), size_of<Welcome>(), size_of<SensorFrame>(),
-                                 size_of<CommandFrame>(), size_of<Goodbye>()}) {
+  for (const std::size_t size :
+       {size_of<Hello>(), size_of<Welcome>(), size_of<SensorFrame>(), size_of<CommandFrame>(),
+        size_of<Goodbye>(), size_of<LeaderMessage>(), size_of<RemoteMessage>()}) {
     EXPECT_LE(size_of<Header>() + size + 4, kLargestDatagram);
   }
 }

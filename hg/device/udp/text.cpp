@@ -1,4 +1,4 @@
-#include "hg/device/udp/protocol.h"
+#include "hg/device/udp/text.h"
 
 #include "hg/core/visible.h"
 
