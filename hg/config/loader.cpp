@@ -19,6 +19,8 @@ namespace hg::config {
 namespace {
 
 constexpr std::size_t kShown = 40;  // characters of a wrong value; enough to recognise it
+// entries of one map or list: no device has as many keys, and few scripts as many segments
+constexpr std::size_t kMostKeys = 1000, kMostItems = 10'000;
 
 Place place_of(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
 
@@ -51,6 +53,16 @@ InputFault with_proposal(InputFault fault, std::string_view name,
   fault.meant = nearest_name(name, names);
   if (!fault.meant.empty()) fault.what += ", did you mean '" + fault.meant + "'?";
   return fault;
+}
+
+// More than that, with a fault for each, would take minutes and help no reader.
+void require_few(const YAML::Node& node, const std::string& item, Faults& faults) {
+  const std::size_t most = node.IsMap() ? kMostKeys : kMostItems;
+  if (node.size() <= most) return;
+  faults.add(
+      place_of(node.Mark()), item,
+      "has " + std::to_string(node.size()) + " entries, expected at most " + std::to_string(most));
+  faults.throw_if_any();
 }
 
 // Notes where documents begin.
@@ -120,6 +132,7 @@ Loader::Loader(const YAML::Node& map, std::string item, LoaderFile& file)
       file_(file),
       faults_before_(file.faults.count()) {
   file_.places.add(item_, place_);
+  require_few(map, item_, file_.faults);
   for (const auto& pair : map) add_entry(pair.first, pair.second);
 }
 
@@ -293,6 +306,7 @@ bool Loader::list(std::string_view key, const std::function<void(Loader&)>& read
     fault(entry->value, item_of(key), "must be a list, got " + shown(entry->value));
     return false;
   }
+  require_few(entry->value, item_of(key), file_.faults);
   for (std::size_t i = 0; i < entry->value.size(); ++i) {
     read_map(entry->value[i], item_of(key) + "[" + std::to_string(i) + "]", read);
   }

@@ -69,6 +69,20 @@ TEST(OwnDevice, AToolBringsHandleSensorMassAndItsSwitch) {
   EXPECT_EQ(device.sources.size(), 3u);  // a recording must hold the tool
 }
 
+TEST(OwnDevice, FarTooManyEntriesAreOneFault) {
+  std::string tool = "mass_kg: 1\n";
+  for (int i = 0; i < 1000; ++i) tool += "key_" + std::to_string(i) + ": 1\n";
+  EXPECT_EQ(message(kGantry + "tool: tool.yaml\nflange: l7\n", arm_urdf("revolute"), tool),
+            "tool.yaml:1:1: has 1001 entries, expected at most 1000");
+  std::string limits = "handle: l7\nvirtual_joints:\n";
+  for (int i = 0; i < 10001; ++i) limits += "  - {}\n";
+  const std::string said = message(kGantry + limits, arm_urdf("revolute"));
+  EXPECT_NE(said.find("virtual_joints: has 10001 entries, expected at most 10000"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+}
+
 TEST(OwnDevice, AToolIsCheckedInItsOwnFile) {
   EXPECT_EQ(message(kGantry + "tool: tool.yaml\nflange: l7\n", arm_urdf("revolute"),
                     "name: bar\nmas_kg: 1\n"),
