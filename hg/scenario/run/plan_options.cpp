@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "hg/core/error.h"
@@ -124,6 +125,19 @@ class Reader {
   std::vector<std::string> keys_;
 };
 
+// Throws SetupError where a key of the request is given twice: the parser would take the last.
+Json parsed(std::string_view json) {
+  std::set<std::string> keys;
+  const auto note = [&](int depth, Json::parse_event_t event, const Json& key) {
+    if (event != Json::parse_event_t::key || depth != 1) return true;
+    if (!keys.insert(key.get<std::string>()).second) {
+      throw SetupError(fmt::format("request: {} is given twice", key.dump()));
+    }
+    return true;
+  };
+  return Json::parse(json, note, false);
+}
+
 // What says something about a page has no sense without one.
 void refuse_page_options(const Json& request, const RunPlan& plan) {
   const auto refuse_with = [&](const char* key, bool is_ruled_out, const char* by) {
@@ -153,7 +167,7 @@ void check_plan(const RunPlan& plan) {
 }
 
 RunPlan plan_of_request(std::string_view json) {
-  const Json request = Json::parse(json, nullptr, false);
+  const Json request = parsed(json);
   if (!request.is_object()) {
     throw SetupError("request: expected one JSON object, as {\"scenario\": \"door\"}");
   }

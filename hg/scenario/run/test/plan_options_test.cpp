@@ -44,6 +44,11 @@ TEST(PlanOfRequest, AnUnknownKeyIsRefusedWithTheNearest) {
             "request: no option is called 'slow_solv', did you mean 'slow_solve'?");
 }
 
+TEST(PlanOfRequest, AKeyThatIsGivenTwiceIsRefused) {
+  EXPECT_EQ(refusal(R"({"seed": 1, "fast": true, "seed": 2})"), "request: \"seed\" is given twice");
+  expect_part(refusal(R"({"seed": {"a": 1, "a": 2}})"), "--seed: expected a whole number");
+}
+
 TEST(PlanOfRequest, OneObjectIsExpected) {
   for (const char* text : {"", "{", "[]", "3", "{} {}"})
     expect_part(refusal(text), "one JSON object");
