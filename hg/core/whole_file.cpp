@@ -38,22 +38,23 @@ std::string partial_of(const std::string& file) {
   return partial;
 }
 
-bool is_whole(const OpenFile& file, std::string_view text, bool (*is_interrupted)() noexcept) {
+// 0, or the error that has ended the writing.
+int write_all(const OpenFile& file, std::string_view text, bool (*is_interrupted)() noexcept) {
   auto patient_until = Clock::time_point::max();
   while (!text.empty()) {
     pollfd place = {.fd = file.descriptor(), .events = POLLOUT, .revents = 0};
     if (poll(&place, 1, kLook_ms) == 0) {
       if (is_interrupted != nullptr && is_interrupted())
         patient_until = std::min(patient_until, Clock::now() + kPatience);
-      if (Clock::now() >= patient_until) return false;
+      if (Clock::now() >= patient_until) return EINTR;
       continue;
     }
     const ssize_t written = write(file.descriptor(), text.data(), std::min(text.size(), kAtOnce));
     if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (written < 0) return false;
+    if (written < 0) return errno;
     text.remove_prefix(written);
   }
-  return true;
+  return 0;
 }
 
 // existing content of another kind is kept
@@ -90,12 +91,13 @@ void write_whole_file(const std::string& file, std::string_view text,
                       bool (*is_interrupted)() noexcept) {
   const bool replaces = is_replaced(file);
   const std::string written = replaces ? partial_of(file) : file;
-  const bool is_written = is_whole(open_to_write(written, Content::kEmptied), text, is_interrupted);
-  std::error_code error;
-  if (is_written && replaces) fs::rename(written, file, error);
-  if (is_written && !error) return;
-  if (replaces) fs::remove(written, error);
-  throw SetupError(file + ": could not be written");
+  std::error_code error(write_all(open_to_write(written, Content::kEmptied), text, is_interrupted),
+                        std::generic_category());
+  if (!error && replaces) fs::rename(written, file, error);
+  if (!error) return;
+  std::error_code ignored;
+  if (replaces) fs::remove(written, ignored);
+  throw SetupError(file + ": could not be written: " + error.message());
 }
 
 void make_folder(const std::string& folder) {

@@ -155,7 +155,7 @@ class FullDisk(TemporaryFolder):
     def test_a_summary_that_cannot_be_written_affects_nothing_else(self):
         code, out, err = run("run", "door", "--fast", "--no-recording", "--summary", "/dev/full")
         self.assertEqual(code, NOT_WRITTEN, out)
-        self.assertEqual(err, "/dev/full: could not be written\n")
+        self.assertEqual(err, "/dev/full: could not be written: No space left on device\n")
 
 
 if __name__ == "__main__":

@@ -48,6 +48,11 @@ TEST(WholeFile, ALinkInPlaceOfThePartialFileLeadsNowhere) {
   EXPECT_EQ(folder.names(), (Names{"file.json", "victim"}));
 }
 
+TEST(WholeFile, AnErrorHasItsReason) {
+  EXPECT_EQ(message_of([] { write_whole_file("/dev/full", "{}"); }),
+            "/dev/full: could not be written: No space left on device");
+}
+
 TEST(WholeFile, AFolderIsMadeUnlessAFileIsThere) {
   const TemporaryFolder folder;
   make_folder((folder.path() / "a" / "b").string());
