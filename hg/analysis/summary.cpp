@@ -59,6 +59,7 @@ Summary::Summary(LimitCatalogue catalogue, FindPositions positions, double rate_
 void Summary::add(const Sample& sample) {
   const CycleRecord& record = sample.record;
   ++cycles_;
+  time_s_ = record.time_s;
   last_hash_ = record.state_hash;
   cycle_time_us_.add(sample.cycle_time_us);
   // a released enabling switch also stops the device, and is no fault
@@ -358,9 +359,11 @@ std::string Summary::to_text(const RunFacts& facts, const std::vector<std::strin
   const Distribution time = cycle_time_us_.distribution();
   const double wall = std::max(facts.wall_time_s, 1e-9);
 
-  text += line(
-      "run", fmt::format("{}, {:.1f} s in {:.1f} s ({:.1f}x real time), {:.0f} Hz", facts.scenario,
-                         duration_s_, facts.wall_time_s, duration_s_ / wall, facts.rate_Hz));
+  const double duration_s = running_cycles_ > 0 ? duration_s_ : time_s_;
+  text += line("run", fmt::format("{}, {:.1f} s in {:.1f} s ({:.1f}x real time){}, {:.0f} Hz",
+                                  facts.scenario, duration_s, facts.wall_time_s, duration_s / wall,
+                                  running_cycles_ > 0 ? "" : ": over before the device was running",
+                                  facts.rate_Hz));
   text += line("law", fmt::format("{}, {} bounds{}{}", facts.law, facts.bounds,
                                   facts.gantry == "law" ? ", gantry led by the law" : "",
                                   facts.braking == "together" ? ", limits brake together" : ""));

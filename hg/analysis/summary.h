@@ -91,7 +91,7 @@ class Summary {
   std::vector<RunEvent> events_;
   std::vector<double> worst_excess_;
   std::uint64_t cycles_ = 0, running_cycles_ = 0;
-  double duration_s_ = 0.0;
+  double time_s_ = 0.0, duration_s_ = 0.0;  // of the last cycle; of the last that was running
   double max_sync_error_ = 0.0, max_sync_angle_ = 0.0;
   double sum_force_ = 0.0, max_force_ = 0.0, max_torque_ = 0.0;
   double rate_Hz_;

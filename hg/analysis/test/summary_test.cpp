@@ -32,6 +32,20 @@ EventRule rule(const char* name, std::vector<Condition> all_of) {
   return {name, "", std::move(all_of)};
 }
 
+TEST(Summary, ARunThatIsOverBeforeTheDeviceRunsHasItsDuration) {
+  Summary summary(catalogue(), {}, 1000.0);
+  CycleRecord record = running(0.4);
+  record.mode = Mode::kReady;
+  Sample sample;
+  sample.record = record;
+  summary.add(sample);
+  const RunFacts facts = {.scenario = "Door", .wall_time_s = 0.1};
+  EXPECT_NE(summary.to_text(facts, {}).find(
+                "Door, 0.4 s in 0.1 s (4.0x real time): over before the device was running"),
+            std::string::npos)
+      << summary.to_text(facts, {});
+}
+
 TEST(EventDetector, FindsRulesInTheirOrderOnly) {
   EventDetector detector(
       {rule("opened", {{.kind = ConditionKind::kTwinAbove, .index = 0, .value = 1.0}}),
