@@ -11,11 +11,13 @@ namespace hg::check {
 namespace {
 
 constexpr double kReserve = 0.5;  // share of the joints' ratings that one row may use
-constexpr double kLow = 0.05;
+constexpr double kRare = 0.01, kFew = 0.05, kMany = 0.25;  // shares of postures
 
-double low(std::vector<double>& values) {
+// Less than this share of the values is below it.
+double low(std::vector<double>& values, double share) {
   if (values.empty()) return kInfinity;
-  const auto index = static_cast<std::ptrdiff_t>(kLow * static_cast<double>(values.size()));
+  const auto index =
+      static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(values.size()))) - 1;
   std::ranges::nth_element(values, values.begin() + index);
   return values[index];
 }
@@ -66,31 +68,33 @@ std::vector<CartesianRule> cartesian_rules(const config::DeviceConfig& device,
   for (std::size_t k = 0; k < n; ++k) {
     const limits::JointLimits& range = model.cartesian_limits[k / 3].axes[k % 3];
     if (!is_limited(range)) continue;
+    const double too_weak = share_below(values[k], range.ddq_max);
+    const double weak = too_weak > kFew ? kFew : kRare;
     rules.push_back({.limit = static_cast<int>(k / 3),
                      .axis = static_cast<int>(k % 3),
                      .postures = static_cast<int>(values[k].size()),
-                     .share_too_weak = share_below(values[k], range.ddq_max),
-                     .low_acceleration = low(values[k])});
+                     .share_too_weak = too_weak,
+                     .share_weak = weak,
+                     .low_acceleration = low(values[k], weak)});
   }
   return rules;
 }
 
 void inspect_cartesian_rule(const config::DeviceConfig& device, const workspace::Survey& survey,
                             Collector& out) {
-  constexpr double kTolerated = 0.25, kRare = 0.01;  // shares of postures
   for (const CartesianRule& rule : cartesian_rules(device, survey)) {
     if (rule.share_too_weak < kRare) continue;
     const auto& limit = device.model.cartesian_limits[rule.limit];
     const auto& range = limit.axes[rule.axis];
     out.add(
-        rule.share_too_weak > kTolerated ? Severity::kWarning : Severity::kNote,
+        rule.share_too_weak > kMany ? Severity::kWarning : Severity::kNote,
         fmt::format("cartesian_limits[{}].ddq_max_m_per_s2", rule.limit),
         fmt::format("braking {} with {:g} m/s^2 along {} takes more than half of what the joints "
                     "can give in {:.0f} % of the postures near this limit, and overshoots there",
                     limit.name, range.ddq_max, "xyz"[rule.axis], 100.0 * rule.share_too_weak),
-        fmt::format("{:.2g} m/s^2 would do in 95 % of them; or raise the joints' ddq_max, or "
+        fmt::format("{} m/s^2 would do in {:.0f} % of them; or raise the joints' ddq_max, or "
                     "margin_m",
-                    rule.low_acceleration));
+                    rounded_down(rule.low_acceleration, 2), 100.0 * (1.0 - rule.share_weak)));
   }
 }
 

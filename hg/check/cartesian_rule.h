@@ -19,7 +19,8 @@ struct CartesianRule {
   int limit = 0, axis = 0;
   int postures = 0;  ///< number of surveyed postures within the braking distance of a face
   double share_too_weak = 0.0;    ///< share of these that cannot brake with A_c
-  double low_acceleration = 0.0;  ///< 5 % of these have less acceleration for braking
+  double share_weak = 0.0;        ///< 0.05, or 0.01 where no more than 0.05 are too weak
+  double low_acceleration = 0.0;  ///< less than this share of these give less for braking
 };
 
 std::vector<CartesianRule> cartesian_rules(const config::DeviceConfig& device,

@@ -59,7 +59,7 @@ void inspect_synchronisation(const config::DeviceConfig& device, Collector& out)
               fmt::format("the damping ratio kD / (2 sqrt(kP)) is {:.2f}, expected at least 0.5: "
                           "the handle swings about the twin",
                           0.5 * kD / std::sqrt(kP)),
-              fmt::format("raise it to {:.3g}", 2.0 * std::sqrt(kP)));
+              "raise it to " + rounded_up(2.0 * std::sqrt(kP), 3));
     }
   };
   inspect_pair(device.rendering.kP_tran, device.rendering.kD_tran, "tran");
@@ -72,11 +72,11 @@ void inspect_gantry(const config::DeviceConfig& device, Collector& out) {
   const double k_unstable = 1.0 / (device.model.drive.lag + device.model.drive.dead_time);
   const double k = device.prepositioning.k_ppu;
   if (k < k_max) return;
-  out.add(
-      k < k_unstable ? Severity::kWarning : Severity::kFault, "prepositioning.k_ppu_1_per_s",
-      fmt::format("{:g} 1/s, must be below 1 / (4 lag) = {:.3g}: the gantry overshoots{}", k, k_max,
-                  k < k_unstable ? "" : " and oscillates"),
-      fmt::format("lower it to {:.2g}, or give the drive's true lag in drive.lag_s", 0.7 * k_max));
+  out.add(k < k_unstable ? Severity::kWarning : Severity::kFault, "prepositioning.k_ppu_1_per_s",
+          fmt::format("{:g} 1/s, must be below 1 / (4 lag) = {:.3g}: the gantry overshoots{}", k,
+                      k_max, k < k_unstable ? "" : " and oscillates"),
+          fmt::format("lower it to {}, or give the drive's true lag in drive.lag_s",
+                      rounded_down(0.7 * k_max, 2)));
 }
 
 void inspect_joints(const config::DeviceConfig& device, const workspace::Survey& survey,
@@ -137,7 +137,7 @@ void inspect_virtual_joints(const config::DeviceConfig& device, Collector& out) 
       out.add(Severity::kWarning, item + ".ddq_max_rad_per_s2",
               fmt::format("{:g}, but its joints together reach {:g}: it cannot brake in time",
                           joint.limits.ddq_max, ddq_sum),
-              fmt::format("lower it to {:.3g}", ddq_sum));
+              "lower it to " + rounded_down(ddq_sum, 3));
     }
   }
 }

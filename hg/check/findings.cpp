@@ -1,6 +1,9 @@
 #include "hg/check/findings.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hg/model/urdf.h"
@@ -46,6 +49,20 @@ void Collector::add_at_urdf(Severity severity, std::string_view kind, const std:
     kind == "joint" ? look(urdf.joints) : look(urdf.links);
   }
   findings.push_back(std::move(finding));
+}
+
+std::string rounded_down(double value, int digits) {
+  std::string text = fmt::format("{:.{}g}", value, digits);
+  if (!(std::stod(text) > value)) return text;
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
+  return fmt::format("{:.{}g}", value - step / 2.0, digits);
+}
+
+std::string rounded_up(double value, int digits) {
+  std::string text = fmt::format("{:.{}g}", value, digits);
+  if (!(std::stod(text) < value)) return text;
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - digits + 1);
+  return fmt::format("{:.{}g}", value + step / 2.0, digits);
 }
 
 bool is_urdf(const config::SourceText& source) {

@@ -53,6 +53,11 @@ class Collector {
   std::optional<std::vector<model::Urdf>> urdfs_;  // among the sources, once one is needed
 };
 
+/// A positive value with so many digits, rounded so that who takes it over keeps a limit: not above
+/// the value, or not below it.
+std::string rounded_down(double value, int digits);
+std::string rounded_up(double value, int digits);
+
 /// By its name or its first character: other files may speak of <robot>, too.
 bool is_urdf(const config::SourceText& source);
 

@@ -106,7 +106,7 @@ void inspect_demand(const rendering::TwinDof& dof, const Demand& demand, Collect
     out.add(Severity::kWarning, key(dof, quantity, power),
             fmt::format("{:g} takes {:.2f} times {}: the joint may run through its own limits",
                         value, share, of),
-            fmt::format("lower it to {:.2g}", value / share));
+            "lower it to " + rounded_down(value / share, 2));
   };
   add(demand.acceleration, "ddq_max", "2", dof.limits.ddq_max,
       "the acceleration that the device's Cartesian limits give the handle");

@@ -201,8 +201,8 @@ void warn_of(const std::vector<Spring>& springs, double least, const Worth& wort
       fmt::format("{:g} {} on {:.2g} {} {}{}", worst->stiffness.value,
                   dof.is_angle ? "Nm/rad" : "N/m", worst->inertia, dof.is_angle ? "kg m^2" : "kg",
                   text(*worst), others > 0 ? fmt::format("; so do {} other joints", others) : ""),
-      fmt::format("lower it to {:.2g}, or give the joint more inertia",
-                  share * worst->stiffness.value));
+      fmt::format("lower it to {}, or give the joint more inertia",
+                  rounded_down(share * worst->stiffness.value, 2)));
 }
 
 void inspect_springs(const config::Twin& twin, const StiffnessLimits& limits, Collector& out) {
@@ -365,7 +365,8 @@ Findings inspect_surfaces(const config::Scenario& scenario) {
                     surface.stiffness, surface.name, beyond, known_of(limits),
                     limits.meeting_speed(surface.stiffness / scale)),
         is_possible
-            ? fmt::format("lower it to {:.0f}, or raise its damping and the mass of the twin", most)
+            ? fmt::format("lower it to {:.0f}, or raise its damping and the mass of the twin",
+                          std::floor(most))
             : fmt::format("raise its damping and the mass of the twin: a surface has at least "
                           "{:g} N/m",
                           surfaces::kStiffness.lb));

@@ -62,17 +62,18 @@ void inspect_weight(const TwinFigures& figures, Collector& out) {
     return;
   }
   if (figures.mass < kLightMass) {
-    out.add(Severity::kWarning, "end_effector",
-            fmt::format("in some direction the hand moves only {:.2g} kg, expected 3 kg, at least "
-                        "{:g}: a light twin may swing with a stiff hand",
-                        figures.mass, kLightMass),
-            "give the moving links more mass, or their joints more damping");
+    out.add(
+        Severity::kWarning, "end_effector",
+        fmt::format("in some direction the hand moves only {} kg, expected 3 kg, at least {:g}: "
+                    "a light twin may swing with a stiff hand",
+                    rounded_down(figures.mass, 2), kLightMass),
+        "give the moving links more mass, or their joints more damping");
   }
   if (figures.inertia < kLightInertia) {
     out.add(Severity::kWarning, "end_effector",
-            fmt::format("about some axis the hand turns only {:.2g} kg m^2, expected 0.03, at "
-                        "least {:g}: a light twin may swing with a stiff hand",
-                        figures.inertia, kLightInertia),
+            fmt::format("about some axis the hand turns only {} kg m^2, expected 0.03, at least "
+                        "{:g}: a light twin may swing with a stiff hand",
+                        rounded_down(figures.inertia, 2), kLightInertia),
             "give the moving links more inertia, or their joints more damping");
   }
 }
@@ -93,7 +94,7 @@ void inspect_followers(const config::Twin& twin, Collector& out) {
                           "{:.3g}, more than its {:.3g}",
                           limits.dq_max, leader->is_angle ? "rad/s" : "m/s", coupling.joint, ratio,
                           ratio * limits.dq_max, ratio * largest),
-              fmt::format("lower it to {:.4g}", largest));
+              "lower it to " + rounded_down(largest, 4));
     }
     if (!coupling.curve) continue;
     const Interval range = coupling.curve->range();
@@ -130,8 +131,8 @@ void inspect_limits(const rendering::TwinDof& dof, double start, Collector& out)
           fmt::format("braking from {:.3g} {}/s takes {:.3g} {}, more than the whole range {:.3g}: "
                       "the joint never gets faster than {:.2g}",
                       limits.dq_max, unit, braking, unit, range, std::sqrt(limits.ddq_max * range)),
-          fmt::format("lower it to {:.2g}, or raise ddq_max as far as the device can brake",
-                      std::sqrt(limits.ddq_max * range)));
+          fmt::format("lower it to {}, or raise ddq_max as far as the device can brake",
+                      rounded_down(std::sqrt(limits.ddq_max * range), 2)));
 }
 
 // The law holds a spring's torque over a period. With c = d dt / m and k = K dt^2 / m that is
@@ -147,21 +148,22 @@ void inspect_springs(const rendering::TwinDof& dof, double inertia, double dt, C
             fmt::format("damping * dt / inertia is {:.3g} with the {:.2g} {} that move in the "
                         "lightest posture, expected below 1: the rate cannot show so much",
                         c, inertia, dof.is_angle ? "kg m^2" : "kg"),
-            fmt::format("lower it to {:.2g}, or give the links more inertia", inertia / dt));
+            fmt::format("lower it to {}, or give the links more inertia",
+                        rounded_down(inertia / dt, 2)));
   }
   if (k >= 1.0) {
     out.add(k < 4.0 ? Severity::kWarning : Severity::kFault, item_of(*stiffness.most, dof),
             fmt::format("stiffness * dt^2 / inertia is {:.3g}, must be below 1: the spring is too "
                         "stiff for the rate",
                         k),
-            fmt::format("lower it to {:.2g}, or give the links more inertia",
-                        0.5 * inertia / (dt * dt)));
+            fmt::format("lower it to {}, or give the links more inertia",
+                        rounded_down(0.5 * inertia / (dt * dt), 2)));
   } else if (0.5 * k > c && friction.value == 0.0) {
     out.add(Severity::kWarning, item_of(*damping.most, dof),
             fmt::format("{:g} is less than stiffness * dt / 2 = {:.2g}: the spring gains energy "
                         "while the twin is not held",
                         damping.value, 0.5 * stiffness.value * dt),
-            fmt::format("raise it to {:.2g} or more", stiffness.value * dt));
+            fmt::format("raise it to {} or more", rounded_up(stiffness.value * dt, 2)));
   }
 }
 

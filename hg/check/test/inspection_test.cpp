@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 
+#include "hg/check/cartesian_rule.h"
 #include "hg/check/device_inspection.h"
 #include "hg/check/ignored_urdf.h"
 #include "hg/check/scenario_inspection.h"
@@ -612,6 +613,33 @@ TEST(SynchronisationPole, DividesWhatComesTogetherFromWhatRunsAway) {
     }
     EXPECT_EQ(synchronisation_pole(kP, 40.0, 1e-3) < 1.0, std::abs(e) < 1.0) << kP;
   }
+}
+
+TEST(Fixes, ValuesAreRoundedToTheSafeSide) {
+  EXPECT_EQ(rounded_down(5.57, 2), "5.5");
+  EXPECT_EQ(rounded_down(5.52, 2), "5.5");
+  EXPECT_EQ(rounded_down(9.96, 2), "9.9");
+  EXPECT_EQ(rounded_down(1996.0, 2), "1.9e+03");
+  EXPECT_EQ(rounded_down(0.5, 2), "0.5");
+  EXPECT_EQ(rounded_down(kInfinity, 2), "inf");
+  EXPECT_EQ(rounded_up(5.52, 2), "5.6");
+  EXPECT_EQ(rounded_up(9.94, 2), "10");
+  EXPECT_EQ(rounded_up(0.0, 2), "0");
+}
+
+TEST(CartesianRule, NoMoreIsProposedThanTheFileHas) {
+  config::DeviceConfig device = shipped_device();
+  const workspace::Survey survey = workspace::survey(device, kFew);
+  const double low = cartesian_rules(device, survey).front().low_acceleration;
+  int few = 0;
+  for (double factor = 0.1; factor < 2.0; factor *= 1.01) {
+    device.model.cartesian_limits[0].axes[0].ddq_max = factor * low;
+    const CartesianRule rule = cartesian_rules(device, survey).front();
+    if (rule.share_too_weak < 0.01) continue;
+    if (rule.share_too_weak < 0.05) ++few;
+    EXPECT_LT(rule.low_acceleration, factor * low) << rule.share_too_weak;
+  }
+  EXPECT_GT(few, 0);
 }
 
 TEST(Shipped, DeviceAndTwinsHaveNoFaultsAndNoWarningsButTheExplainedOnes) {
