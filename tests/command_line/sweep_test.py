@@ -112,8 +112,10 @@ class Sweep(TemporaryFolder):
                 ("4.5", "4:3", "twin.joints.hinge.damping_Nms_per_rad: must be a number in "
                                "Nms/rad, got 'x'"),
                 ("force.*", "", "no measure 'forc.*', did you mean 'force'?"),
-                ("count: 2", "3:26", "seed: unknown key, did you mean 'count'?")):
-            right = {"seed: {": "seeds: {", "twin.joints": "twim.joints", "hinge": "hing",
+                ("count: 2", "3:26", "seed: unknown key, did you mean 'count'?"),
+                ("to: 2, count: 2", "3:33", "seed.count: must be at least 2, got 1"),
+                ("from: 1", "3:9", "seed: 'from' must be below 'to', got 2 and 2")):
+            right = {"to: 2, count: 2": "to: 2, count: 1", "from: 1": "from: 2", "seed: {": "seeds: {", "twin.joints": "twim.joints", "hinge": "hing",
                      "damping": "dampin", "4.5": "x", "force.*": "forc.*", "count: 2": "cout: 2"}
             self.file.write_text(TABLE.replace(wrong, right[wrong]))
             _, err = self.sweep(self.file, code=2)

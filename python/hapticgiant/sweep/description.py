@@ -128,6 +128,8 @@ class _Reader(Reader):
             if needed not in parts:
                 self.fault(node, key, f"key '{needed}' is missing")
         first, last = (self.number(parts[end], f"{key}.{end}") for end in ("from", "to"))
+        if not first < last:
+            self.fault(node, key, f"'from' must be below 'to', got {first:g} and {last:g}")
         spacing = self.words(parts["spacing"]) if "spacing" in parts else "linear"
         if spacing not in ("linear", "log"):
             self.fault(parts["spacing"], key, f"expected linear or log, got '{spacing}'")
@@ -136,7 +138,10 @@ class _Reader(Reader):
         if "count" not in parts:
             return "range", (first, last, spacing)
         count = self.count(parts["count"], f"{key}.count")
-        shares = [i / (count - 1) if count > 1 else 0.0 for i in range(count)]
+        if count == 1:
+            self.fault(parts["count"], f"{key}.count", "must be at least 2, got 1: a single value is a list, "
+                                                       "or belongs to 'fixed'")
+        shares = [i / (count - 1) for i in range(count)]
         return "grid", [_number_words(key, first, last, spacing, share) for share in shares]
 
     def rows(self, node, others):
