@@ -17,6 +17,7 @@
 #include "hg/scenario/run/json_lines.h"
 #include "hg/scenario/run/plan_options.h"
 #include "hg/scenario/run/run_player.h"
+#include "python/src/play/remote.h"
 
 namespace nb = nanobind;
 
@@ -139,9 +140,10 @@ nb::tuple play_request(const std::string& request, nb::object on_report) {
 }  // namespace hg::python
 
 NB_MODULE(_run, module) {
-  module.doc() = "Whole runs: device, recording, page, streams, summary.";
+  module.doc() = "Whole runs: device, recording, page, streams, summary; and remote machines.";
   module.def("play", &hg::python::play_request, nb::arg("request"),
              nb::arg("on_report") = nb::none(),
              "Plays the run of a JSON request. Returns exit code, summary as JSON, recording, and "
              "the exception that has ended it, or None.");
+  hg::python::bind_remote(module);
 }
