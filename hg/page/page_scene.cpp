@@ -195,7 +195,9 @@ Pose remote_place(const config::Scenario& scenario) {
   return place;
 }
 
+// Empty: nothing is simulated of it.
 std::string link_text(const teleoperation::ChannelConfig& link) {
+  if (link.delay + link.jitter + link.loss == 0.0) return {};
   std::string text = fmt::format("{:g} ms each way", 1e3 * link.delay);
   if (link.jitter > 0.0) text += fmt::format(", up to {:g} ms more", 1e3 * link.jitter);
   if (link.loss > 0.0) text += fmt::format(", {:g} % lost", 100.0 * link.loss);

@@ -11,6 +11,7 @@
 #include "hg/viewer_server/hand_target_box.h"
 #include "hg/viewer_server/limit_text.h"
 #include "hg/viewer_server/message.h"
+#include "hg/viewer_server/teleoperation_message.h"
 
 namespace hg::viewer_server {
 
@@ -59,8 +60,7 @@ void fields(Archive& a, T& frame) {
   a("q_gantry_target_m", list(record.q_p_target), "gantry target of prepositioning");
   a("tracking_error", list(record.tracking.error), "reference minus link side of the manipulator",
     unit::kJointPosition);
-  a("is_clamped", record.tracking.is_clamped,
-    "tracking was lost: the reference was moved back to the device");
+  a("is_clamped", record.tracking.is_clamped, "tracking was lost: the reference was moved back");
   a("p_B_H_m", record.T_B_H.p, "position of the handle, at the reference");
   a("quaternion_B_H", quaternion(record.T_B_H.R));
   a("v_H_m_per_s", record.v_H);

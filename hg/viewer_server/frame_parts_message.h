@@ -55,10 +55,6 @@ inline constexpr Interface kInterface<SafetyMessage> = {
 template <>
 inline constexpr Interface kInterface<Ghost> = {"Ghost",
                                                 "second recording, overlaid for comparison"};
-template <>
-inline constexpr Interface kInterface<TeleoperationView> = {
-    "Teleoperation", "the other side, in coordinates of the remote machine"};
-
 template <typename Archive, Is<FeltLimitMessage> T>
 void fields(Archive& a, T& felt) {
   a("index", felt.index, "index in Scene.limits");
@@ -98,28 +94,6 @@ void fields(Archive& a, T& ghost) {
   a("q_twin", list(ghost.record.twin.q_a), "coordinates of the twin", unit::kJointPosition);
   a("p_B_H_m", ghost.record.T_B_H.p);
   a("force_N", Eigen::Vector3d(ghost.record.robot.w_H.template head<3>()));
-}
-
-template <typename Archive, Is<TeleoperationView> T>
-void fields(Archive& a, T& view) {
-  const TeleoperationReport& report = view.report;
-  a("link", report.link);
-  a("cause", report.cause, "why the remote machine does not follow, as it last said");
-  a("is_clutch_open", view.is_clutch_open, "a page has opened the clutch");
-  a("age_s", report.age, "time since the newest packet from the remote machine was sent");
-  a("round_trip_s", report.round_trip, "of packets, there and back");
-  a("jitter_s", report.jitter, "mean difference of the delays of two packets in a row");
-  a("loss", report.loss, "share of packets from the remote machine that were lost", unit::kNone);
-  a("x_target", list(report.x_leader), "where the leader wants the remote machine",
-    unit::kJointPosition);
-  a("x_remote", list(report.x_remote), "where it last said it was", unit::kJointPosition);
-  a("f_leader", list(report.f_leader), "force on the leader, at the scale of the remote machine",
-    unit::kJointTorque);
-  a("f_remote", list(report.f_remote), "force of its surroundings on the remote machine",
-    unit::kJointTorque);
-  a("energy_leader", report.energy_leader, "net energy taken at the operator's port", unit::kJ);
-  a("energy_remote", report.energy_remote, "net energy taken at the remote port", unit::kJ);
-  a("dissipated", report.dissipated, "energy dissipated by the method at both ports", unit::kJ);
 }
 
 }  // namespace hg::viewer_server

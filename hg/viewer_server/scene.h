@@ -12,6 +12,7 @@
 #include "hg/core/types.h"
 #include "hg/signals/limit.h"
 #include "hg/viewer_server/commands.h"
+#include "hg/viewer_server/scene_teleoperation.h"
 
 namespace hg::viewer_server {
 
@@ -81,32 +82,6 @@ struct SceneCheckpoint {
   std::string name;          ///< of the event
   double x = 0.0, y = 0.0;   ///< of the handle in B, m
   double azimuth_rad = 0.0;  ///< of the hand axis about z of B
-};
-
-/// What a remote machine is led by: its tool along three axes, or its joints, which are the twin's.
-enum class RemoteMapping : std::uint8_t { kTool, kJoints };
-
-/// One coordinate of a remote machine.
-struct SceneAxis {
-  std::string name;  ///< x, y, z, or a joint of the twin
-  Interval range;    ///< m or rad
-};
-
-/// A wall before a remote machine, in its coordinates.
-struct SceneWall {
-  std::vector<double> normal;  ///< unit vector out of the wall
-  double offset = 0.0;         ///< position of its surface along the normal, m or rad
-};
-
-/// The remote machine of a teleoperation.
-struct SceneTeleoperation {
-  RemoteMapping mapping = RemoteMapping::kTool;
-  std::string method;  ///< name of the method of bilateral control
-  std::string link;    ///< the link as it was set up, in words
-  double force_scale = 1.0;
-  Pose T_B_root;  ///< where its base is drawn
-  std::vector<SceneAxis> axes;
-  std::vector<SceneWall> walls;
 };
 
 enum class Source : std::uint8_t { kRun, kRecording };

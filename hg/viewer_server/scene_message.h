@@ -3,6 +3,7 @@
 
 #include "hg/viewer_server/message.h"
 #include "hg/viewer_server/scene_parts_message.h"
+#include "hg/viewer_server/teleoperation_message.h"
 
 namespace hg::viewer_server {
 

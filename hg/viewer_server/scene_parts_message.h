@@ -46,14 +46,6 @@ inline constexpr Interface kInterface<SceneCheckpoint> = {
     "SceneCheckpoint",
     "a place of the handle that an event asks for, nearer than 0.10 m, 15 degrees"};
 template <>
-inline constexpr Interface kInterface<SceneAxis> = {"SceneAxis",
-                                                    "a coordinate of a remote machine"};
-template <>
-inline constexpr Interface kInterface<SceneWall> = {"SceneWall", "a wall before a remote machine"};
-template <>
-inline constexpr Interface kInterface<SceneTeleoperation> = {
-    "SceneTeleoperation", "the remote machine of a teleoperation"};
-template <>
 inline constexpr Interface kInterface<Choice> = {"Choice", "one option"};
 template <>
 inline constexpr Interface kInterface<Choices> = {"Choices", "options and the chosen ones"};
@@ -137,33 +129,6 @@ void fields(Archive& a, T& checkpoint) {
   a("x_m", checkpoint.x, "position in B");
   a("y_m", checkpoint.y, "position in B");
   a("azimuth_rad", checkpoint.azimuth_rad, "azimuth of the hand axis, z of H, about z of B");
-}
-
-template <typename Archive, Is<SceneAxis> T>
-void fields(Archive& a, T& axis) {
-  a("name", axis.name, "x, y, z, or a joint of the twin");
-  a("min", bounded(axis.range.lb), "null = unbounded", unit::kJointPosition);
-  a("max", bounded(axis.range.ub), "null = unbounded", unit::kJointPosition);
-}
-
-template <typename Archive, Is<SceneWall> T>
-void fields(Archive& a, T& wall) {
-  a("normal", wall.normal, "unit vector out of the wall, in coordinates of the machine",
-    unit::kNone);
-  a("offset", wall.offset, "position of its surface along the normal", unit::kJointPosition);
-}
-
-template <typename Archive, Is<SceneTeleoperation> T>
-void fields(Archive& a, T& teleoperation) {
-  a("mapping", teleoperation.mapping, "what is led: its tool, or its joints, which are the twin's");
-  a("method", teleoperation.method, "method of bilateral control");
-  a("link", teleoperation.link, "the link as it was set up, in words");
-  a("force_scale", teleoperation.force_scale, "force on the leader over that on the machine",
-    unit::kNone);
-  a("p_B_root_m", teleoperation.T_B_root.p, "where its base is drawn");
-  a("quaternion_B_root", quaternion(teleoperation.T_B_root.R));
-  a("axes", teleoperation.axes);
-  a("walls", teleoperation.walls);
 }
 
 template <typename Archive, Is<Choice> T>

@@ -116,7 +116,7 @@ export interface SceneCheckpoint {
 export interface SceneTeleoperation {
   mapping: "tool" | "joints"; // what is led: its tool, or its joints, which are the twin's
   method: string; // method of bilateral control
-  link: string; // the link as it was set up, in words
+  link: string; // what is simulated of the link, in words; empty = nothing
   force_scale: number; // force on the leader over that on the machine
   p_B_root_m: Vec3; // where its base is drawn
   quaternion_B_root: Quaternion;
@@ -191,7 +191,7 @@ export interface Frame {
   dq_twin: number[]; // [rad/s or m/s] velocities of the twin; a floating joint has 6, in its own frame
   q_gantry_target_m: number[]; // gantry target of prepositioning
   tracking_error: number[]; // [rad or m] reference minus link side of the manipulator
-  is_clamped: boolean; // tracking was lost: the reference was moved back to the device
+  is_clamped: boolean; // tracking was lost: the reference was moved back
   p_B_H_m: Vec3; // position of the handle, at the reference
   quaternion_B_H: Quaternion;
   v_H_m_per_s: Vec3;

@@ -397,7 +397,7 @@ TEST_F(DeskTest, OnlyThePageThatHasTheHandWorksTheClutch) {
   const auto first = open_page();
   const auto number = newest_page_;
   const auto second = open_page();
-  EXPECT_EQ(send_command(*second, "clutch", "", 1.0), "") << "nobody has the hand";
+  EXPECT_EQ(send_command(*second, "clutch", "", 1.0), "") << "no page has the hand";
   EXPECT_TRUE(desk_.is_clutch_open());
   EXPECT_EQ(send_command(*second, "clutch", "", 0.5), "the clutch is 0 (closed) or 1 (open)");
   // a page that a busy machine keeps from being heard has lost the hand: try again

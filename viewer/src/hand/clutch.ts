@@ -25,7 +25,7 @@ export class Clutch {
     this.button.id = "clutch";
     this.button.setAttribute("aria-keyshortcuts", "C");
     this.button.title = "Opens and closes the clutch (C): while it is open, your hand moves without the remote machine";
-    this.button.append(this.text, make("kbd", "", "C"));
+    this.button.append(this.text, make("span", "key", " (C)"));
     this.button.hidden = true;
     element("hand").append(this.button);
     this.button.addEventListener("pointerdown", (event) => {
@@ -55,7 +55,7 @@ export class Clutch {
     const text = clutch_text(teleoperation);
     write(this.text, text);
     this.button.dataset.state = teleoperation.link;
-    const label = `${text}. Opens and closes the clutch to the remote machine`;
+    const label = `${text} (C). Opens and closes the clutch to the remote machine`;
     if (this.button.ariaLabel !== label) this.button.ariaLabel = label;
   }
 

@@ -70,7 +70,7 @@ export class RemotePanel {
     if (!teleoperation) return;
     write(this.led, teleoperation.mapping === "tool" ? "on your hand" : "on the joints of the twin");
     write(this.method, method_text(teleoperation));
-    write(this.set_up, `Simulated as ${teleoperation.link}.`);
+    write(this.set_up, teleoperation.link === "" ? "" : `Simulated delay: ${teleoperation.link}.`);
     const spec = time_specs(scene).find(({ id }) => id === "remote-energy")!;
     this.plot = new TimePlot(spec, () => {});
     this.plot_part.append(this.plot.card);

@@ -14,11 +14,13 @@ const SCENARIOS = [
   "fr3/move_tool",
   "xarm7/open_drawer",
   "ur10e/open_drawer",
+  "remote_arm",
+  "teleoperation",
 ];
 const UPRIGHT = { width: 390, height: 844 };
 const ARROW = 0.2; // m
 const BESIDE = 30; // px around the handle
-const SMALLEST = { device: 4000, twin: 1500 }; // pixels seen
+const SMALLEST = { device: 4000, twin: 1500, remote: 1500 }; // pixels seen
 const SMALLEST_AT_HANDLE = 150; // pixels of the device beside the handle
 
 let failures = 0;
@@ -33,13 +35,14 @@ async function still(page) {
 }
 
 async function all_in_picture(page, name) {
-  const [{ twin }, frame] = [await scene_of(page), await frame_of(page)];
+  const [{ twin, teleoperation }, frame] = [await scene_of(page), await frame_of(page)];
   const along = frame.force_N.map((part) => (ARROW * part) / Math.max(1, Math.hypot(...frame.force_N)));
   const places = {
     handle: frame.p_B_H_m,
     "end of the device": frame.p_B_E_m,
     elbow: frame.p_B_elbow_m,
     "tip of the force": frame.p_B_H_m.map((x, i) => x + along[i]),
+    ...(teleoperation && { "the remote machine": teleoperation.p_B_root_m }),
     twin: twin.joints.some(({ type }) => type === "floating") ? frame.p_B_H_m : twin.p_B_root_m,
   };
   const stage = await page.locator("#stage").boundingBox();
@@ -51,7 +54,9 @@ async function all_in_picture(page, name) {
 }
 
 async function all_seen(page, name) {
+  const { teleoperation } = await scene_of(page);
   for (const [layer, smallest] of Object.entries(SMALLEST)) {
+    if (layer === "remote" && teleoperation === null) continue;
     const count = await hide_and_compare(page, layer);
     expect(count >= smallest, `${name}: ${count} pixels of the ${layer} are seen`);
   }

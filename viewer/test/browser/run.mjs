@@ -13,6 +13,7 @@ import * as cases from "./cases.mjs";
 import * as everyone from "./everyone_cases.mjs";
 import * as guide from "./guide_cases.mjs";
 import * as headset from "./headset_cases.mjs";
+import * as teleoperation from "./teleoperation_cases.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const root = resolve(here, "../../..");
@@ -36,7 +37,7 @@ function expect(is_true, text) {
 
 const browser = await start_browser();
 const stopping = [];
-for (const [name, run] of Object.entries({ ...cases, ...everyone, ...guide, ...headset })) {
+for (const [name, run] of Object.entries({ ...cases, ...everyone, ...guide, ...headset, ...teleoperation })) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   console.log(`-- ${name.replaceAll("_", " ")}`);
   const program = await start_program(command);

@@ -39,7 +39,7 @@ describe("who holds back whom", () => {
     expect(who_holds(arm, now)).toContain("(joint 2, boom at 45.8\u00b0): it holds you back with 8.0 Nm.");
   });
 
-  it("tells a wall from a machine that lags", () => {
+  it("distinguishes a wall from a machine that lags", () => {
     expect(tool({ f_remote: [0, -8, 0], f_leader: [0, -4, 0] })).toBe(
       "The remote machine presses something with 8.0 N: it holds you back with 8.0 N.",
     );
