@@ -102,6 +102,16 @@ std::string value_of_command(const Names& names, const SensorFrame& sensors, int
                  index);
 }
 
+// As the cycle counts what it is given for the twin.
+std::string value_of_twin_input(int index) {
+  return part_in({{"wrench, component", 6},
+                  {"joint of the twin", kMaxTwin},
+                  {"pose of the base, component", 6},
+                  {"velocity of the base, component", 6},
+                  {"acceleration of the base, component", 6}},
+                 index);
+}
+
 }  // namespace
 
 std::string part_of(const Fault& fault, const Names& names, const SensorFrame& sensors) {
@@ -126,7 +136,7 @@ std::string part_of(const Fault& fault, const Names& names, const SensorFrame& s
     case FaultCode::kOscillation:
       return std::string(to_string(static_cast<Shaking>(index)));
     case FaultCode::kTwinForceWrong:
-      return part_in({{"wrench, component", 6}, {"joint of the twin", kMaxTwin}}, index);
+      return value_of_twin_input(index);
     case FaultCode::kWrenchTooLarge:
       return index == 0 ? "force in N" : "torque in Nm";
     case FaultCode::kSafeSpeedExceeded:

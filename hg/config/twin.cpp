@@ -50,7 +50,8 @@ std::optional<model::ChainModel> make_chain(LoaderFile& file, Loader& loader, Tw
   describe_followers(loader, draft, parts);
   model::ChainOptions options = {.T_B_root = pose_of(draft.placement),
                                  .gravity = draft.gravity,
-                                 .floating_root = draft.floating_root};
+                                 .floating_root = draft.floating_root,
+                                 .moving_base = draft.has_moving_base};
   if (draft.is_free_body) return make_free_body(file, draft, options);
   if (!urdf || !draft.part.is_usable) return no_chain(file);
   options.root_link = name_of(parts.links, draft.part.root_link);
@@ -173,10 +174,11 @@ Twin load_twin(const std::filesystem::path& file) {
   return load_twin(file, reader);
 }
 
-Twin load_twin(const std::filesystem::path& path, SourceReader& reader) {
+Twin load_twin(const std::filesystem::path& path, SourceReader& reader, bool has_moving_base) {
   const std::size_t first_source = reader.texts().size();
   LoaderFile file = {path, reader, Faults(path.generic_string())};
   TwinDraft draft;
+  draft.has_moving_base = has_moving_base;
   std::optional<model::ChainModel> chain;
   load_file_of_kind(FileKind::kTwin, file, [&](Loader& loader) {
     describe_chain(loader, draft);

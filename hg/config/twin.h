@@ -26,7 +26,9 @@ struct Twin {
 
 /// Loads a twin. Throws SetupError with all faults of the file, one per line.
 Twin load_twin(const std::filesystem::path& file);
-Twin load_twin(const std::filesystem::path& file, SourceReader& reader);
+/// `has_moving_base`: the placement of the root link is where it rests at first.
+Twin load_twin(const std::filesystem::path& file, SourceReader& reader,
+               bool has_moving_base = false);
 
 /// Pose of a hand in intuitive parameters: position in B, heading of the forearm, tilt s = q4 + q5
 /// and roll q6 of the HapticGiant: R = Rz(azimuth) Ry(pi - pitch) Rz(pi + roll).

@@ -39,7 +39,7 @@ struct TwinDraft {
   Eigen::Vector3d principal_inertia = Eigen::Vector3d::Constant(0.08);
   Placement placement;
   bool gravity = false;
-  bool floating_root = false;
+  bool floating_root = false, has_moving_base = false;
   ChainPart part;
   std::vector<model::Coupling> couplings;
   std::vector<model::ClosedLoop> loops;

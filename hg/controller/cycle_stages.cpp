@@ -233,6 +233,11 @@ CycleStages::Supervision CycleStages::supervise(const SensorFrame& sensors,
     if (wrong.code == FaultCode::kNone) result.twin_force = &operator_input.twin_force;
     if (input.fault.code == FaultCode::kNone) input.fault = wrong;
   }
+  if (operator_input.twin_base.is_moving) {
+    const Fault wrong = check(operator_input.twin_base);
+    if (wrong.code == FaultCode::kNone) rendering_.move_base(operator_input.twin_base);
+    if (input.fault.code == FaultCode::kNone) input.fault = wrong;
+  }
   result.refusal = safety::advance(input, supervisor);
   if (was_fault && supervisor.state != safety::SafetyState::kFault) reset_controllers();
 
@@ -264,6 +269,20 @@ Fault CycleStages::check(const TwinForce& force) const noexcept {
     const double value = i < 6 ? force.w_E[i] : force.tau[i - 6];
     const double limit = i < 3 ? force_max : i < 6 ? torque_max : kLever * force_max + torque_max;
     if (!(std::abs(value) <= limit)) return wrong(i, value, limit);
+  }
+  return {};
+}
+
+// Finite, and no faster than a person is carried.
+Fault CycleStages::check(const TwinBase& base) const noexcept {
+  constexpr std::array<double, 3> kLargest = {kInfinity, 2.0, 10.0};  // m; m/s, rad/s; per s
+  const std::array<Vector6, 3> motion = {
+      (Vector6() << base.T_B_A.p, base.T_B_A.R.rowwise().sum()).finished(), base.twist,
+      base.acceleration};
+  for (int i = 0; i < 18; ++i) {
+    const double value = motion[i / 6][i % 6], limit = kLargest[i / 6];
+    if (std::abs(value) <= limit && std::isfinite(value)) continue;
+    return {FaultCode::kTwinForceWrong, static_cast<std::int16_t>(6 + kMaxTwin + i), value, limit};
   }
   return {};
 }
@@ -480,7 +499,7 @@ PassivityReport CycleStages::watch_energy(Motion motion, const RobotState& robot
   const PassivityReport report = passivity::observe_energy(
       config_.passivity, dt_,
       {.f = w.head<3>(),
-       .power_measured = w.dot(rendering_.handle_twist(robot)),
+       .power_measured = w.dot(rendering_.handle_twist(robot) - rendering_.carried_twist()),
        .power_rendered = w.dot(twist_E),
        .dissipation = (law.budget.damping + law.budget.friction).dot(rendering.twin.dq_a) /
                       law.felt_scale.maxCoeff(),

@@ -107,6 +107,7 @@ class CycleStages {
   // parts of these stages
   Fault check(const SensorFrame& sensors, const Fault& values) noexcept;
   Fault check(const TwinForce& force) const noexcept;
+  Fault check(const TwinBase& base) const noexcept;
   Refusal refusal_to_arm() const noexcept;
   void reset_controllers() noexcept;
   double speed_max() const noexcept;

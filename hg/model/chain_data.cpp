@@ -137,15 +137,31 @@ struct ChainData::Impl {
         all_later(parts),
         own_M(parts.nv, parts.nv),
         own_c(parts.nv),
-        own_g(parts.nv) {}
-
-  bool is_coupled() const noexcept { return !parts.couplings.empty(); }
-  // whether the passes above do not know such a chain
-  bool needs_library() const noexcept {
-    return parts.has_floating || parts.has_branch || parts.has_curve;
+        own_g(parts.nv) {
+    move_base(parts.T_B_base, Vector6::Zero(), Vector6::Zero());
   }
 
-  // With couplings only: values of the rigid-body model.
+  void move_base(const Pose& T, const Vector6& twist, const Vector6& acceleration) noexcept {
+    if (!parts.has_moving_base) return;
+    const Eigen::Vector3d v = twist.head<3>(), omega = twist.tail<3>();
+    for (Expansion* to : {&all, &all_later}) {
+      // its joint has the pose in B, and velocities and their changes resolved in the base
+      to->q.head<7>() << T.p, Eigen::Quaterniond(T.R).coeffs();
+      to->dq.head<6>() << T.R.transpose() * v, T.R.transpose() * omega;
+      to->ddq.head<6>() << T.R.transpose() * (acceleration.head<3>() - omega.cross(v)),
+          T.R.transpose() * acceleration.tail<3>();
+    }
+  }
+
+  bool is_coupled() const noexcept { return !parts.q_from.empty(); }
+  // whether the passes above do not know such a chain
+  bool needs_library() const noexcept {
+    return parts.has_floating || parts.has_branch || has_known_accelerations();
+  }
+  // Whether bodies accelerate without a change of the chain's velocities.
+  bool has_known_accelerations() const noexcept { return parts.has_curve || parts.has_moving_base; }
+
+  // With couplings or a moving base only: values of the rigid-body model.
   struct Expansion {
     explicit Expansion(const ChainParts& parts)
         : q(parts.model.nq),
@@ -166,6 +182,7 @@ struct ChainData::Impl {
     if (!is_coupled()) return own;
     for (std::size_t i = 0; i < parts.q_from.size(); ++i) {
       const ChainParts::Source& from = parts.q_from[i];
+      if (from.index < 0) continue;
       to.q[static_cast<Eigen::Index>(i)] = from.curve != nullptr
                                                ? from.curve->at(own[from.leader]).value
                                                : from.ratio * own[from.index] + from.offset;
@@ -178,6 +195,7 @@ struct ChainData::Impl {
     for (std::size_t i = 0; i < parts.v_from.size(); ++i) {
       const ChainParts::Source& from = parts.v_from[i];
       const Eigen::Index k = static_cast<Eigen::Index>(i);
+      if (from.index < 0) continue;
       if (from.curve != nullptr) {
         const CouplingCurve::Point point = from.curve->at(own_q[from.leader]);
         to.ratio[k] = point.slope;
@@ -194,30 +212,34 @@ struct ChainData::Impl {
     own.setZero();
     for (std::size_t i = 0; i < parts.v_from.size(); ++i) {
       const Eigen::Index k = static_cast<Eigen::Index>(i);
+      if (parts.v_from[i].index < 0) continue;
       own[parts.v_from[i].index] += by.ratio[k] * torques[k];
     }
   }
 
   void reduce_dynamics() noexcept {
-    if (parts.has_curve) data.nle.noalias() += data.M * all.ddq;
+    if (has_known_accelerations()) data.nle.noalias() += data.M * all.ddq;
     reduce(data.nle, all, own_c);
     reduce(data.g, all, own_g);
     own_M.setZero();
-    for (Eigen::Index i = 0; i < data.M.rows(); ++i) {
-      for (Eigen::Index k = 0; k < data.M.cols(); ++k) {
+    const Eigen::Index first = parts.has_moving_base ? 6 : 0;
+    for (Eigen::Index i = first; i < data.M.rows(); ++i) {
+      for (Eigen::Index k = first; k < data.M.cols(); ++k) {
         own_M(parts.v_from[i].index, parts.v_from[k].index) +=
             all.ratio[i] * all.ratio[k] * data.M(i, k);
       }
     }
   }
 
-  // What the curves add to accelerations at ddq = 0: each joint's passes on to the joints beyond
-  // it.
-  void add_curve_accelerations() noexcept {
+  // What curves and the base add to accelerations at ddq = 0: each joint's passes on to the joints
+  // beyond it.
+  void add_known_accelerations() noexcept {
     for (pinocchio::JointIndex i = 1; i < data.a.size(); ++i) {
       const ChainParts::Axis& axis = parts.axes[i - 1];
       added[i].setZero();
-      if (parts.model.nvs[i] == 1) {
+      if (i == 1 && parts.has_moving_base) {
+        added[i] = pinocchio::Motion(Vector6(all.ddq.head<6>()));
+      } else if (parts.model.nvs[i] == 1) {
         (axis.turns ? added[i].angular() : added[i].linear()) =
             axis.e * all.ddq[parts.model.idx_vs[i]];
       }
@@ -249,10 +271,10 @@ struct ChainData::Impl {
   std::vector<Results> results;  // by frame
   pinocchio::Data data;          // results of update()
   pinocchio::Data scratch;       // workspace of inverse_dynamics()
-  // what curves add to the accelerations of the bodies
+  // what curves and the base add to the accelerations of the bodies
   std::vector<pinocchio::Motion> added = std::vector<pinocchio::Motion>(parts.model.njoints);
   Expansion all, all_later;  // of updates, and of inverse_dynamics()
-  // with couplings only: results of the chain
+  // with couplings or a moving base only: results of the chain
   Eigen::MatrixXd own_M;
   Eigen::VectorXd own_c, own_g;
 };
@@ -268,6 +290,11 @@ ChainData& ChainData::operator=(ChainData&& other) noexcept = default;
 ChainData::~ChainData() = default;
 
 const ChainModel& ChainData::model() const noexcept { return impl_->model; }
+
+void ChainData::move_base(const Pose& T_B_base, const Vector6& twist,
+                          const Vector6& acceleration) noexcept {
+  impl_->move_base(T_B_base, twist, acceleration);
+}
 
 void ChainData::update_poses(const VectorIn& own_q) noexcept {
   assert(own_q.size() == model().nq());
@@ -314,7 +341,7 @@ void ChainData::update(const VectorIn& own_q, const VectorIn& own_dq, const Load
     data.a[i] = data.a_gf[i];
     data.a[i].linear() += data.oMi[i].rotation().transpose() * g;
   }
-  if (impl_->parts.has_curve) impl_->add_curve_accelerations();
+  if (impl_->has_known_accelerations()) impl_->add_known_accelerations();
 
   // each joint carries the weight of all bodies beyond it
   const Eigen::Vector3d g_earth(0.0, 0.0, -9.81);
@@ -376,6 +403,7 @@ const Jacobian& ChainData::jacobian(int frame) const noexcept {
     for (const pinocchio::JointIndex joint : impl_->parts.model.supports[f.joint]) {
       const int first = impl_->parts.model.idx_vs[joint];
       for (int i = first; i < first + impl_->parts.model.nvs[joint]; ++i) {
+        if (impl_->parts.v_from[i].index < 0) continue;
         J.col(impl_->parts.v_from[i].index) += impl_->all.ratio[i] * column(i);
       }
     }
@@ -389,6 +417,17 @@ const Jacobian& ChainData::jacobian(int frame) const noexcept {
   for (int i = 0; i < columns; ++i) J.col(i) = column(i);
   J.rightCols(n - columns).setZero();
   return J;
+}
+
+Vector6 ChainData::carried_twist(int frame) const noexcept {
+  if (!impl_->parts.has_moving_base) return Vector6::Zero();
+  const Eigen::Matrix3d& R = impl_->data.oMi[1].rotation();
+  const Eigen::Vector3d v = R * impl_->all.dq.head<3>();
+  const Eigen::Vector3d omega = R * impl_->all.dq.segment<3>(3);
+  const Eigen::Vector3d lever = pose(frame).p - impl_->data.oMi[1].translation();
+  Vector6 twist;
+  twist << v + omega.cross(lever), omega;
+  return twist;
 }
 
 const Vector6& ChainData::bias_acceleration(int frame) const noexcept {
@@ -440,6 +479,7 @@ VectorA ChainData::inverse_dynamics(const VectorIn& own_q, const VectorIn& own_d
   impl_->expanded_dq(own_q, own_dq, all);
   for (std::size_t i = 0; i < parts.v_from.size(); ++i) {
     const Eigen::Index k = static_cast<Eigen::Index>(i);
+    if (parts.v_from[i].index < 0) continue;
     const double curved = parts.v_from[i].curve != nullptr ? all.ddq[k] : 0.0;
     all.ddq[k] = all.ratio[k] * own_ddq[parts.v_from[i].index] + curved;
   }

@@ -29,6 +29,12 @@ class ChainData {
 
   const ChainModel& model() const noexcept;
 
+  /// Motion of the root link for the next updates, where the chain has a moving base (else nothing
+  /// happens): its pose, its velocity against B, and classical acceleration of its origin and
+  /// angular acceleration, all resolved in B. Twists and bias accelerations then contain that
+  /// motion, c() the inertial forces; Jacobians are against the base.
+  void move_base(const Pose& T_B_base, const Vector6& twist, const Vector6& acceleration) noexcept;
+
   void update_poses(const VectorIn& q) noexcept;  ///< Updates poses only, at half the cost
   /// Updates poses, twists, Jacobians, bias accelerations.
   void update_kinematics(const VectorIn& q, const VectorIn& dq) noexcept;
@@ -41,8 +47,10 @@ class ChainData {
   const Pose& pose(int frame) const noexcept;
   /// Twist of a frame: velocity of its origin and angular velocity (v; omega).
   const Vector6& twist(int frame) const noexcept;
-  /// Jacobian of a frame: twist = jacobian * dq.
+  /// Jacobian of a frame: twist = jacobian * dq, on a moving base plus what that adds.
   const Jacobian& jacobian(int frame) const noexcept;
+  /// What a moving base adds to the twist of a frame; zero without one.
+  Vector6 carried_twist(int frame) const noexcept;
   /// Bias acceleration dJ * dq (ddq = 0): classical acceleration of the frame's origin, angular
   /// acceleration.
   const Vector6& bias_acceleration(int frame) const noexcept;

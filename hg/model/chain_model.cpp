@@ -95,8 +95,18 @@ pinocchio::JointIndex ChainParts::add_joint(pinocchio::JointIndex parent, Joint 
 }
 
 pinocchio::JointIndex ChainParts::add_floating_root(const Pose& T_B_root) {
-  return add_joint(0, {.name = "root", .type = JointType::kFloating, .position = {}},
-                   pinocchio::JointModelFreeFlyer(), to_placement(T_B_root));
+  const bool is_on_base = has_moving_base;
+  return add_joint(is_on_base ? 1 : 0,
+                   {.name = "root", .type = JointType::kFloating, .position = {}},
+                   pinocchio::JointModelFreeFlyer(), to_placement(is_on_base ? Pose{} : T_B_root));
+}
+
+pinocchio::JointIndex ChainParts::add_moving_base(const Pose& T_B_rest) {
+  has_moving_base = true;
+  T_B_base = T_B_rest;
+  axes.push_back({});
+  return model.addJoint(0, pinocchio::JointModelFreeFlyer(), pinocchio::SE3::Identity(),
+                        "moving base");
 }
 
 void ChainParts::add_frame(const std::string& frame_name, pinocchio::JointIndex joint,
@@ -118,6 +128,10 @@ class Builder {
     const int root = root_link();
     pinocchio::JointIndex joint = 0;
     pinocchio::SE3 placement = to_placement(options_.T_B_root);
+    if (options_.moving_base) {
+      base_ = joint = chain.add_moving_base(options_.T_B_root);
+      placement.setIdentity();
+    }
     if (options_.floating_root) {
       joint = chain.add_floating_root(options_.T_B_root);
       placement.setIdentity();
@@ -197,7 +211,7 @@ class Builder {
       const Merged at = merged_[i];
       chain.add_frame(link(at.link).name, joint, at.T_joint_link);
       const auto& inertial = link(at.link).inertial;
-      if (inertial && joint > 0 && !(i > 0 && is_frame(link(at.link)))) {
+      if (inertial && joint > base_ && !(i > 0 && is_frame(link(at.link)))) {
         // a point mass must be fixed to a body with inertia
         const bool is_point = i > 0 && is_point_mass(link(at.link));
         const std::optional<InputFault>& fault = link(at.link).inertial_fault;
@@ -293,7 +307,7 @@ class Builder {
 
   void refuse_massless(pinocchio::JointIndex joint, const UrdfLink& body,
                        const std::string& joint_name) const {
-    if (joint == 0 || mass_ > 0.0) return;
+    if (joint == base_ || mass_ > 0.0) return;
     fail(body.line, "link " + body.name,
          "moves with joint " + joint_name +
              " but has no mass; give it an <inertial> or make the joint fixed");
@@ -301,8 +315,9 @@ class Builder {
 
   const Urdf& urdf_;
   const ChainOptions& options_;
-  std::vector<Merged> merged_;  // links of the current body
-  double mass_ = 0.0;           // of the current body
+  pinocchio::JointIndex base_ = 0;  // joint of the fixed or moved base
+  std::vector<Merged> merged_;      // links of the current body
+  double mass_ = 0.0;               // of the current body
   pinocchio::SE3 T_joint_next_ = pinocchio::SE3::Identity();
 };
 
@@ -314,13 +329,13 @@ class Coupler {
   void couple() {
     std::vector<const UrdfMimic*> mimics;
     for (const Joint& joint : chain_.joints) mimics.push_back(mimic_of(joint));
-    if (std::ranges::all_of(mimics, [](const UrdfMimic* mimic) { return mimic == nullptr; }))
-      return;
+    const auto is_own = [](const UrdfMimic* mimic) { return mimic == nullptr; };
+    if (std::ranges::all_of(mimics, is_own) && !chain_.has_moving_base) return;
     const std::vector<Joint> all = std::exchange(chain_.joints, {});
     chain_.joint_names.clear();
     chain_.nq = chain_.nv = 0;
-    chain_.q_from.resize(chain_.model.nq);
-    chain_.v_from.resize(chain_.model.nv);
+    chain_.q_from.assign(chain_.model.nq, {-1});
+    chain_.v_from.assign(chain_.model.nv, {-1});
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (mimics[i] == nullptr) keep(all[i]);
     }
@@ -430,11 +445,11 @@ ChainParts build(Urdf urdf, const ChainOptions& options) {
   for (const PassiveJoint& joint : options.passive)
     insert_behind(joint.behind, joint.name, joint.axis, part);
   ChainParts chain = Builder(part, options).build();
-  if (chain.model.nv > kMaxTwin || chain.model.nq > kMaxTwinCoords) {
+  const int nv = chain.model.nv - (chain.has_moving_base ? 6 : 0);
+  if (nv > kMaxTwin || chain.model.nq - (chain.has_moving_base ? 7 : 0) > kMaxTwinCoords) {
     throw InputError(InputFault{.file = urdf.source,
                                 .what = "a chain has at most " + std::to_string(kMaxTwin) +
-                                        " degrees of freedom, got " +
-                                        std::to_string(chain.model.nv)});
+                                        " degrees of freedom, got " + std::to_string(nv)});
   }
   finish(options, chain);
   Coupler(part, chain).couple();
@@ -446,10 +461,12 @@ ChainParts build(const FreeBody& body, const ChainOptions& options) {
   check_inertial(inertial, "free body");
   ChainParts chain;
   chain.name = "free_body";
+  if (options.moving_base) chain.add_moving_base(options.T_B_root);
   const pinocchio::JointIndex root = chain.add_floating_root(options.T_B_root);
   chain.model.appendBodyToJoint(root, to_inertia(inertial), pinocchio::SE3::Identity());
   chain.add_frame("handle", root, pinocchio::SE3::Identity());
   finish(options, chain);
+  Coupler(Urdf{}, chain).couple();
   return chain;
 }
 

@@ -88,11 +88,10 @@ struct ChainOptions {
   std::optional<Tool> tool;
   std::vector<PassiveJoint> passive;  ///< Passive joints added to the URDF: a compliant structure
   bool floating_root = false;         ///< true: the root link floats in B by a joint "root"
+  bool moving_base = false;           ///< true: the root link moves by ChainData::move_base()
   std::vector<Coupling> couplings;    ///< In addition to those of the URDF, or in their place
   std::vector<ClosedLoop> loops;
-  /// First and last link of the serial part of a branched URDF, see serial_part() in urdf_parts.h;
-  /// empty = all of it.
-  std::string root_link, tip_link;
+  std::string root_link, tip_link;  ///< Of the part of a branched URDF; empty = all of it
 };
 
 /// Factors on the masses and on the earth's gravity.

@@ -40,12 +40,15 @@ struct ChainParts {
   std::string name;
   std::vector<Joint> joints;
   std::vector<Coupling> couplings;
-  /// By coordinate and by velocity of the rigid-body model; empty without couplings.
+  /// By coordinate and by velocity of the rigid-body model; empty without couplings and without a
+  /// moving base, whose entries have the index -1.
   std::vector<Source> q_from, v_from;
   int nq = 0, nv = 0;  ///< Numbers of coordinates and velocities of the chain
   std::vector<Axis>
       axes;  ///< Axis per joint of the rigid-body model; meaningless for floating ones
   bool has_floating = false, has_branch = false, has_curve = false;
+  bool has_moving_base = false;  ///< Joint 1 is that of the base, without coordinates in the chain
+  Pose T_B_base;                 ///< Of such a base at rest
   std::vector<std::string> joint_names;
   std::vector<std::string> frame_names;
   std::vector<Frame> frames;
@@ -56,6 +59,7 @@ struct ChainParts {
                                   const pinocchio::JointModel& kind,
                                   const pinocchio::SE3& placement);
   pinocchio::JointIndex add_floating_root(const Pose& T_B_root);
+  pinocchio::JointIndex add_moving_base(const Pose& T_B_rest);
   void add_frame(const std::string& frame_name, pinocchio::JointIndex joint,
                  const pinocchio::SE3& T_joint_frame);
 };

@@ -34,6 +34,7 @@ struct RuntimeOptions {
   std::vector<TimedLoad> load;       ///< Late cycles, for tests
   /// What pushes the twin, and outlives the runtime; nullptr = nothing.
   TwinForceSource* twin_force = nullptr;
+  TwinBaseSource* twin_base = nullptr;  ///< The same of what moves the twin's root link
   /// true: a fault does not end the run, because an operator can reset it. After a fault no request
   /// is made automatically.
   bool stays_in_fault = false;

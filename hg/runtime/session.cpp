@@ -14,7 +14,8 @@ Session::Session(controller::Cycle& cycle, device::Device& device, const Session
       duration_s_(plan.duration_s),
       changes_(plan.changes),
       loads_(plan.load),
-      twin_force_(plan.twin_force) {}
+      twin_force_(plan.twin_force),
+      twin_base_(plan.twin_base) {}
 
 bool Session::advance() noexcept HG_NONBLOCKING {
   read();
@@ -46,6 +47,11 @@ void Session::read() noexcept HG_NONBLOCKING {
                        .is_running = now.record.mode == Mode::kRunning,
                        .is_clutch_open = input.is_clutch_open},
                       input.twin_force, now.teleoperation);
+  }
+  if (twin_base_ != nullptr) {
+    const CycleRecord& last = now.record;
+    input.twin_base =
+        twin_base_->step(last.mode == Mode::kRunning, last.refusal == Refusal::kTwinApart);
   }
   next_.request = ModeRequest::kNone;
   next_.late_cycles = 0;

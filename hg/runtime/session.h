@@ -28,6 +28,7 @@ struct SessionPlan {
   std::vector<TimedLoad> load;       ///< Late cycles, for tests
   /// What pushes the twin, and outlives the session; nullptr = nothing.
   TwinForceSource* twin_force = nullptr;
+  TwinBaseSource* twin_base = nullptr;  ///< The same of what moves the twin's root link
 };
 
 /// A cycle, its device and an operator.
@@ -77,6 +78,7 @@ class Session {
   TimedChanges changes_;
   TimedLoads loads_;
   TwinForceSource* twin_force_;
+  TwinBaseSource* twin_base_;
   OperatorFrame next_;
   bool is_operated_ = false;  ///< Requests come from the caller
   bool is_asked_ = false;     ///< The next period has a request from outside, or none on purpose

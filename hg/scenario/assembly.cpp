@@ -245,6 +245,13 @@ std::unique_ptr<TwinForceSource> make_twin_force(
       scenario.device.model.dt(), std::move(remote));
 }
 
+std::unique_ptr<TwinBaseSource> make_twin_base(const config::Scenario& scenario) {
+  if (!scenario.twin_motion) return nullptr;
+  simulator::MovingBaseConfig config = *scenario.twin_motion;
+  config.T_B_A = scenario.twin.T_B_root;
+  return std::make_unique<simulator::MovingBase>(config, scenario.device.model.dt());
+}
+
 analysis::Summary make_summary(const config::Scenario& scenario) {
   auto positions = [limits = rendering::LimitPositions(scenario.device.model)](
                        const Truth& truth, std::vector<double>& values) mutable {

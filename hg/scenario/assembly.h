@@ -51,6 +51,8 @@ std::unique_ptr<TwinForceSource> make_twin_force(const config::Scenario& scenari
 /// The same with a remote machine; null: simulated here.
 std::unique_ptr<TwinForceSource> make_twin_force(const config::Scenario& scenario,
                                                  std::unique_ptr<teleoperation::RemoteSide> remote);
+/// What moves the twin's root link; nullptr = it rests.
+std::unique_ptr<TwinBaseSource> make_twin_base(const config::Scenario& scenario);
 
 /// Evaluation of a run of the scenario.
 analysis::Summary make_summary(const config::Scenario& scenario);

@@ -24,6 +24,7 @@ struct SessionParts {
   controller::Cycle own_cycle;
   std::unique_ptr<device::Device> own_device;
   std::unique_ptr<TwinForceSource> own_twin_force;
+  std::unique_ptr<TwinBaseSource> own_twin_base;
 };
 
 /// Session of a scenario, until its planned end. One session serves one thread.

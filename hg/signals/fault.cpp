@@ -116,9 +116,10 @@ constexpr FaultWords kFaults[] = {
          "While the handle was not held, the device was faster than the safely limited speed."},
     {.code = FaultCode::kTwinForceWrong,
      .name = "remote force",
-     .text = "force of the remote machine cannot be used",
+     .text = "force on the twin, or motion of its base, cannot be used",
      .meaning = "The force that a remote machine sends to the twin is not a number, larger than is "
-                "allowed on the handle, or has no value for each joint."},
+                "allowed on the handle, or has no value for each joint; or the motion of the "
+                "twin's base is not a number or too fast."},
     {.code = FaultCode::kSolverFailed,
      .name = "solver failed",
      .text = "rendering problem was not solved",

@@ -9,7 +9,7 @@
 #include "hg/core/fields.h"
 #include "hg/core/types.h"
 #include "hg/signals/fault.h"
-#include "hg/signals/twin_force.h"
+#include "hg/signals/twin_input.h"
 
 namespace hg {
 
@@ -136,38 +136,6 @@ enum class ModeRequest : std::uint8_t {
   kAutonomous = 6,  ///< run slowly with a free handle; needs the override key
 };
 
-/// Parameter of a twin that may change at run time. Numbers are recorded and never change meaning.
-enum class Parameter : std::uint8_t {
-  kNone = 0,
-  kStiffness = 1,         ///< Nm/rad or N/m, >= 0
-  kRest = 2,              ///< rad or m
-  kPreload = 3,           ///< Nm or N
-  kDamping = 4,           ///< Nms/rad or Ns/m, >= 0
-  kQuadraticDamping = 5,  ///< Nms^2/rad^2 or Ns^2/m^2, >= 0
-  kFriction = 6,          ///< Nm or N, >= 0
-  kLowerLimit = 7,        ///< rad or m; may be -infinity
-  kUpperLimit = 8,        ///< rad or m; may be infinity
-  kSpeedLimit = 9,        ///< rad/s or m/s, > 0; may be infinity
-  kReferenceWrench = 10,  ///< N or Nm; index 0..5: force x y z, torque x y z
-  kGravity = 11,          ///< share of the earth's gravity, 0..1
-  kMassScale = 12,        ///< factor on all masses of the twin, 0.1..10
-  kFeltScale = 13,        ///< factor on the user's wrench, 0.1..10; index as of kReferenceWrench
-};
-
-/// New value of one parameter of the twin, approached smoothly.
-struct ParameterChange {
-  Parameter parameter = Parameter::kNone;
-  std::int16_t index = -1;
-  double value = 0.0;
-};
-
-template <typename Archive, Is<ParameterChange> T>
-void fields(Archive& a, T& change) {
-  a("parameter", change.parameter);
-  a("index", change.index, "degree of freedom of the twin, or component of the wrench");
-  a("value", change.value, "new value, in the unit of the parameter", unit::kNone);
-}
-
 /// All inputs of a cycle other than sensors.
 struct OperatorFrame {
   ModeRequest request = ModeRequest::kNone;
@@ -175,6 +143,7 @@ struct OperatorFrame {
   SafetyPanel panel;
   ParameterChange change;
   TwinForce twin_force;
+  TwinBase twin_base;
   bool is_clutch_open = false;
   std::uint32_t late_cycles = 0;
 };
@@ -186,6 +155,7 @@ void fields(Archive& a, T& input) {
   a("panel", input.panel, "panel of a simulated operator");
   a("change", input.change, "change of a parameter of the twin");
   a("twin_force", input.twin_force, "force of a remote machine on the twin");
+  a("twin_base", input.twin_base, "motion of the place of the twin");
   a("is_clutch_open", input.is_clutch_open, "the operator releases the remote machine");
   a("late_cycles", input.late_cycles, "cycles late or left out since the last cycle");
 }

@@ -1,4 +1,4 @@
-/// What pushes the twin from outside the law, asked once per period.
+/// What pushes the twin from outside the law, and what moves its base, asked once per period.
 #pragma once
 
 #include "hg/signals/frames.h"
@@ -22,6 +22,16 @@ class TwinForceSource {
   /// Writes the force on the twin in the next cycle, and what is recorded of its origin. Called by
   /// the control thread: does not allocate, wait or throw.
   virtual void step(const TwinNow& now, TwinForce& force, TeleoperationReport& report) noexcept = 0;
+};
+
+/// What moves the root link of the twin.
+class TwinBaseSource {
+ public:
+  virtual ~TwinBaseSource() = default;
+  /// Motion for the cycle that begins now. Called by the control thread: does not allocate, wait or
+  /// throw. `is_running`: the law moves the twin; `is_apart`: at standstill the twin cannot be
+  /// where the handle is.
+  virtual TwinBase step(bool is_running, bool is_apart) noexcept = 0;
 };
 
 }  // namespace hg

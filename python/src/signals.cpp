@@ -92,6 +92,7 @@ void bind_signals(nb::module_& module) {
   bind_fields<HandTarget>(module, "HandTarget", "Target of a simulated hand.");
   bind_fields<ParameterChange>(module, "ParameterChange", "New value of a parameter of the twin.");
   bind_fields<TwinForce>(module, "TwinForce", "Force of a remote machine on the twin.");
+  bind_fields<TwinBase>(module, "TwinBase", "Motion of the place of the twin.");
   bind_fields<TeleoperationReport>(module, "TeleoperationReport", "Other side of a teleoperation.");
   bind_fields<SensorFrame>(module, "SensorFrame", "Sensor values of one sample.");
   bind_fields<OperatorFrame>(module, "OperatorFrame", "All inputs of a cycle besides sensors.");

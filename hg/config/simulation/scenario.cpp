@@ -131,7 +131,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
   load_file_of_kind(FileKind::kScenario, file, [&](Loader& loader) {
     describe_parts(loader, draft);
     device = part(file, draft.device, [&] { return load_simulated_device(draft.device, reader); });
-    twin = part(file, draft.twin, [&] { return load_twin(draft.twin, reader); });
+    twin = part(file, draft.twin, [&] { return load_twin(draft.twin, reader, draft.moves()); });
     if (twin && !draft.script.empty()) {
       script =
           part(file, draft.script, [&] { return load_script(draft.script, twin->model, reader); });
@@ -171,6 +171,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
           .surfaces = std::move(surfaces),
           .bystander = in_the_way(std::move(bystander)),
           .teleoperation = teleoperation_of(teleoperation),
+          .twin_motion = std::move(draft.twin_motion),
           .sources = reader.texts(),
           .places = std::move(file.places)};
 }

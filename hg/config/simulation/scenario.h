@@ -16,6 +16,7 @@
 #include "hg/signals/timed_changes.h"
 #include "hg/signals/timed_panel.h"
 #include "hg/simulator/faults/injection.h"
+#include "hg/simulator/moving_base.h"
 #include "hg/simulator/person/person.h"
 #include "hg/simulator/plant/bystander.h"
 #include "hg/teleoperation/teleoperation.h"
@@ -45,6 +46,7 @@ struct Scenario {
   std::vector<surfaces::Surface> surfaces;  ///< surfaces that the twin meets
   std::optional<BystanderInTheWay> bystander;
   std::optional<teleoperation::TeleoperationConfig> teleoperation;  ///< with a remote machine
+  std::optional<simulator::MovingBaseConfig> twin_motion;           ///< of the twin's root link
   std::vector<SourceText> sources;  ///< source texts of all files, the scenario first
   Places places;                    ///< places of the keys of the YAML file
 };

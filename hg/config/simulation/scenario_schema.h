@@ -14,6 +14,7 @@
 #include "hg/config/simulation/panel_schema.h"
 #include "hg/config/simulation/surface_schema.h"
 #include "hg/config/simulation/teleoperation_schema.h"
+#include "hg/config/simulation/twin_motion_schema.h"
 #include "hg/config/sources.h"
 #include "hg/signals/event_rule.h"
 #include "hg/simulator/person/person.h"
@@ -39,6 +40,8 @@ struct ScenarioDraft {
   double duration_s = 0.0;
   EventNames names;
   std::vector<EventRule> events;
+  std::optional<simulator::MovingBaseConfig> twin_motion;
+  bool moves() const { return twin_motion.has_value(); }
 };
 
 inline constexpr std::array<Choice<person::PersonKind>, 2> kPersons = {
@@ -56,6 +59,7 @@ void describe_parts(V& v, ScenarioDraft& d) {
                    "script.yaml of the hand, or mouse, or none", Need::kRequired);
   v.number("duration_s", d.duration_s, kPositive,
            "length of the run, from when a scripted hand takes the handle", Need::kRequired);
+  describe_twin_motion(v, d.twin_motion);
 }
 
 /// Conditions on single limits and surfaces.

@@ -243,6 +243,7 @@ SolverStatus Rendering::step(const LawInput& input, RenderingState& state,
   factor_mass(twin_now_.M(), L_);
   J_H_ = device_now_.jacobian(device_.handle);
   J_a_ = twin_now_.jacobian(twin_.end_effector);
+  carried_twist_ = twin_now_.carried_twist(twin_.end_effector);
   reactions_.update(J_H_, J_a_);
   advance_locks(twin_, options_.bounds, state.twin.q_a, state.inner);
 
@@ -326,7 +327,7 @@ Eigen::Vector3d Rendering::push_of_twin(const Budget& budget) const noexcept {
 void Rendering::feel_surfaces(const LawInput& input, RenderingState& state,
                               LawResult& result) noexcept {
   const Eigen::Vector3d p_E = twin_now_.pose(twin_.end_effector).p;
-  const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a;
+  const Eigen::Vector3d v_E = J_a_.topRows<3>() * state.twin.dq_a + carried_twist_.head<3>();
   if (environment_.has_stops()) {
     const VectorA& dq = state.twin.dq_a;
     VectorA ddq_max(dq.size());
@@ -371,8 +372,13 @@ void Rendering::give_way(const ContactReport& contact, RenderingState& state) co
   factor.solveInPlace(along);
   factor.solveInPlace(limits);
   const double missing = -along.dot(limits) / along.squaredNorm();
-  const Eigen::Vector3d v_E = J_a_.topRows<3>() * (state.twin.dq_a + 0.5 * dt_ * state.twin.ddq_a);
+  const Eigen::Vector3d v_E = J_a_.topRows<3>() * (state.twin.dq_a + 0.5 * dt_ * state.twin.ddq_a) +
+                              carried_twist_.head<3>();
   environment_.give_way(contact, std::clamp(missing, 0.0, force), v_E, state.contact);
+}
+
+void Rendering::move_base(const TwinBase& base) noexcept {
+  twin_now_.move_base(base.T_B_A, base.twist, base.acceleration);
 }
 
 void Rendering::align(const RobotState& robot, RenderingState& state) noexcept {
@@ -411,8 +417,9 @@ bool Rendering::clamp_reference(const RobotState& robot, double largest,
   if (!is_far) return false;
   align(robot, state);
   twin_now_.update_kinematics(state.twin.q_a, state.twin.dq_a);
-  const Vector6 twist = device_now_.twist(device_.handle);
   const model::Jacobian J_a = twin_now_.jacobian(twin_.end_effector);
+  const Vector6 carried = twin_now_.carried_twist(twin_.end_effector);
+  const Vector6 twist = device_now_.twist(device_.handle) - carried;
   state.twin.dq_a = shortest_velocity(J_a, twist);
   return true;
 }

@@ -49,21 +49,21 @@ class Rendering {
   /// Changes a parameter of the twin, from the next step() on.
   ChangeStatus change(const ParameterChange& change, RenderingState& state) const noexcept;
 
-  /// Solves for the accelerations of this sample. Writes them, their causes and the kinematics to
-  /// `result`, all fields of it, and the accelerations to `state`, too. Does not advance the state:
-  /// integrate() does. Where the law leads the gantry, state.ddq_p is its demanded acceleration.
+  /// Solves for the accelerations of this sample. Writes all fields of `result`, and the
+  /// accelerations to `state`, too; where the law leads the gantry, state.ddq_p. integrate()
+  /// advances the state.
   SolverStatus step(const LawInput& input, RenderingState& state, LawResult& result) noexcept;
 
   /// Whether the law can lead the gantry.
   bool leads_gantry() const noexcept { return tasks_.leads_gantry(); }
 
-  /// Moves the twin, at rest, so that its end effector meets the handle, as far as its joints
-  /// allow.
+  /// Moves the root link of a twin with a moving base, for all that follows.
+  void move_base(const TwinBase& base) noexcept;
+  /// Moves the resting twin so that its end effector meets the handle, as far as its joints allow.
   void align(const RobotState& robot, RenderingState& state) noexcept;
 
-  /// Keeps the reference within `largest` (rad or m) of the measured joints; [C] 6. Where the
-  /// device lags behind, reference and twin are moved back to it, so that the error cannot build up
-  /// and release suddenly. True when they were moved.
+  /// Keeps the reference within `largest` (rad or m) of the measured joints; [C] 6: reference and
+  /// twin move back to a device that lags, so that no error builds up. True when they moved.
   bool clamp_reference(const RobotState& robot, double largest, RenderingState& state) noexcept;
 
   /// Whether in the last step a joint or virtual joint of the device could not be kept within its
@@ -75,16 +75,15 @@ class Rendering {
   /// arm can brake it.
   void gantry_room(VectorP& down, VectorP& up) const noexcept;
 
-  /// Twist of the handle at the measured joint speeds in the posture of the last step(), resolved
-  /// in B.
+  /// Twist of the handle at the measured speeds in the posture of the last step(), resolved in B.
   Vector6 handle_twist(const RobotState& robot) const noexcept;
   /// Jacobian of the handle in the posture of the last step(), gantry joints first.
   const model::Jacobian& handle_jacobian() const noexcept { return J_H_; }
-  /// Twist of the end effector of the twin at the speeds of `state` in the posture of the last
-  /// step(), resolved in B.
+  /// Twist of the twin's end effector against its base, and with its joints at rest.
   Vector6 end_effector_twist(const RenderingState& state) const noexcept;
-  /// Mass of the twin as set up, in the posture of the last step(), felt at its end effector along
-  /// the axis of B where it is least, kg.
+  const Vector6& carried_twist() const noexcept { return carried_twist_; }
+  /// Mass of the twin as set up, kg, in the posture of the last step(), along the axis of B where
+  /// it is least.
   double apparent_mass(const RenderingState& state) const noexcept;
 
   /// Installs a callback for the stages kRenderingSetUp, kSolver and kReactions.
@@ -133,11 +132,12 @@ class Rendering {
   Tasks tasks_;
   Stops stops_;  ///< Stops in this cycle
   Reactions reactions_;
-  // of this cycle: M_a = L L^T, damping of lost directions included, the Jacobians of handle
-  // (gantry first) and end effector
+  // of this cycle: M_a = L L^T, damping of lost directions included; Jacobians of handle (gantry
+  // first) and end effector, and what a moving base adds to its twist
   MatrixA L_;
   LostDirections lost_;
   model::Jacobian J_H_, J_a_;
+  Vector6 carried_twist_ = Vector6::Zero();
   hqp::SolverOptions solver_options_;
   hqp::Solver solver_;
   hqp::Solution solution_;

@@ -61,7 +61,8 @@ PreparedRun::PreparedRun(config::Scenario loaded, const ScenarioOptions& options
       cycle(make_cycle(scenario)),
       twin_force(make_twin_force(
           scenario, connect_remote_machine(scenario, std::string("hapticgiant run ") + version(),
-                                           timing.is_fast))) {
+                                           timing.is_fast))),
+      twin_base(make_twin_base(scenario)) {
   doctor::check_items(machine.despite);
   if (machine.address.empty()) {
     simulated = make_simulated_device(scenario);

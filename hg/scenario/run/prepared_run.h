@@ -49,6 +49,7 @@ struct PreparedRun {
   std::optional<Connection> connection;         ///< to a remote device
   std::unique_ptr<device::Device> simulated;    ///< without one
   std::unique_ptr<TwinForceSource> twin_force;  ///< nullptr = none
+  std::unique_ptr<TwinBaseSource> twin_base;    ///< nullptr = none
   std::string refusal;  ///< why the device neither waits nor starts again; empty = it does
 };
 

@@ -39,6 +39,7 @@ runtime::RuntimeOptions runtime_options(const PreparedRun& run, const RunTiming&
                                         bool is_endless) {
   runtime::RuntimeOptions options = run_options(run.scenario);
   options.twin_force = run.twin_force.get();
+  options.twin_base = run.twin_base.get();
   options.is_fast = timing.is_fast;
   if (!timing.is_fast) {
     options.slow_cycle_us = kSlowCycle * 1e6 / run.scenario.device.model.rate_Hz;
