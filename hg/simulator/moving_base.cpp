@@ -79,10 +79,10 @@ TwinBase MovingBase::step(bool is_running, bool is_apart) noexcept {
     one.dx *= pace;
   }
   // Rz Ry Rx; each turns about an axis that those before it have turned
-  const Eigen::Matrix3d Rz = AngleAxisd(d[5].x, Vector3d::UnitZ()).toRotationMatrix();
-  const Eigen::Matrix3d Rzy = Rz * AngleAxisd(d[4].x, Vector3d::UnitY()).toRotationMatrix();
-  const Eigen::Matrix3d R = Rzy * AngleAxisd(d[3].x, Vector3d::UnitX()).toRotationMatrix();
-  const Vector3d ez = Vector3d::UnitZ(), ey = Rz.col(1), ex = Rzy.col(0);
+  const Eigen::Matrix3d R_z = AngleAxisd(d[5].x, Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d R_zy = R_z * AngleAxisd(d[4].x, Vector3d::UnitY()).toRotationMatrix();
+  const Eigen::Matrix3d R = R_zy * AngleAxisd(d[3].x, Vector3d::UnitX()).toRotationMatrix();
+  const Vector3d ez = Vector3d::UnitZ(), ey = R_z.col(1), ex = R_zy.col(0);
   const Vector3d omega_z = d[5].dx * ez, omega_y = d[4].dx * ey, omega_x = d[3].dx * ex;
   const Vector3d omega = omega_z + omega_y + omega_x;
   const Vector3d alpha = d[5].ddx * ez + d[4].ddx * ey + d[3].ddx * ex + omega_z.cross(omega_y) +
