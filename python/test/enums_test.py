@@ -18,7 +18,7 @@ ENUMS = {
     hg.FaultCode: "signals/fault.h",
     hg.LimitState: "signals/limit.h",
     hg.LimitCause: "signals/limit.h",
-    hg.Parameter: "signals/frames.h",
+    hg.Parameter: "signals/twin_input.h",
     hg.ChangeStatus: "signals/state.h",
     hg.Law: "controller/rendering/options.h",
     hg.Bounds: "controller/rendering/options.h",
