@@ -20,7 +20,7 @@ EXAMPLES = {
     "hqp_priorities.py": r"slow tip: .* misses by \[0\. 0\.\]\nfast tip: (.*\n)+.*blocked by row 1\n",
     "whole_body.py": r"right hand +misses by 0\.000\nleft hand +misses by 0\.[1-9]\d\d\n(.*\n)+SOLVED with 16 ",
     "open_door.py": r"opens at 9\.\d\d s, force .* N, felt: ",
-    "bilateral_method.py": r"(0 ms +\w+ +yes .*\n){3}( +50 ms +\w+ +yes .*\n){3} +400 ms .*",
+    "bilateral_method.py": r"(\n +0 ms +\w+ +yes .*){3}(\n +50 ms +\w+ +yes .*){3}\n +400 ms ",
     "read_run.py": r"1\d{4} cycles, 14\.\d s.*\nhinge at most 1\.\d{3} rad, open from 9\.\d\d s on",
 }
 # libraries that notebooks need without importing them
