@@ -126,7 +126,7 @@ export async function comes_true(page, test, patience_ms = PATIENCE.timeout) {
 }
 
 // Waits until the run is `duration_s` older.
-async function lives(page, duration_s) {
+export async function lives(page, duration_s) {
   const { time_s } = await frame_of(page);
   await comes_true(page, (f) => f.time_s >= time_s + duration_s);
 }
