@@ -21,13 +21,8 @@ namespace {
 
 // True state at the end, by the simulation.
 std::string truth_text(const teleoperation::MachineState& state) {
-  const auto text = [](const PortVector& v) {
-    std::string joined;
-    for (const double number : v)
-      joined += fmt::format("{:s}{:.4f}", joined.empty() ? "" : " ", number);
-    return joined;
-  };
-  return fmt::format("at {}, speed {:.4f}, force {:.2f}", text(state.x), state.v.norm(),
+  return fmt::format("at {:.4f}, speed {:.4f}, force {:.2f}",
+                     fmt::join(state.x.begin(), state.x.end(), " "), state.v.norm(),
                      state.f.norm());
 }
 

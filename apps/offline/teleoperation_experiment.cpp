@@ -53,7 +53,7 @@ std::string row_of(const GridCase& one) {
       1e3 * result.created / result.duration_s, 1e3 * result.created_leader / result.duration_s,
       result.peak_hand, one.peak_ratio, result.peak_wall, 1e3 * result.first_offset,
       1e3 * result.rest_offset, result.rest_force_error, 1e3 * result.position_rms,
-      result.force_rms, result.regulation_rms, one.regulation_ratio);
+      result.force_rms, result.regulation_rms, one.regulation_ratio());
 }
 
 constexpr const char* kHeader =
@@ -122,8 +122,7 @@ int experiment_teleoperation(const TeleoperationArguments& arguments) {
   std::string csv = kHeader;
   std::pair unfelt = {kInfinity, 0.0};
   for (const GridCase& one : cases) {
-    const double error = one.result.regulation_rms / one.regulation_ratio;
-    unfelt = {std::min(unfelt.first, error), std::max(unfelt.second, error)};
+    unfelt = {std::min(unfelt.first, one.unfelt_rms), std::max(unfelt.second, one.unfelt_rms)};
     worst[{one.method, one.delay}].add(one);
     csv += row_of(one);
   }

@@ -24,6 +24,7 @@ constexpr std::string_view kSamples = "/hapticgiant/sample";
 constexpr std::string_view kEvents = "/hapticgiant/events";
 constexpr char kOtherVersion[] = "its samples are of another version";
 constexpr char kTwoRuns[] = "it has more than one run";
+constexpr char kNoTopic[] = "it has no topic /hapticgiant/sample";
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view what) {
   throw SetupError(file.string() + ": must be a recording of this program: " + std::string(what));
@@ -207,39 +208,48 @@ class Losses {
   bool has_own_ = false, has_others_ = false;  // topics that the file describes
 };
 
-[[noreturn]] void refuse_without_topic(const std::filesystem::path& file, const Losses& losses,
-                                       bool is_complete) {
-  if (losses.empty() && !is_complete && !losses.is_of_another_tool()) {
-    refuse(file, "it is cut off before its first sample");
+// What every reader of a file keeps account of.
+struct Account {
+  explicit Account(const std::filesystem::path& path) : file(path) {}
+
+  const std::filesystem::path& file;
+  OneRun run{file};
+  Losses losses = {};
+  bool has_samples = false;  ///< the file describes their topic
+  bool is_complete = false;
+
+  void take(int kind, std::string_view name, std::uint64_t time_ns) {
+    run.take(kind, name, time_ns);
+    losses.take(kind, name, time_ns);
+    if (kind == mcap_end) is_complete = true;
+    if (kind == mcap_channel && name == kSamples) has_samples = true;
   }
-  const bool is_sound = losses.empty() || losses.is_of_another_tool();
-  refuse(file, is_sound ? "it has no topic /hapticgiant/sample"
-                        : "what describes its samples is damaged");
-}
+  void require_topic() const {
+    if (has_samples) return;
+    if (losses.is_of_another_tool()) refuse(file, kNoTopic);
+    if (!losses.empty()) refuse(file, "what describes its samples is damaged");
+    refuse(file, is_complete ? kNoTopic : "it is cut off before its first sample");
+  }
+};
 
 // Notifies a listener.
 struct Teller {
-  const std::filesystem::path& file;
+  Account account;
   RecordingListener& listener;
-  OneRun one_run{file};
-  Losses losses = {};
   std::uint64_t start = 0;  ///< log time at run time 0, ns
-  bool has_samples = false, is_complete = false;
   std::uint64_t samples = 0;
   std::string error;
   Sample sample = {};
 
   void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
-    one_run.take(kind, name, time_ns);
-    losses.take(kind, name, time_ns);
-    if (kind == mcap_end) is_complete = true;
+    account.take(kind, name, time_ns);
     if (kind == mcap_attachment) {
       listener.configuration({std::string(name), std::string(text_of(bytes))});
     }
     if (kind == mcap_metadata) listener.metadata(std::string(name), pairs_of(text_of(bytes)));
-    if (kind == mcap_channel && name == kSamples) {
-      has_samples = true;
-      if (error.empty() && !is_same_schema(text_of(bytes))) error = kOtherVersion;
+    const bool describes_samples = kind == mcap_channel && name == kSamples;
+    if (describes_samples && error.empty() && !is_same_schema(text_of(bytes))) {
+      error = kOtherVersion;
     }
     if (kind != mcap_message || !error.empty()) return;
     if (name == kEvents) {
@@ -249,7 +259,7 @@ struct Teller {
     if (name != kSamples) return;
     if (messages::CdrReader(bytes).decode(sample)) {
       if (samples == 0) start = start_ns(time_ns, sample.record.time_s);
-      check_start(file, start, time_ns, sample.record.time_s);
+      check_start(account.file, start, time_ns, sample.record.time_s);
       listener.sample(sample);
     } else {
       error = "sample " + std::to_string(samples) + " is damaged";
@@ -277,37 +287,31 @@ std::string to_text(const std::vector<Loss>& losses) {
 }
 
 ReadResult read_recording(const std::filesystem::path& file, RecordingListener& listener) {
-  const auto teller = std::make_unique<Teller>(Teller{.file = file, .listener = listener});
+  const auto teller =
+      std::make_unique<Teller>(Teller{.account = Account(file), .listener = listener});
   try {
     hand_out(file, *teller);
   } catch (const SetupError& error) {
-    throw SetupError(to_text(teller->losses.since(teller->start)) + error.what());
+    throw SetupError(to_text(teller->account.losses.since(teller->start)) + error.what());
   }
-  if (!teller->has_samples) refuse_without_topic(file, teller->losses, teller->is_complete);
+  teller->account.require_topic();
   if (!teller->error.empty()) refuse(file, teller->error);
   if (teller->samples == 0) refuse(file, "it has no sample");
-  return {teller->is_complete, teller->losses.since(teller->start)};
+  return {teller->account.is_complete, teller->account.losses.since(teller->start)};
 }
 
 namespace {
 
 // Passes messages on as they are.
 struct Passer {
-  const std::filesystem::path& file;
+  Account account;
   MessageListener& listener;
-  OneRun one_run{file};
-  Losses losses = {};
   std::uint64_t start = 0;  ///< log time at run time 0, ns
-  bool has_samples = false, is_complete = false;
   std::string type;
 
   void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
-    one_run.take(kind, name, time_ns);
-    losses.take(kind, name, time_ns);
+    account.take(kind, name, time_ns);
     switch (kind) {
-      case mcap_end:
-        is_complete = true;
-        return;
       case mcap_attachment:
         return listener.configuration({std::string(name), std::string(text_of(bytes))});
       case mcap_metadata:
@@ -316,7 +320,6 @@ struct Passer {
         type = text_of(bytes);
         return;
       case mcap_channel:
-        has_samples = has_samples || name == kSamples;
         return listener.topic({std::string(name), type, std::string(text_of(bytes))});
       case mcap_message:
         return listener.message(name, time_ns, bytes);
@@ -337,10 +340,10 @@ struct Passer {
 }  // namespace
 
 ReadResult read_messages(const std::filesystem::path& file, MessageListener& listener) {
-  Passer passer{.file = file, .listener = listener};
+  Passer passer{.account = Account(file), .listener = listener};
   hand_out(file, passer);
-  if (!passer.has_samples) refuse_without_topic(file, passer.losses, passer.is_complete);
-  return {passer.is_complete, passer.losses.since(passer.start)};
+  passer.account.require_topic();
+  return {passer.account.is_complete, passer.account.losses.since(passer.start)};
 }
 
 // Collects the kept samples of a run, and an error.
@@ -349,15 +352,11 @@ struct RecordedRun::Taker {
   std::uint64_t period_ns;
   std::uint64_t due_ns = 0;
   Moment last = {};  ///< last sample that was not kept
-  OneRun one_run{run.file_};
-  Losses losses = {};
-  bool has_samples = false, is_complete = false;
+  Account account{run.file_};
   const char* error = "";
 
   void channel(std::string_view topic, std::string_view schema) {
-    if (topic != kSamples) return;
-    has_samples = true;
-    if (!is_same_schema(schema)) error = kOtherVersion;
+    if (topic == kSamples && !is_same_schema(schema)) error = kOtherVersion;
   }
 
   void message(std::string_view topic, std::uint64_t time_ns, Bytes bytes) {
@@ -374,12 +373,8 @@ struct RecordedRun::Taker {
   }
 
   void take(int kind, std::string_view name, std::uint64_t time_ns, Bytes bytes) {
-    one_run.take(kind, name, time_ns);
-    losses.take(kind, name, time_ns);
+    account.take(kind, name, time_ns);
     switch (kind) {
-      case mcap_end:
-        is_complete = true;
-        return;
       case mcap_channel:
         return channel(name, text_of(bytes));
       case mcap_message:
@@ -396,7 +391,7 @@ struct RecordedRun::Taker {
 RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : file_(file) {
   Taker taker{*this, static_cast<std::uint64_t>(std::llround(1e9 * period_s))};
   hand_out(file, taker);
-  if (!taker.has_samples) refuse_without_topic(file, taker.losses, taker.is_complete);
+  taker.account.require_topic();
   if (*taker.error != '\0') refuse(file, taker.error);
   if (!taker.last.bytes.empty()) moments_.push_back(std::move(taker.last));
   if (moments_.empty()) refuse(file, "it has no sample");
@@ -404,7 +399,7 @@ RecordedRun::RecordedRun(const std::filesystem::path& file, double period_s) : f
   decode(0, *sample);
   begin_s_ = sample->record.time_s;
   start_ns_ = start_ns(moments_.front().time_ns, begin_s_);
-  losses_ = taker.losses.since(start_ns_);
+  losses_ = taker.account.losses.since(start_ns_);
   read(moments_.size() - 1, *sample);  // a second run is refused at once
 }
 

@@ -66,7 +66,7 @@ std::vector<GridCase> play_grid(const Grid& grid,
     config.make_remote = grid.make_remote;
     one.result = play_trial(config);
     one.peak_ratio = one.result.peak_hand / undelayed.at({one.wall, one.hand});
-    one.regulation_ratio = one.result.regulation_rms / unfelt.at({one.wall, one.hand});
+    one.unfelt_rms = unfelt.at({one.wall, one.hand});
     if (played) played(one);
   }
   return cases;

@@ -37,7 +37,9 @@ struct GridCase {
   person::HandPreset hand = person::HandPreset::kNormal;
   TrialResult result;
   double peak_ratio = 0.0;  ///< Largest force of the hand over that of position-force without delay
-  double regulation_ratio = 0.0;  ///< Error of the wall's force over that of a hand without feeling
+  double unfelt_rms = 0.0;  ///< regulation_rms of a hand that feels nothing, N
+
+  double regulation_ratio() const noexcept { return result.regulation_rms / unfelt_rms; }
 };
 
 /// Plays all trials, in a fixed order. `played` gets each result and may throw.

@@ -43,6 +43,16 @@ struct Port {
   double x = 0.0, v = 0.0, f = 0.0, x_target = 0.0, taken = 0.0, given = 0.0;
 };
 
+Port own(const LeaderPort& port) {
+  return {port.x[0],           port.v[0], port.f_hand[0], port.x[0], port.energy.taken[0],
+          port.energy.given[0]};
+}
+
+Port own(const RemotePort& port) {
+  return {port.x[0],           port.v[0], port.f[0], port.x_target[0], port.energy.taken[0],
+          port.energy.given[0]};
+}
+
 template <typename Owner>
 class InPython : public Owner {
  public:
@@ -50,6 +60,12 @@ class InPython : public Owner {
       : object_(std::move(object)), thrown_(std::move(thrown)) {}
 
  protected:
+  template <typename OwnPort, typename Arrived, typename Packet>
+  nb::object call_step(const OwnPort& port, const Arrived& arrived, bool is_new, Packet& packet) {
+    return object_.attr("step")(own(port), nb::cast(arrived, nb::rv_policy::copy), is_new,
+                                nb::cast(&packet, nb::rv_policy::reference));
+  }
+
   nb::object object_;
   Thrown thrown_;
 };
@@ -62,17 +78,8 @@ class PythonLeader final : public InPython<LeaderMethod> {
   }
   PortVector step(const LeaderPort& port, const RemotePacket& arrived, bool is_new,
                   LeaderPacket& packet) noexcept override {
-    return guarded(thrown_, one(0.0), [&] {
-      const Port own = {.x = port.x[0],
-                        .v = port.v[0],
-                        .f = port.f_hand[0],
-                        .x_target = port.x[0],
-                        .taken = port.energy.taken[0],
-                        .given = port.energy.given[0]};
-      return one(
-          nb::cast<double>(object_.attr("step")(own, nb::cast(arrived, nb::rv_policy::copy), is_new,
-                                                nb::cast(&packet, nb::rv_policy::reference))));
-    });
+    return guarded(thrown_, one(0.0),
+                   [&] { return one(nb::cast<double>(call_step(port, arrived, is_new, packet))); });
   }
 };
 
@@ -86,15 +93,7 @@ class PythonRemote final : public InPython<RemoteMethod> {
                     RemotePacket& packet) noexcept override {
     const RemoteTarget hold = {port.x_target, one(0.0), one(0.0)};
     return guarded(thrown_, hold, [&] {
-      const Port own = {.x = port.x[0],
-                        .v = port.v[0],
-                        .f = port.f[0],
-                        .x_target = port.x_target[0],
-                        .taken = port.energy.taken[0],
-                        .given = port.energy.given[0]};
-      const nb::object target =
-          object_.attr("step")(own, nb::cast(arrived, nb::rv_policy::copy), is_new,
-                               nb::cast(&packet, nb::rv_policy::reference));
+      const nb::object target = call_step(port, arrived, is_new, packet);
       const auto at = [&](int i) { return one(nb::cast<double>(target[i])); };
       return RemoteTarget{at(0), at(1), at(2)};
     });
@@ -188,8 +187,8 @@ void bind_cases(nb::module_& module) {
       .def_prop_ro("position_rms", [](const GridCase& c) { return c.result.position_rms; })
       .def_prop_ro("force_rms", [](const GridCase& c) { return c.result.force_rms; })
       .def_prop_ro("regulation_rms", [](const GridCase& c) { return c.result.regulation_rms; })
-      .def_ro("regulation_ratio", &GridCase::regulation_ratio,
-              "error of the wall's force over that of a hand that feels nothing")
+      .def_prop_ro("regulation_ratio", &GridCase::regulation_ratio,
+                   "error of the wall's force over that of a hand that feels nothing")
       .def_prop_ro("peak_hand", [](const GridCase& c) { return c.result.peak_hand; })
       .def_prop_ro("peak_wall", [](const GridCase& c) { return c.result.peak_wall; })
       .def_ro("peak_ratio", &GridCase::peak_ratio,

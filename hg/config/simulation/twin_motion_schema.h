@@ -1,7 +1,6 @@
 /// Description of the motion of the twin's place in a scenario.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "hg/config/schema.h"
@@ -9,13 +8,7 @@
 
 namespace hg::config {
 
-inline constexpr std::array<Choice<simulator::SwingDirection>, 6> kSwingDirections = {
-    {{"x", simulator::SwingDirection::kX},
-     {"y", simulator::SwingDirection::kY},
-     {"z", simulator::SwingDirection::kZ},
-     {"rx", simulator::SwingDirection::kRx},
-     {"ry", simulator::SwingDirection::kRy},
-     {"rz", simulator::SwingDirection::kRz}}};
+inline constexpr auto kSwingDirections = choices_of<simulator::SwingDirection>();
 
 template <class V>
 void describe(V& v, simulator::Swing& swing) {
