@@ -318,6 +318,7 @@ viewer_server::Scene page_scene(const config::Scenario& scenario) {
   scene.description = scenario.description;
   scene.device = device_chain(scenario.device);
   scene.twin = twin_chain(scenario.twin);
+  scene.twin_base_moves = scenario.twin_motion.has_value();
   scene.twin.live_text = scenario::twin_description(scenario);
   scene.gantry_joints = scenario.device.model.n_p;
   scene.limits = scenario.limits;

@@ -108,10 +108,13 @@ viewer_server::View RecordingPage::view() {
   viewer_server::View view;
   if (other_) {
     other_->read(other_->at(now_s() - other_->begin_s()), *sample_);
-    view.ghost = viewer_server::Ghost{sample_->record.time_s, sample_->record};
+    view.ghost = viewer_server::Ghost{.time_s = sample_->record.time_s,
+                                      .record = sample_->record,
+                                      .twin_base = sample_->operator_input.twin_base};
   }
   run_.read(run_.at(playback_.position_s()), *sample_);
   view.record = sample_->record;
+  view.twin_base = sample_->operator_input.twin_base;
   view.safety = safety_view(*sample_, names_);
   view.teleoperation = teleoperation_view(scenario_, *sample_);
   view.hand = sample_->operator_input.hand_target;

@@ -279,6 +279,7 @@ void RunPage::show(const Sample& sample) {
 
 void RunPage::publish() {
   view_.record = newest_->record;
+  view_.twin_base = newest_->operator_input.twin_base;
   view_.hand = newest_->operator_input.hand_target;
   view_.cycle_time_us = newest_->cycle_time_us;
   view_.status_text = run_.scenario->description;

@@ -39,13 +39,12 @@ void fields(Archive& a, T& frame) {
   const View& view = frame.view;
   const CycleRecord& record = view.record;
   const RobotState& robot = record.robot;
-  const bool has_fault = record.fault.code != FaultCode::kNone;
   a.type("frame");
   a("run", view.run, "number of the run, as Scene.run");
   a("time_s", record.time_s);
   a("mode", record.mode);
   a("mode_text", mode_text(record), "mode and its cause as text");
-  a("fault", std::string(has_fault ? to_string(record.fault.code) : ""), "empty = none");
+  a("fault", fault_name(record), "empty = none");
   a("status", view.status_text, "status in one line");
   a("q_device", q_device(record), "gantry, then reference of the manipulator",
     unit::kJointPosition);
@@ -57,6 +56,7 @@ void fields(Archive& a, T& frame) {
   a("q_twin", list(record.twin.q_a), "coordinates of the twin", unit::kJointPosition);
   a("dq_twin", list(record.twin.dq_a),
     "velocities of the twin; a floating joint has 6, in its own frame", unit::kJointSpeed);
+  a("twin_base", twin_base_message(view.twin_base), "null = its root link rests");
   a("q_gantry_target_m", list(record.q_p_target), "gantry target of prepositioning");
   a("tracking_error", list(record.tracking.error), "reference minus link side of the manipulator",
     unit::kJointPosition);

@@ -29,6 +29,15 @@ struct SafetyMessage {
   const View& view;
 };
 
+/// Where the root link of the twin is, and how it moves.
+struct TwinBaseMessage {
+  TwinBase base;
+};
+
+/// Nothing of a twin whose root link rests.
+std::optional<TwinBaseMessage> twin_base_message(const TwinBase& base);
+
+std::string fault_name(const CycleRecord& record);  ///< empty = none
 /// Coordinates at which the page draws the device: gantry, then reference of the manipulator.
 std::vector<double> q_device(const CycleRecord& record);
 std::vector<double> list(const Eigen::Ref<const Eigen::VectorXd>& vector);
@@ -52,6 +61,9 @@ inline constexpr Interface kInterface<RunState> = {"RunState",
 template <>
 inline constexpr Interface kInterface<SafetyMessage> = {
     "Safety", "cause of a stop, and the panel of the simulated operator"};
+template <>
+inline constexpr Interface kInterface<TwinBaseMessage> = {
+    "TwinBase", "pose, velocity and acceleration of the twin's root link in B"};
 template <>
 inline constexpr Interface kInterface<Ghost> = {"Ghost",
                                                 "second recording, overlaid for comparison"};
@@ -86,12 +98,23 @@ void fields(Archive& a, T& message) {
   pass_some(a, safety.panel, {"operator_enable", "override_key", "person_in_field"});
 }
 
+template <typename Archive, Is<TwinBaseMessage> T>
+void fields(Archive& a, T& message) {
+  const TwinBase& base = message.base;
+  a("p_B_m", base.T_B_A.p);
+  a("quaternion_B", quaternion(base.T_B_A.R));
+  a("v_m_per_s", Eigen::Vector3d(base.twist.template head<3>()));
+  a("omega", Eigen::Vector3d(base.twist.template tail<3>()), "", unit::kRadPerS);
+  a("a", Eigen::Vector3d(base.acceleration.template head<3>()), "of its origin", unit::kMPerS2);
+}
+
 template <typename Archive, Is<Ghost> T>
 void fields(Archive& a, T& ghost) {
   a("time_s", ghost.time_s, "time of its run");
   a("q_device", q_device(ghost.record), "gantry, then reference of the manipulator",
     unit::kJointPosition);
   a("q_twin", list(ghost.record.twin.q_a), "coordinates of the twin", unit::kJointPosition);
+  a("twin_base", twin_base_message(ghost.twin_base), "null = its root link rests");
   a("p_B_H_m", ghost.record.T_B_H.p);
   a("force_N", Eigen::Vector3d(ghost.record.robot.w_H.template head<3>()));
 }

@@ -105,8 +105,17 @@ std::vector<double> joined(const Eigen::Ref<const Eigen::VectorXd>& first,
   return all;
 }
 
+std::string fault_name(const CycleRecord& record) {
+  const FaultCode code = record.fault.code;
+  return std::string(code != FaultCode::kNone ? to_string(code) : "");
+}
+
 std::vector<double> q_device(const CycleRecord& record) {
   return joined(record.robot.q_p, record.reference.q_m);
+}
+
+std::optional<TwinBaseMessage> twin_base_message(const TwinBase& base) {
+  return base.is_moving ? std::optional(TwinBaseMessage{base}) : std::nullopt;
 }
 
 HandMessage hand_message(const HandTarget& hand) {

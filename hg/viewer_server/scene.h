@@ -116,6 +116,7 @@ struct Scene {
   double duration_s = 0.0;  ///< duration of a recording, or planned, s; 0 = open
   SceneChain device;        ///< gantry joints first, then manipulator: coordinates q_p, then q_m
   SceneChain twin;          ///< coordinates q_a
+  bool twin_base_moves = false;  ///< the root link of the twin moves
   LimitCatalogue limits;
   Eigen::AlignedBox3d box;  ///< Cartesian limits of the handle in B; dragging ends 0.5 m outside
   double floor_z = 0.0;     ///< height of the floor in B, m

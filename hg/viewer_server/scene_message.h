@@ -22,6 +22,7 @@ void fields(Archive& a, T& scene) {
   a("duration_s", scene.duration_s, "duration of a recording, or planned; 0 = open");
   a("device", scene.device);
   a("twin", scene.twin);
+  a("twin_base_moves", scene.twin_base_moves, "its root link moves, as Frame.twin_base says");
   a("gantry_joints", scene.gantry_joints, "number of gantry joints, the first ones of the device");
   a("limits", limit_messages(scene.limits));
   a("floor_z_m", scene.floor_z);

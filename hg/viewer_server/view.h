@@ -71,6 +71,7 @@ void fields(Archive& a, T& state) {
 struct Ghost {
   double time_s = 0.0;
   CycleRecord record;
+  TwinBase twin_base;
 };
 
 /// The other side of a teleoperation.
@@ -91,6 +92,7 @@ struct SafetyView {
 struct View {
   std::uint64_t run = 1;  ///< Scene::run
   CycleRecord record;
+  TwinBase twin_base;  ///< of the same cycle
   HandTarget hand;
   /// Cycle time, and its maximum since the last view
   double cycle_time_us = 0.0, cycle_time_max_us = 0.0;

@@ -127,9 +127,9 @@ Json message_facts() {
   return all<Scene, SceneChain, SceneJoint, SceneFollower, SceneLimitMessage, Eigen::AlignedBox3d,
              SceneSurface, SceneShape, SceneCheckpoint, SceneTeleoperation, SceneAxis, SceneWall,
              Choices, Choice, Setting, FrameMessage, FeltLimitMessage, ActiveLimitMessage,
-             ContactReport, HandBudget, Vector6, Singularity, RunState, SafetyMessage, Ghost,
-             TeleoperationView, HandMessage, HoldMessage, CommandMessage, WelcomeMessage,
-             AnswerMessage, ValuesMessage, EventMessage>();
+             ContactReport, HandBudget, Vector6, Singularity, RunState, SafetyMessage,
+             TwinBaseMessage, Ghost, TeleoperationView, HandMessage, HoldMessage, CommandMessage,
+             WelcomeMessage, AnswerMessage, ValuesMessage, EventMessage>();
 }
 
 }  // namespace hg::pages

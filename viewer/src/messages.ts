@@ -17,6 +17,7 @@ export interface Scene {
   duration_s: number; // duration of a recording, or planned; 0 = open
   device: SceneChain;
   twin: SceneChain;
+  twin_base_moves: boolean; // its root link moves, as Frame.twin_base says
   gantry_joints: number; // number of gantry joints, the first ones of the device
   limits: SceneLimit[];
   floor_z_m: number;
@@ -189,6 +190,7 @@ export interface Frame {
   tau_measured_Nm: number[]; // torque sensors of the joints; empty = none
   q_twin: number[]; // [rad or m] coordinates of the twin
   dq_twin: number[]; // [rad/s or m/s] velocities of the twin; a floating joint has 6, in its own frame
+  twin_base: TwinBase | null; // null = its root link rests
   q_gantry_target_m: number[]; // gantry target of prepositioning
   tracking_error: number[]; // [rad or m] reference minus link side of the manipulator
   is_clamped: boolean; // tracking was lost: the reference was moved back
@@ -298,11 +300,21 @@ export interface Safety {
   person_in_field: boolean; // a person besides the user is in the scanner's field
 }
 
+// pose, velocity and acceleration of the twin's root link in B
+export interface TwinBase {
+  p_B_m: Vec3;
+  quaternion_B: Quaternion;
+  v_m_per_s: Vec3;
+  omega: Vec3; // [rad/s]
+  a: Vec3; // [m/s^2] of its origin
+}
+
 // second recording, overlaid for comparison
 export interface Ghost {
   time_s: number; // time of its run
   q_device: number[]; // [rad or m] gantry, then reference of the manipulator
   q_twin: number[]; // [rad or m] coordinates of the twin
+  twin_base: TwinBase | null; // null = its root link rests
   p_B_H_m: Vec3;
   force_N: Vec3;
 }
@@ -310,7 +322,7 @@ export interface Ghost {
 // the other side, in coordinates of the remote machine
 export interface Teleoperation {
   link: "none" | "waiting" | "released" | "engaged" | "lost";
-  cause: "none" | "speed" | "acceleration" | "range" | "force" | "not_finite" | "jump" | "replayed" | "frozen" | "silent" | "released"; // why the remote machine does not follow, as it last said
+  cause: "none" | "speed" | "acceleration" | "range" | "force" | "not_finite" | "jump" | "replayed" | "frozen" | "silent" | "released" | "stopped"; // why the remote machine does not follow, as it last said
   is_clutch_open: boolean; // a page has opened the clutch
   age_s: number; // time since the newest packet from the remote machine was sent
   round_trip_s: number; // of packets, there and back

@@ -100,6 +100,7 @@ const HOLDS: Partial<Record<Teleoperation["cause"], string>> = {
   jump: "what it was sent jumped",
   replayed: "packets were repeated",
   frozen: "packets kept coming with the same content",
+  stopped: "a rule of its own has stopped it",
 };
 
 const AGAIN = "Open and close the clutch (C) to take hold again.";

@@ -26,6 +26,7 @@ export const TORQUE_COLOR = 0xa855d8;
 export const TARGET_COLOR = 0x2f7bf6;
 export const ELBOW_COLOR = 0x0f9d8c;
 export const REMOTE_COLOR = 0x5f9e14;
+export const BASE_COLOR = 0x8a5a2b;
 export const GHOST_COLOR = 0xd6409f;
 export const SURFACE_COLOR = 0x6f8fb8;
 export const CONTACT_COLOR = 0xf2a51a;

@@ -88,6 +88,8 @@ messages::LinkTree link_tree(const config::Scenario& scenario) {
         q.size() == device->data.model().nq() && q_a.size() == twin->data.model().nq();
     if (!is_known) return;
     device->data.update_poses(q);
+    const TwinBase& base = sample.operator_input.twin_base;
+    if (base.is_moving) twin->data.move_base(base.T_B_A, base.twist, base.acceleration);
     twin->data.update_poses(q_a);
     auto next = poses.begin();
     pass_poses(*device, next);

@@ -142,6 +142,11 @@ View make_view() {
   view.singularity = {0.5, 1};
   view.ghost = Ghost{.time_s = 1.25};
   view.teleoperation = TeleoperationView{};
+  view.twin_base = {.is_moving = true, .T_B_A = {Eigen::Vector3d(1, 2, 3), {}}};
+  view.twin_base.T_B_A.R.setIdentity();
+  view.twin_base.twist << 1, 2, 3, 4, 5, 6;
+  view.twin_base.acceleration << 7, 8, 9, 10, 11, 12;
+  view.ghost->twin_base = view.twin_base;
   view.ghost->record.twin.q_a = ConfigurationA::Constant(1, 2.0);
   return view;
 }
@@ -219,7 +224,7 @@ TEST(Messages, DeclareTheUnitOfEveryNumberOutsideOfTheNote) {
       std::vector<std::string>{});
   EXPECT_EQ(unit_faults(FrameMessage{view, limits}, FeltLimitMessage{}, ActiveLimitMessage{},
                         ContactReport{}, HandBudget{}, Singularity{}, RunState{},
-                        SafetyMessage{view}, Ghost{}, TeleoperationView{}),
+                        SafetyMessage{view}, TwinBaseMessage{}, Ghost{}, TeleoperationView{}),
             std::vector<std::string>{});
   EXPECT_EQ(unit_faults(HandMessage{}, HoldMessage{}, CommandMessage{}, WelcomeMessage{},
                         AnswerMessage{}, ValuesMessage{}, EventMessage{}),
@@ -293,6 +298,20 @@ TEST(EncodeFrame, HasTheFieldsOfTheTypeScriptSide) {
   EXPECT_EQ(json["clients"], 2);
   EXPECT_EQ(json["budget"]["inertia"]["torque_Nm"], Json({0.0, 0.0, 2.0}));
   EXPECT_EQ(json["ghost"]["q_twin"], Json({2.0}));
+}
+
+TEST(EncodeFrame, HasTheMovingBaseOfTheTwinOrNone) {
+  View view = make_view();
+  const Json base = frame_of(view)["twin_base"];
+  EXPECT_EQ(base["p_B_m"], Json({1.0, 2.0, 3.0}));
+  EXPECT_EQ(base["quaternion_B"], Json({0.0, 0.0, 0.0, 1.0}));
+  EXPECT_EQ(base["v_m_per_s"], Json({1.0, 2.0, 3.0}));
+  EXPECT_EQ(base["omega"], Json({4.0, 5.0, 6.0}));
+  EXPECT_EQ(base["a"], Json({7.0, 8.0, 9.0}));
+  EXPECT_EQ(frame_of(view)["ghost"]["twin_base"], base);
+  view.twin_base.is_moving = view.ghost->twin_base.is_moving = false;
+  EXPECT_TRUE(frame_of(view)["twin_base"].is_null());
+  EXPECT_TRUE(frame_of(view)["ghost"]["twin_base"].is_null());
 }
 
 TEST(EncodeFrame, NamesTheLimitsThatActAndTheDistanceToTheNearerEnd) {

@@ -99,6 +99,12 @@ function remote_row(remote: Frame["teleoperation"]): (number | null)[] {
   ];
 }
 
+const BASE_COLUMNS = AXES.flatMap((a) => [`base_${a}_m`, `base_v_${a}_m_per_s`]);
+
+function base_row(base: Frame["twin_base"]): (number | null)[] {
+  return AXES.flatMap((_, i) => [base?.p_B_m[i] ?? null, base?.v_m_per_s[i] ?? null]);
+}
+
 // How far a remote machine is from where it is to be, m or rad; null: it is not led.
 export function apart({ link, x_target, x_remote }: Teleoperation): number | null {
   const is_known = link === "engaged" && x_target.length > 0 && x_target.length === x_remote.length;
@@ -127,6 +133,7 @@ export function history_of(scene: Scene): Table {
     "cycle_time_max_us",
     ...scene.limits.map(limit_column),
     ...(scene.teleoperation ? REMOTE_COLUMNS : []),
+    ...(scene.twin_base_moves ? BASE_COLUMNS : []),
   ]);
 }
 
@@ -153,5 +160,6 @@ export function row_of(scene: Scene, frame: Frame): (number | null | undefined)[
     frame.cycle_time_max_us,
     ...states,
     ...(scene.teleoperation ? remote_row(frame.teleoperation) : []),
+    ...(scene.twin_base_moves ? base_row(frame.twin_base) : []),
   ];
 }

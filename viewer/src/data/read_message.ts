@@ -30,6 +30,7 @@ const FRAME: Record<keyof Omit<Frame, "type">, Test> = {
   tau_measured_Nm: list_of(or_null(is_number)),
   q_twin: list_of(is_number),
   dq_twin: is_any,
+  twin_base: or_null(is_object),
   q_gantry_target_m: is_any,
   tracking_error: is_any,
   is_clamped: is_flag,

@@ -4,6 +4,7 @@ import { element, make } from "../page";
 import { remember, remembered } from "../remembered";
 import type { Layer, Layers } from "../scene/layers";
 import {
+  BASE_COLOR,
   DEVICE_COLOR,
   ELBOW_COLOR,
   FORCE_COLOR,
@@ -25,6 +26,7 @@ interface Line {
 export const LEGEND: Line[] = [
   { layer: "device", color: DEVICE_COLOR, mark: "body", text: "robot (device)" },
   { layer: "twin", color: TWIN_COLOR, mark: "body", text: "twin" },
+  { layer: "base", color: BASE_COLOR, mark: "body", text: "what carries the twin" },
   { layer: "remote", color: REMOTE_COLOR, mark: "body", text: "remote machine" },
   { layer: "remote", color: REMOTE_COLOR, mark: "target", text: "where it is to be (ghost)" },
   { layer: "arrows", color: FORCE_COLOR, mark: "arrow", text: "force on the hand" },
@@ -34,18 +36,16 @@ export const LEGEND: Line[] = [
   { layer: "ghost", color: GHOST_COLOR, mark: "body", text: "second recording" },
 ];
 
-// What there is in some runs only: a second recording drawn through the first, a remote machine.
-interface Shown {
-  ghost: boolean;
-  remote: boolean;
-}
+// What there is in some runs only: a second recording drawn through the first, a remote machine, a
+// moving base of the twin.
+type Shown = Record<"ghost" | "remote" | "base", boolean>;
 
 const STORED_AS = "hapticgiant.legend";
 const STATES = ["open", "closed"] as const;
 
 export class Legend {
   private readonly lines: [Line, HTMLElement][];
-  private shown: Shown = { ghost: false, remote: false };
+  private shown: Shown = { ghost: false, remote: false, base: false };
 
   constructor(private readonly layers: Layers) {
     this.lines = LEGEND.map((line) => {
@@ -64,14 +64,14 @@ export class Legend {
   }
 
   show(shown: Shown): void {
-    if (this.shown.ghost === shown.ghost && this.shown.remote === shown.remote) return;
+    if (Object.entries(shown).every(([layer, is]) => this.shown[layer as keyof Shown] === is)) return;
     this.shown = shown;
     this.apply_layers();
   }
 
   apply_layers(): void {
     for (const [{ layer }, item] of this.lines) {
-      const is_there = layer === "ghost" || layer === "remote" ? this.shown[layer] : true;
+      const is_there = layer in this.shown ? this.shown[layer as keyof Shown] : true;
       item.hidden = !is_there || !this.layers.is_shown(layer);
     }
   }

@@ -100,6 +100,11 @@ export const WORDS: Entry[] = [
     also: [],
     text: "A joint of the twin that moves one way only: a door that closes, but does not open.",
   },
+  {
+    word: "what carries the twin",
+    also: ["base of the twin"],
+    text: "The place where the twin stands, when it moves: the deck of a ship, a vehicle. Brown on this page; dashed where it rests.",
+  },
   // where the force goes
   {
     word: "mass",

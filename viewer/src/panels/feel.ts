@@ -1,6 +1,7 @@
 // "Why do I feel this?": the force, the limits that act, those that come next, the closed budget,
 // and the safety state with its cause.
 
+import { base_text } from "../base_text";
 import {
   distance_text,
   is_near,
@@ -32,6 +33,7 @@ export class FeelPanel {
   private readonly force_bar = make("div", "bar force", make("i"));
   private readonly torque_bar = make("div", "bar torque", make("i"));
   private readonly reason = make("p", "reason");
+  private readonly base = make("p", "quiet");
   private readonly acting = make("ul", "limits");
   private readonly near = make("ul", "limits near");
   private readonly singularity = make("div", "bar", make("i"));
@@ -45,6 +47,7 @@ export class FeelPanel {
   private scale = SMALLEST_SCALE.force;
 
   constructor(section: HTMLElement) {
+    this.base.id = "twin-base";
     this.kind_button = make_button("N", "Forces or torques", () => {
       this.kind = this.kind === "force" ? "torque" : "force";
       this.scale = SMALLEST_SCALE[this.kind];
@@ -67,6 +70,7 @@ export class FeelPanel {
       wrench,
       make("h2", "", "Why do I feel this?"),
       this.reason,
+      this.base,
       this.acting,
       make("h2", "with-button", "Where it goes", this.kind_button),
       budget,
@@ -91,6 +95,9 @@ export class FeelPanel {
     const first = causes(frame.budget)[0]?.part;
     const is_held = first === "limits" || (first === "surface" && felt_contact(frame) !== null);
     this.reason.dataset.held = String(is_held && is_pushing(frame));
+    const base = base_text(scene, frame.twin_base);
+    write(this.base, base);
+    this.base.hidden = base === "";
     this.show_acting(scene, frame);
     this.show_near(scene, frame);
     this.show_singularity(scene, frame);

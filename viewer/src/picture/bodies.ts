@@ -4,12 +4,14 @@ import { type Material, Mesh, type Object3D, Vector3 } from "three";
 
 import type { Frame, Scene, Vec3 } from "../messages";
 import { type ChainView, load_chain } from "../scene/chain_view";
+import { MovingBaseView } from "../scene/moving_base";
 import { Remote } from "../scene/remote";
+import { put_at_root } from "../scene/root";
 import { SurfacesView } from "../scene/surfaces";
-import { surroundings_of } from "../scene/surroundings";
+import { type Surroundings, surroundings_of } from "../scene/surroundings";
 import { outer_points } from "./outline";
 
-export type Kind = "device" | "twin" | "remote" | "target" | "surface" | "wall";
+export type Kind = "device" | "twin" | "remote" | "target" | "base" | "surface" | "wall";
 
 export interface Body {
   kind: Kind;
@@ -21,8 +23,10 @@ const as_is = (): void => {};
 const NO_ARROW = { share: 1, longest_m: 0 };
 
 export class Bodies {
-  private readonly groups: [Kind, Object3D][];
-  private fixed: Body[] | null = null; // what does not move
+  private readonly groups: [Kind, Object3D][]; // that may not move
+  private readonly surroundings: Surroundings;
+  private readonly base: MovingBaseView | null;
+  private fixed: Body[] | null = null;
 
   private constructor(
     readonly scene: Scene,
@@ -32,10 +36,10 @@ export class Bodies {
   ) {
     const surfaces = new SurfacesView(scene.surfaces);
     surfaces.show([0, 0, 0], null);
-    this.groups = [
-      ["wall", surroundings_of(scene, scene.floor_z_m).group],
-      ["surface", surfaces.group],
-    ];
+    this.surroundings = surroundings_of(scene, scene.floor_z_m);
+    this.base = scene.twin_base_moves ? new MovingBaseView(scene.twin, scene.floor_z_m) : null;
+    this.groups = [["surface", surfaces.group]];
+    if (!this.moves_surroundings) this.groups.unshift(["wall", this.surroundings.group]);
   }
 
   static async load(scene: Scene): Promise<Bodies> {
@@ -49,7 +53,9 @@ export class Bodies {
 
   pose(frame: Frame): void {
     this.device.pose(frame.q_device);
-    this.twin.pose(frame.q_twin);
+    this.twin.pose(frame.q_twin, frame.twin_base);
+    this.base?.show(frame.twin_base);
+    if (this.moves_surroundings) put_at_root(this.surroundings.group, this.scene.twin, frame.twin_base);
     this.remote?.show(frame.teleoperation);
   }
 
@@ -59,11 +65,17 @@ export class Bodies {
     const surfaces = this.fixed.filter(({ kind }) => kind === "surface");
     for (const [i, body] of surfaces.entries()) body.is_touched = contact?.surface === i;
     return [
+      ...(this.moves_surroundings ? bodies_of("wall", this.surroundings.group) : []),
+      ...(this.base ? bodies_of("base", this.base.group) : []),
       ...this.fixed,
       ...this.remote_bodies(),
       ...bodies_of("twin", this.twin.placement),
       ...bodies_of("device", this.device.placement),
     ];
+  }
+
+  private get moves_surroundings(): boolean {
+    return this.base !== null && this.surroundings.is_at_twin === true;
   }
 
   private remote_bodies(): Body[] {

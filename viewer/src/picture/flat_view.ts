@@ -13,8 +13,8 @@ const RING_PX = 14;
 const FORCE_M_PER_N = 0.01;
 const REACHED_M = 0.1; // radius of a place (hg/signals/event_rule.h)
 
-const FILL: Record<Kind, string> = { device: "--device", twin: "--twin", remote: "--remote", target: "--remote", surface: "--series-2", wall: "--quiet" };
-const OPACITY: Record<Kind, number> = { device: 0.55, twin: 0.5, remote: 0.6, target: 0.18, surface: 0.3, wall: 0.1 };
+const FILL: Record<Kind, string> = { device: "--device", twin: "--twin", remote: "--remote", target: "--remote", base: "--base", surface: "--series-2", wall: "--quiet" };
+const OPACITY: Record<Kind, number> = { device: 0.55, twin: 0.5, remote: 0.6, target: 0.18, base: 0.45, surface: 0.3, wall: 0.1 };
 
 export interface FlatContent {
   scene: Scene;

@@ -60,7 +60,7 @@ export class SpacePicture implements Picture {
   }
 
   async load(scene: Scene, is_current: () => boolean): Promise<void> {
-    this.stage.load(scene.box, scene.floor_z_m);
+    this.stage.load(scene.box, scene.floor_z_m, scene.twin_base_moves);
     if (this.device !== scene.device.name) this.frame_device(scene);
     const world = await World.load(scene, this.stage, this.layers).catch((error: unknown) => {
       this.input.report("world", error instanceof Error ? error.message : String(error));
@@ -89,7 +89,11 @@ export class SpacePicture implements Picture {
   show(frame: Frame, target: Vec3 | null, axis: Vec3 | null): void {
     if (!this.world) return;
     if (!this.has_looked) this.look(this.world, frame);
-    this.legend.show({ ghost: frame.ghost !== null, remote: frame.teleoperation !== null });
+    this.legend.show({
+      ghost: frame.ghost !== null,
+      remote: frame.teleoperation !== null,
+      base: this.world.scene.twin_base_moves,
+    });
     this.world.show(frame, target, axis, reached_until(this.world.scene, this.events, frame.time_s));
     this.headset.update(this.world.scene, frame);
     const is_first_person = this.cameras.current === "first person" || this.is_worn;

@@ -38,6 +38,7 @@ export function time_specs(scene: Scene): TimeSpec[] {
     ...joints("gantry", "Gantry", "device", gantry),
     torques(manipulator),
     ...remote(scene),
+    ...base(scene),
   ];
   return specs.filter(({ series }) => series.length > 0);
 }
@@ -146,6 +147,21 @@ function remote({ teleoperation }: Scene): TimeSpec[] {
       title: "Force at both ends",
       unit,
       series: [part("on your hand", "force_leader"), part("on the remote machine", "force_remote")],
+      limits: [],
+      smallest_span: 4,
+    },
+  ];
+}
+
+// Velocity of what carries the twin: its position is mostly far from zero.
+function base({ twin_base_moves }: Scene): TimeSpec[] {
+  if (!twin_base_moves) return [];
+  return [
+    {
+      id: "twin-base",
+      title: "Base of the twin",
+      unit: "cm/s",
+      series: ["x", "y", "z"].map((axis) => ({ label: axis, column: `base_v_${axis}_m_per_s`, scale: 100 })),
       limits: [],
       smallest_span: 4,
     },

@@ -16,9 +16,10 @@ import { STLLoader } from "three/examples/jsm/loaders/STLLoader.js";
 import URDFLoader, { type URDFJoint, type URDFRobot } from "urdf-loader";
 
 import { authorization } from "../data/token";
-import type { SceneChain, SceneJoint } from "../messages";
+import type { SceneChain, SceneJoint, TwinBase } from "../messages";
 import { current_theme } from "../theme";
 import { position_of } from "./follower";
+import { put_at_root } from "./root";
 import { add_skeleton, has_shapes } from "./skeleton";
 
 const MESHES = "/models/"; // where the program puts mesh files
@@ -44,9 +45,7 @@ export class ChainView {
     const meshes: Promise<void>[] = [];
     this.robot = urdf === "" ? null : parse(urdf, paint, meshes);
     this.complete = Promise.all(meshes);
-    const [x, y, z, w] = chain.quaternion_B_root as [number, number, number, number];
-    this.placement.position.set(...chain.p_B_root_m);
-    this.placement.quaternion.set(x, y, z, w);
+    put_at_root(this.placement, chain);
     this.placement.add(this.robot ?? plain_body());
     const is_shown = has_shapes(this.robot) || urdf.includes(`filename="${MESHES}`);
     if (this.robot && !is_shown) add_skeleton(this.robot, current_theme().link);
@@ -62,8 +61,10 @@ export class ChainView {
     return this.robot?.links[name] ?? null;
   }
 
-  // `q` holds the coordinates of all joints in the order of the scene.
-  pose(q: number[]): void {
+  // `q` holds the coordinates of all joints in the order of the scene; `base`: where the root link is
+  // now, null = at its placement.
+  pose(q: number[], base: TwinBase | null = null): void {
+    put_at_root(this.placement, this.chain, base);
     let first = 0;
     for (const [index, joint] of this.chain.joints.entries()) {
       if (joint.type === "floating") {

@@ -20,7 +20,7 @@ export class Ghost {
     device.placement.visible = twin.placement.visible = ghost !== null;
     if (!ghost) return;
     device.pose(ghost.q_device);
-    twin.pose(ghost.q_twin);
+    twin.pose(ghost.q_twin, ghost.twin_base);
   }
 
   private async load(): Promise<void> {

@@ -5,6 +5,7 @@ export const LAYERS = {
   twin: { title: "Twin", is_on: true },
   remote: { title: "Remote machine", is_on: true },
   ghost: { title: "Second recording", is_on: true },
+  base: { title: "Base of the twin", is_on: true },
   surfaces: { title: "Virtual surfaces", is_on: true },
   checkpoints: { title: "Checkpoints", is_on: true },
   surroundings: { title: "Surroundings", is_on: true },

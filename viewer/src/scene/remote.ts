@@ -96,15 +96,20 @@ export class Remote {
   }
 
   private show_tool({ x_remote, x_target, f_remote }: Teleoperation, is_led: boolean): void {
-    const [is, to_be] = [new Vector3(...x_remote), new Vector3(...x_target)];
+    const [is, to_be] = [point(x_remote), point(x_target)];
     this.way.mesh.visible = is_led && is.distanceTo(to_be) > SMALLEST_WAY;
     if (this.way.mesh.visible) this.way.span(is, to_be);
-    this.force.group.visible = f_remote.length === 3;
-    if (f_remote.length !== 3) return;
+    this.force.group.visible = f_remote.length >= 3;
+    if (f_remote.length < 3) return;
     const { share, longest_m } = this.arrow;
-    const [at, force] = [is.toArray() as Vec3, f_remote as Vec3];
+    const [at, force] = [is.toArray() as Vec3, f_remote.slice(0, 3) as Vec3];
     this.force.show(at, force, METRES_PER_NEWTON / share, SMALLEST_FORCE, longest_m / share);
   }
+}
+
+// The place of a tool; the turn of one that is turned stands behind it.
+function point([x = 0, y = 0, z = 0]: number[]): Vector3 {
+  return new Vector3(x, y, z);
 }
 
 function as_machine(tool: ToolMachine): Machine {

@@ -113,7 +113,10 @@ export class Stage {
     this.contact.add(root);
   }
 
-  load(box: SceneBox, floor_z_m: number): void {
+  // `is_open`: what dips into the floor is seen.
+  load(box: SceneBox, floor_z_m: number, is_open: boolean): void {
+    this.floor.material.depthWrite = !is_open;
+    this.floor.renderOrder = is_open ? -1 : 0; // before all that is drawn over it
     this.floor_z_m = this.floor.position.z = floor_z_m;
     this.grid.mesh.position.z = floor_z_m + 0.002;
     const lines = new Box3Helper(new Box3(new Vector3(...box.min_m), new Vector3(...box.max_m)));

@@ -21,6 +21,7 @@ import {
 import type { Scene, SceneChain } from "../messages";
 import type { Theme } from "../theme";
 import { foot_of_arm } from "./first_view";
+import { put_at_root } from "./root";
 
 // Height of things that lie flat on the floor above it, m: what lies higher is drawn over the rest.
 const FLAT = 0.004;
@@ -30,6 +31,7 @@ const PLATE = { wide: 0.36, thick: 0.03 }; // m, under an arm
 export interface Surroundings {
   group: Group;
   wall?: Group; // what may hide the device
+  is_at_twin?: boolean; // it goes where the root link of the twin goes
   paint(theme: Theme): void;
 }
 
@@ -59,9 +61,7 @@ function stand({ x, y, z }: Vector3, floor_z: number): Surroundings {
 
 function at_twin(twin: SceneChain): Group {
   const group = new Group();
-  const [x, y, z, w] = twin.quaternion_B_root as [number, number, number, number];
-  group.position.set(...twin.p_B_root_m);
-  group.quaternion.set(x, y, z, w);
+  put_at_root(group, twin);
   return group;
 }
 
@@ -111,7 +111,7 @@ function wall(twin: SceneChain, floor_z: number): Surroundings {
       add(group, new Mesh(shape, material), x, y, z).receiveShadow = true;
     }
   }
-  return { group, wall: group, paint: (theme) => void material.color.set(theme.wall) };
+  return { group, wall: group, is_at_twin: true, paint: (theme) => void material.color.set(theme.wall) };
 }
 
 // Gives the points of `shape` an opacity by their x.
@@ -140,7 +140,7 @@ function site(twin: SceneChain, floor_z: number): Surroundings {
   ] as const) {
     add(group, cone(), x, y, foot);
   }
-  return { group, paint: () => {} };
+  return { group, is_at_twin: true, paint: () => {} };
 }
 
 // A disc with an uneven rim.

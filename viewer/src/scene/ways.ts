@@ -23,12 +23,12 @@ function by_joints(joints: SceneJoint[], frame: Frame, twin: ChainView, room: Bo
   twin.placement.updateWorldMatrix(true, true);
   const handle = last.worldToLocal(new Vector3(...frame.p_B_H_m));
   const ways = combinations(ranges as number[][]).map((q) => {
-    twin.pose(q);
+    twin.pose(q, frame.twin_base);
     twin.placement.updateWorldMatrix(true, true);
     const place = last.localToWorld(handle.clone());
     return room.clampPoint(place, place);
   });
-  twin.pose(frame.q_twin);
+  twin.pose(frame.q_twin, frame.twin_base);
   return ways;
 }
 

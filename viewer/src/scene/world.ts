@@ -16,8 +16,10 @@ import { HandleView } from "./handle_view";
 import { JointGauge } from "./joint_gauges";
 import type { Layer, Layers } from "./layers";
 import { DEVICE, TWIN, paint_shapes } from "./materials";
+import { MovingBaseView } from "./moving_base";
 import { Person } from "./person";
 import { Remote } from "./remote";
+import { put_at_root } from "./root";
 import { scanner_zone } from "./scanner_zone";
 import type { Stage } from "./stage";
 import { SeeThrough } from "./see_through";
@@ -48,6 +50,7 @@ export class World {
   private noted_s = 0;
   private readonly gauges: Gauge[];
   private readonly surroundings: Surroundings;
+  private readonly base: MovingBaseView | null;
   private readonly surfaces: SurfacesView;
   private readonly checkpoints: Checkpoints;
   private readonly scanner: Group;
@@ -68,6 +71,7 @@ export class World {
     this.person = new Person(scene.floor_z_m, foot_of_arm(scene));
     const lowest = new Box3().setFromObject(device.placement).min.z;
     this.surroundings = surroundings_of(scene, lowest);
+    this.base = scene.twin_base_moves ? new MovingBaseView(scene.twin, scene.floor_z_m) : null;
     this.surfaces = new SurfacesView(scene.surfaces);
     this.checkpoints = new Checkpoints(scene.checkpoints, scene.floor_z_m);
     this.shapes = add_shapes(scene.shapes, device);
@@ -79,6 +83,7 @@ export class World {
     this.root.add(this.person.group, this.trails, this.scanner, this.surfaces.group);
     this.root.add(this.checkpoints.group);
     if (remote) this.root.add(remote.group);
+    if (this.base) this.root.add(this.base.group);
     this.root.add(this.handle.pull, this.handle.arrows);
     stage.ground(this.root);
     this.apply_layers();
@@ -111,6 +116,7 @@ export class World {
       ["ghost", [this.ghost.group]],
       ["surfaces", [this.surfaces.group]],
       ["checkpoints", [this.checkpoints.group]],
+      ["base", this.base ? [this.base.group] : []],
       ["surroundings", [this.surroundings.group]],
       ["person", [this.person.group]],
       ["arrows", [this.handle.arrows]],
@@ -128,13 +134,18 @@ export class World {
 
   paint(theme: Theme): void {
     this.surroundings.paint(theme);
+    this.base?.paint(theme);
     this.person.paint(theme);
   }
 
   note(frame: Frame): void {
     const step_s = frame.time_s - this.noted_s;
     this.noted_s = frame.time_s;
-    if (step_s < 0 || step_s > MOST_STEP_S) for (const trail of this.both_trails) trail.clear();
+    if (step_s < 0 || step_s > MOST_STEP_S) {
+      for (const trail of this.both_trails) trail.clear();
+      this.base?.forget_way();
+    }
+    this.base?.note(frame.twin_base);
     this.handle_trail.add(frame.p_B_H_m);
     this.elbow_trail.add(frame.p_B_elbow_m);
   }
@@ -190,7 +201,10 @@ export class World {
 
   private pose(frame: Frame): void {
     this.device.pose(frame.q_device);
-    this.twin.pose(frame.q_twin);
+    this.twin.pose(frame.q_twin, frame.twin_base);
+    this.base?.show(frame.twin_base);
+    const { group, is_at_twin } = this.surroundings;
+    if (is_at_twin) put_at_root(group, this.scene.twin, frame.twin_base);
     this.person.pose(new Vector3(...frame.p_B_H_m), attitude_of(frame));
   }
 

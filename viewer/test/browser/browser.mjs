@@ -175,7 +175,7 @@ export async function hide_and_compare(page, layer, place = null) {
   return page.evaluate(count_different, [shown, hidden, again]);
 }
 
-async function count_different(pictures) {
+export async function count_different(pictures) {
   const [shown, hidden, again] = await Promise.all(
     pictures.map(async (base64) => {
       const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));

@@ -13,6 +13,7 @@ import * as cases from "./cases.mjs";
 import * as everyone from "./everyone_cases.mjs";
 import * as guide from "./guide_cases.mjs";
 import * as headset from "./headset_cases.mjs";
+import * as moving_base from "./moving_base_cases.mjs";
 import * as teleoperation from "./teleoperation_cases.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
@@ -37,7 +38,7 @@ function expect(is_true, text) {
 
 const browser = await start_browser();
 const stopping = [];
-for (const [name, run] of Object.entries({ ...cases, ...everyone, ...guide, ...headset, ...teleoperation })) {
+for (const [name, run] of Object.entries({ ...cases, ...everyone, ...guide, ...headset, ...moving_base, ...teleoperation })) {
   if (wanted.length > 0 && !wanted.includes(name)) continue;
   console.log(`-- ${name.replaceAll("_", " ")}`);
   const program = await start_program(command);

@@ -53,6 +53,7 @@ export const scene: Scene = {
     joints: [joint("hinge", { q_min: 0, q_max: 1.5 })],
     followers: [],
   },
+  twin_base_moves: false,
   gantry_joints: 1,
   limits: [
     { name: "m2", kind: "manipulator", unit: "rad", min: 0, max: 2, priority: 2 },
@@ -123,6 +124,7 @@ export const frame: Frame = {
   tau_measured_Nm: [5, 6],
   q_twin: [0.4],
   dq_twin: [0],
+  twin_base: null,
   q_gantry_target_m: [0],
   tracking_error: [0, 0],
   is_clamped: false,
