@@ -47,6 +47,10 @@ bool Inbox::accept(DatagramCheck verdict, const Header& header) noexcept {
     ++counts_.wrong_session;
     return false;
   }
+  if (!sends(sender_, static_cast<MessageType>(header.type))) {
+    ++counts_.foreign;
+    return false;
+  }
   switch (window_.accept(header.number)) {
     case NumberWindow::Place::kSeen:
       ++counts_.duplicate;

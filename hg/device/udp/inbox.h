@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "hg/device/udp/codec.h"
+#include "hg/device/udp/protocol.h"
 #include "hg/signals/link_counts.h"
 
 namespace hg::udp {
@@ -30,9 +31,10 @@ class NumberWindow {
 
 class Inbox {
  public:
-  explicit Inbox(std::uint32_t session) : session_(session) {}
+  Inbox(std::uint32_t session, Side sender) : session_(session), sender_(sender) {}
 
-  /// Counts a datagram by the verdict of read_header(); true: its fields are to be decoded.
+  /// Counts a datagram by the verdict of read_header(); true: its fields are to be decoded. What
+  /// the other side never sends is foreign and uses up no number: own datagrams may come back.
   bool accept(DatagramCheck verdict, const Header& header) noexcept;
   /// Whether the datagram accepted last was overtaken by a later one.
   bool was_overtaken() const noexcept { return was_overtaken_; }
@@ -42,6 +44,7 @@ class Inbox {
 
  private:
   std::uint32_t session_;
+  Side sender_;
   NumberWindow window_;
   bool was_overtaken_ = false;
   LinkCounts counts_;

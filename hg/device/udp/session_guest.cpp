@@ -96,7 +96,7 @@ SessionGuest::Answer SessionGuest::answer(DatagramCheck verdict, const Header& h
   if (refusal == ConnectionRefusal::kBusy) return Answer::kBusy;
   if (refusal != ConnectionRefusal::kNone) return Answer::kRefused;
   if (!difference(heard_welcome_.actual, config_.expected).empty()) return Answer::kUnlike;
-  Inbox inbox(header.session);
+  Inbox inbox(header.session, Side::kServer);
   if (!inbox.accept(verdict, header)) return Answer::kNone;
   welcome_ = heard_welcome_;
   inbox_ = inbox;

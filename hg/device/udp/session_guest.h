@@ -74,7 +74,7 @@ class SessionGuest {
   GuestConfig config_;
   UdpSocket socket_;
   Outbox outbox_;
-  Inbox inbox_{0};
+  Inbox inbox_{0, Side::kServer};
   Welcome welcome_, heard_welcome_;
   std::uint64_t nonce_ = 0;
   bool is_asking_ = false;

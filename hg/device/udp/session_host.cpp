@@ -83,7 +83,7 @@ Heard SessionHost::hear_candidate(DatagramCheck verdict, const Header& header, c
   Candidate candidate{.peer = from,
                       .hello = {.client = "a client"},
                       .outbox = Outbox(header.session, config_.key),
-                      .inbox = Inbox(header.session)};
+                      .inbox = Inbox(header.session, Side::kClient)};
   if (!candidate.inbox.accept(verdict, header)) return Heard::kIgnored;
   begin_session(candidate);
   return Heard::kMessage;
@@ -141,7 +141,7 @@ SessionHost::Candidate& SessionHost::candidate_of(const Hello& hello, const Peer
   return candidates_.emplace_back(Candidate{.peer = from,
                                             .hello = hello,
                                             .outbox = Outbox(session, config_.key),
-                                            .inbox = Inbox(session),
+                                            .inbox = Inbox(session, Side::kClient),
                                             .give_up_ns = now_ns() + ns(config_.ready_timeout_s)});
 }
 

@@ -123,7 +123,7 @@ class SessionHost {
   Peer client_;
   Hello hello_;
   Outbox outbox_{0};
-  Inbox inbox_{0};
+  Inbox inbox_{0, Side::kClient};
   Datagram datagram_;
   std::uint64_t refused_ = 0, malformed_ = 0, foreign_ = 0, from_others_ = 0;
   Peer first_other_;

@@ -10,12 +10,14 @@
 namespace hg::udp {
 namespace {
 
-bool take(Inbox& inbox, std::uint64_t number, std::uint32_t session = 7) {
-  return inbox.accept(DatagramCheck::kGood, {.session = session, .number = number});
+bool take(Inbox& inbox, std::uint64_t number, std::uint32_t session = 7,
+          MessageType type = MessageType::kSensors) {
+  const auto code = static_cast<std::uint16_t>(type);
+  return inbox.accept(DatagramCheck::kGood, {.type = code, .session = session, .number = number});
 }
 
 TEST(Inbox, TakesEachNumberOnceAndCountsTheMissing) {
-  Inbox inbox(7);
+  Inbox inbox(7, Side::kServer);
   for (const std::uint64_t number : {4, 5, 8}) EXPECT_TRUE(take(inbox, number));
   EXPECT_FALSE(inbox.was_overtaken());
   EXPECT_EQ(inbox.counts().lost, 2U);  // 6 and 7
@@ -31,7 +33,7 @@ TEST(Inbox, TakesEachNumberOnceAndCountsTheMissing) {
 }
 
 TEST(Inbox, RefusesAndCountsWhatIsNotOfThisSession) {
-  Inbox inbox(7);
+  Inbox inbox(7, Side::kServer);
   EXPECT_FALSE(take(inbox, 1, 8));
   EXPECT_FALSE(inbox.accept(DatagramCheck::kCorrupted, {.session = 7, .number = 2}));
   EXPECT_FALSE(inbox.accept(DatagramCheck::kTruncated, {}));
@@ -46,8 +48,19 @@ TEST(Inbox, RefusesAndCountsWhatIsNotOfThisSession) {
   EXPECT_EQ(counts.received, 0U);
 }
 
+// An attacker without the key can send back what it has heard.
+TEST(Inbox, OwnDatagramsThatComeBackUseUpNoNumber) {
+  Inbox inbox(7, Side::kServer);
+  EXPECT_FALSE(take(inbox, 3, 7, MessageType::kCommand));
+  EXPECT_FALSE(take(inbox, 4, 7, MessageType::kLeader));
+  EXPECT_TRUE(take(inbox, 3));
+  EXPECT_TRUE(take(inbox, 4));
+  EXPECT_EQ(inbox.counts().foreign, 2U);
+  EXPECT_EQ(inbox.counts().duplicate, 0U);
+}
+
 TEST(Inbox, OldNumbersAreNotTakenAgain) {
-  Inbox inbox(7);
+  Inbox inbox(7, Side::kServer);
   EXPECT_TRUE(take(inbox, 1));
   EXPECT_TRUE(take(inbox, 1 + NumberWindow::kSize));
   EXPECT_FALSE(take(inbox, 1));
@@ -58,7 +71,7 @@ TEST(Inbox, CountsAsASetDoesWhateverTheOrder) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    Inbox inbox(7);
+    Inbox inbox(7, Side::kServer);
     std::set<std::uint64_t> seen;
     std::uint64_t newest = 100, first = 100;
     for (int i = 0; i < 2000; ++i) {
