@@ -23,6 +23,7 @@
 #include "apps/offline/hands_command.h"
 #include "apps/offline/paper_experiment_command.h"
 #include "apps/offline/subcommand.h"
+#include "apps/offline/remote_experiment.h"
 #include "apps/offline/teleoperation_experiment.h"
 #include "hg/config/simulation/scenario.h"
 #include "hg/config/simulation/script_schema.h"
@@ -376,7 +377,8 @@ void add_experiment(Command app, int& exit_code) {
       "  hapticgiant experiment impedance --device arm.yaml\n"
       "  hapticgiant experiment seeds free_space --hands own,stiff --count 16\n"
       "  hapticgiant experiment hands fr3/move_tool --force 30\n"
-      "  hapticgiant experiment teleoperation --full --csv teleoperation.csv");
+      "  hapticgiant experiment teleoperation --full --csv teleoperation.csv\n"
+      "  hapticgiant experiment remote --count 40");
   add_paper_experiments(command, exit_code);
   const auto add = [&](const char* name, const char* text, int (*run)(const ExperimentArguments&)) {
     const Command what = command.add_subcommand(name, text);
@@ -402,6 +404,7 @@ void add_experiment(Command app, int& exit_code) {
   add_seeds(command, exit_code);
   add_hands(command, exit_code);
   add_teleoperation(command, exit_code);
+  add_remote_operation(command, exit_code);
 }
 
 }  // namespace hg::apps

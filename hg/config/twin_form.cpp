@@ -43,6 +43,8 @@ double value_of(const rendering::TwinModel& twin, const ParameterChange& change)
       return twin.mass_scale;
     case Parameter::kFeltScale:
       return twin.felt_scale[index];
+    case Parameter::kMotionScale:
+    case Parameter::kForceScale:
     case Parameter::kNone:
       break;
   }
@@ -151,6 +153,25 @@ std::vector<FormField> twin_form(const rendering::TwinModel& twin) {
         facts.parameter, -1));
   }
   return form;
+}
+
+void add_remote_scales(double motion, double force, std::vector<FormField>& form) {
+  for (const Parameter parameter : {Parameter::kMotionScale, Parameter::kForceScale}) {
+    const ParameterFacts& facts = facts_of(parameter);
+    const double value = parameter == Parameter::kMotionScale ? motion : force;
+    for (int i = 0; i < 3; ++i) {
+      const std::string axis(1, "xyz"[i]);
+      FormField field = {.name = std::string(facts.key) + '.' + axis,
+                         .label = std::string(facts.label) + ' ' + axis,
+                         .help = std::string(facts.help),
+                         .value = value,
+                         .changes = {{parameter, static_cast<std::int16_t>(i), 0.0}}};
+      fill_range(facts, field);
+      field.max = 10.0 * std::max(1.0, value);
+      field.step = 0.01;
+      form.push_back(std::move(field));
+    }
+  }
 }
 
 int field_of(const std::vector<FormField>& form, const ParameterChange& change) noexcept {

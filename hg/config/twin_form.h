@@ -28,6 +28,9 @@ struct FormField {
 /// times the value or a force that is still comfortable to hold is used.
 std::vector<FormField> twin_form(const rendering::TwinModel& twin);
 
+/// Adds the scales of a remote tool, which are at first the same along all axes.
+void add_remote_scales(double motion, double force, std::vector<FormField>& form);
+
 /// Index of the field that `change` concerns; -1 = none.
 int field_of(const std::vector<FormField>& form, const ParameterChange& change) noexcept;
 

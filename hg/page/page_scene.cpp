@@ -208,7 +208,7 @@ std::optional<viewer_server::SceneTeleoperation> scene_teleoperation(
     const config::Scenario& scenario) {
   if (!scenario.teleoperation) return {};
   const teleoperation::TeleoperationConfig& config = *scenario.teleoperation;
-  const bool is_tool = config.mapping == teleoperation::Mapping::kTool;
+  const bool is_tool = config.mapping != teleoperation::Mapping::kJoints;
   viewer_server::SceneTeleoperation scene;
   scene.mapping =
       is_tool ? viewer_server::RemoteMapping::kTool : viewer_server::RemoteMapping::kJoints;
@@ -216,7 +216,8 @@ std::optional<viewer_server::SceneTeleoperation> scene_teleoperation(
   scene.link = link_text(config.link);
   scene.force_scale = config.force_scale;
   scene.T_B_root = remote_place(scenario);
-  for (std::size_t i = 0; i < config.limiter.axes.size(); ++i) {
+  const std::size_t count = is_tool ? 3 : config.limiter.axes.size();
+  for (std::size_t i = 0; i < count; ++i) {
     const std::string name = is_tool ? std::string(1, "xyz"[i]) : scenario.twin.model.dofs[i].name;
     scene.axes.push_back({name, config.limiter.axes[i].range});
   }

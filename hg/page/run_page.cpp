@@ -26,6 +26,16 @@ using viewer_server::Choices;
 using viewer_server::Command;
 using viewer_server::CommandName;
 
+// What may change while a run of the scenario lasts.
+std::vector<config::FormField> form_of(const config::Scenario& scenario) {
+  std::vector<config::FormField> form = config::twin_form(scenario.twin.model);
+  const auto& teleoperation = scenario.teleoperation;
+  if (teleoperation && teleoperation->mapping != teleoperation::Mapping::kJoints) {
+    config::add_remote_scales(teleoperation->motion_scale, teleoperation->force_scale, form);
+  }
+  return form;
+}
+
 std::vector<double> values_of(const std::vector<config::FormField>& form) {
   std::vector<double> values;
   for (const config::FormField& field : form) values.push_back(field.value);
@@ -150,7 +160,7 @@ RunPage::RunPage(const viewer_server::ServerOptions& options, const ShownRun& fi
     : run_(first),
       given_(*first.options),
       prepare_(std::move(prepare)),
-      form_(config::twin_form(first.scenario->twin.model)),
+      form_(form_of(*first.scenario)),
       values_(values_of(form_)),
       server_(with(desk_.get(), options), scene_of(first)),
       newest_(std::make_unique<Sample>()) {}
@@ -184,7 +194,7 @@ void RunPage::begin(const ShownRun& run, const std::string& recording,
   run_ = run;
   if (!is_first) {
     ++number_;
-    form_ = config::twin_form(run.scenario->twin.model);
+    form_ = form_of(*run.scenario);
     values_ = values_of(form_);
     server_.set_scene(scene_of(run));
   }

@@ -43,6 +43,7 @@ void Session::read() noexcept HG_NONBLOCKING {
   if (twin_force_ != nullptr) {
     twin_force_->step({.twin = cycle_.state().rendering.twin,
                        .w_H = now.record.robot.w_H,
+                       .change = input.change,
                        .time_s = time_s,
                        .is_running = now.record.mode == Mode::kRunning,
                        .is_clutch_open = input.is_clutch_open},

@@ -65,7 +65,7 @@ template <typename Archive, Is<RemotePacket> T>
 void fields(Archive& a, T& packet) {
   a("packet", packet.sequence, "counts packets, from 1");
   a("engagement", packet.engagement, "that the machine follows, or last followed");
-  a("cause", packet.cause, "why it does not follow: 0 it does, 1..4 its limits, 5..10 it holds");
+  a("cause", packet.cause, "why it does not follow: 0 it does, 1..4 its limits, 5..11 it holds");
   a("sent_s", packet.sent_s, "by the clock of the machine", unit::kS);
   a("answered_s", packet.answered_s, "sent_s of the newest packet in use", unit::kS);
   a("x", packet.x, "measured", unit::kJointPosition);

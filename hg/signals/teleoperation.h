@@ -39,11 +39,13 @@ enum class RemoteCause : std::uint8_t {
   kFrozen = 8,        ///< holds: packets kept coming, with the same content
   kSilent = 9,        ///< holds: no packets
   kReleased = 10,     ///< holds: the clutch is open
+  kStopped = 11,      ///< holds: a protective stop of the machine, by its own rules
 };
 
 /// Whether the remote machine holds for this cause until the clutch has been used.
 constexpr bool holds(RemoteCause cause) noexcept {
-  return cause >= RemoteCause::kNotFinite && cause <= RemoteCause::kSilent;
+  const bool is_distrust = cause >= RemoteCause::kNotFinite && cause <= RemoteCause::kSilent;
+  return is_distrust || cause == RemoteCause::kStopped;
 }
 
 struct TeleoperationReport {
@@ -54,6 +56,8 @@ struct TeleoperationReport {
   double energy_leader = 0.0, energy_remote = 0.0, dissipated = 0.0;
   PortVector x_true, f_true;
   double round_trip = 0.0, jitter = 0.0, loss = 0.0;
+  Eigen::Vector3d motion_scale = Eigen::Vector3d::Ones();
+  Eigen::Vector3d force_scale = Eigen::Vector3d::Ones();
 };
 
 template <typename Archive, Is<TeleoperationReport> T>
@@ -81,6 +85,10 @@ void fields(Archive& a, T& report) {
   a("jitter", report.jitter, "measured mean difference of the delays of two packets in a row",
     unit::kS);
   a("loss", report.loss, "measured share of packets from the remote machine that were lost",
+    unit::kNone);
+  a("motion_scale", report.motion_scale, "motion of the remote machine over that of the leader",
+    unit::kNone);
+  a("force_scale", report.force_scale, "force on the leader over that on the remote machine",
     unit::kNone);
 }
 

@@ -10,7 +10,8 @@ namespace hg {
 /// The twin where the next cycle begins, and what is known of hand and device from the last one.
 struct TwinNow {
   const TwinState& twin;
-  const Vector6& w_H;  ///< Wrench of the user on the handle, at H, resolved in B
+  const Vector6& w_H;             ///< Wrench of the user on the handle, at H, resolved in B
+  const ParameterChange& change;  ///< Of this cycle
   double time_s = 0.0;
   bool is_running = false;      ///< The law moves the twin
   bool is_clutch_open = false;  ///< The operator releases the remote machine

@@ -25,6 +25,8 @@ enum class Parameter : std::uint8_t {
   kGravity = 11,          ///< share of the earth's gravity, 0..1
   kMassScale = 12,        ///< factor on all masses of the twin, 0.1..10
   kFeltScale = 13,        ///< factor on the user's wrench, 0.1..10; index as of kReferenceWrench
+  kMotionScale = 14,      ///< motion of a remote tool over the leader's; index 0..2: its x y z
+  kForceScale = 15,       ///< force on the leader over that on a remote tool; index 0..2
 };
 
 /// New value of one parameter of the twin, approached smoothly.

@@ -19,7 +19,8 @@ enum class ParameterOwner {
   kDof,     ///< any degree of freedom
   kJoint,   ///< a joint that is not floating: floating joints have neither springs nor limits
   kWrench,  ///< component 0..5: force x y z, torque x y z
-  kTwin     ///< the whole twin; the index does not matter
+  kTwin,    ///< the whole twin; the index does not matter
+  kRemote   ///< axis 0..2 of the tool of a remote machine
 };
 
 struct ParameterFacts {
@@ -38,8 +39,10 @@ struct ParameterFacts {
 inline constexpr double kLargestParameter = 1e9;
 inline constexpr Interval kAnyValue = {-kLargestParameter, kLargestParameter};
 inline constexpr Interval kFromZero = {0.0, kLargestParameter};
+inline constexpr Interval kFactor = {0.1, 10.0};
+inline constexpr Interval kRemoteFactor = {0.01, 100.0};
 
-inline constexpr std::array<ParameterFacts, 13> kParameters = {{
+inline constexpr std::array<ParameterFacts, 15> kParameters = {{
     {Parameter::kStiffness, ParameterOwner::kJoint, "stiffness_Nm_per_rad", "stiffness_N_per_m",
      "stiffness", "spring", kFromZero},
     {Parameter::kRest, ParameterOwner::kJoint, "rest_rad", "rest_m", "rest",
@@ -70,20 +73,15 @@ inline constexpr std::array<ParameterFacts, 13> kParameters = {{
      "gravity",
      "whether the twin's links have weight",
      {0.0, 1.0}},
-    {Parameter::kMassScale,
-     ParameterOwner::kTwin,
-     "mass_scale",
-     "",
-     "mass scale",
-     "all masses and inertias times this",
-     {0.1, 10.0}},
-    {Parameter::kFeltScale,
-     ParameterOwner::kWrench,
-     "felt_scale",
-     "",
-     "felt scale",
+    {Parameter::kMassScale, ParameterOwner::kTwin, "mass_scale", "", "mass scale",
+     "all masses and inertias times this", kFactor},
+    {Parameter::kFeltScale, ParameterOwner::kWrench, "felt_scale", "", "felt scale",
      "factors of the user's wrench on the twin: what the twin does is felt divided by them",
-     {0.1, 10.0}},
+     kFactor},
+    {Parameter::kMotionScale, ParameterOwner::kRemote, "motion_scale", "", "motion scale",
+     "motion of the remote tool over that of the leader, along its axes", kRemoteFactor},
+    {Parameter::kForceScale, ParameterOwner::kRemote, "force_scale", "", "force scale",
+     "force on the leader over that on the remote tool, along its axes", kRemoteFactor},
 }};
 
 /// Facts of a parameter other than kNone.

@@ -102,6 +102,24 @@ void LeaderHalf::operate(double now_s, const LeaderInput& input) noexcept {
   }
 }
 
+// The ends of the remote machine's range are known here, and felt at once, as damped springs.
+PortVector LeaderHalf::force_of_ends(const LeaderInput& input) const noexcept {
+  constexpr double kDampedFor = 0.024;  // s, damping over stiffness: 0.35 of critical with 6 kg
+  constexpr double kRamp = 1e-3;        // of a depth, in which damping grows
+  PortVector force = PortVector::Zero(x_.size());
+  if (input.end_stiffness.size() != x_.size()) return force;
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    const Interval& range = config_.ranges[static_cast<std::size_t>(i)];
+    const double out = x_[i] > range.ub ? x_[i] - range.ub : std::min(0.0, x_[i] - range.lb);
+    const double depth = std::abs(out);
+    if (depth == 0.0) continue;
+    const double sign = out > 0.0 ? 1.0 : -1.0;
+    const double damped = kDampedFor * std::min(1.0, depth / kRamp) * sign * input.v[i];
+    force[i] = -sign * input.end_stiffness[i] * std::max(0.0, depth + damped);
+  }
+  return force;
+}
+
 PortVector LeaderHalf::step(double now_s, const LeaderInput& input, LeaderPacket& packet) noexcept {
   const Eigen::Index size = input.x.size();
   if (offset_.size() != size) {
@@ -134,6 +152,7 @@ PortVector LeaderHalf::step(double now_s, const LeaderInput& input, LeaderPacket
     }
     force_ = method_->step({.x = x_, .v = input.v, .f_hand = input.f_hand, .energy = energy_},
                            quiet, is_new_ && is_started_, packet);
+    force_ += force_of_ends(input);
     if (!is_started_) force_.setZero();
     is_new_ = false;
   }

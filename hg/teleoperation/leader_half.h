@@ -10,6 +10,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "hg/core/interval.h"
 #include "hg/teleoperation/method.h"
@@ -17,10 +18,11 @@
 namespace hg::teleoperation {
 
 struct LeaderConfig {
-  double silence = 0.2;         ///< Time without a packet after which the link is lost, s
-  double fade = 0.15;           ///< Time in which the force begins and ends, s
-  double force_max = 60.0;      ///< Largest force on the leader, N or Nm, at the remote scale
-  double snapshot = kInfinity;  ///< Largest distance of both sides at an engagement, m or rad
+  double silence = 0.2;               ///< Time without a packet after which the link is lost, s
+  double fade = 0.15;                 ///< Time in which the force begins and ends, s
+  double force_max = 60.0;            ///< Largest force on the leader, N or Nm, at the remote scale
+  std::vector<Interval> ranges = {};  ///< Of the remote machine, where the leader is to feel them
+  double snapshot = kInfinity;        ///< Largest distance of both sides at an engagement, m or rad
 };
 
 /// Throws SetupError naming the field that is out of range.
@@ -32,6 +34,8 @@ struct LeaderInput {
   const PortVector& v;
   const PortVector& f_hand;
   bool is_clutch_closed = false;
+  /// Of the ends of the remote machine's range, as the leader feels them; empty = not felt here
+  PortVector end_stiffness = {};
 };
 
 class LeaderHalf {
@@ -58,6 +62,7 @@ class LeaderHalf {
  private:
   void operate(double now_s, const LeaderInput& input) noexcept;
   void engage(const LeaderInput& input) noexcept;
+  PortVector force_of_ends(const LeaderInput& input) const noexcept;
   bool is_confirmed() const noexcept;
 
   LeaderConfig config_;

@@ -90,6 +90,7 @@ RemoteCause PacketGate::check(double now_s) noexcept {
 
 namespace {
 
+constexpr double kGently = 0.25;  // of a_max, in front of an end: the machine overshoots its target
 constexpr double kBehind = 2e-3;  // m or rad; jitter of the link alone stays below
 
 // Speed from which `way` is enough to stop, one period at that speed and less in each of the next:
@@ -113,7 +114,7 @@ RemoteTarget TargetLimiter::step(const RemoteTarget& wanted, const PortVector& x
     const double moving = goal == wanted.x[i] ? std::abs(wanted.v[i]) : 0.0;
     const double to_end = speed > 0.0 ? axis.range.ub - x[i] : x[i] - axis.range.lb;
     const double most = std::min(stopping_speed(std::abs(goal - x[i]), axis.a_max, dt_) + moving,
-                                 stopping_speed(std::max(0.0, to_end), axis.a_max, dt_));
+                                 stopping_speed(std::max(0.0, to_end), kGently * axis.a_max, dt_));
     speed = std::clamp(speed, -most, most);
     const bool is_fast = std::abs(speed) > axis.v_max;
     if (is_fast) speed = std::clamp(speed, -axis.v_max, axis.v_max);

@@ -23,6 +23,23 @@ SimulatedMachine::SimulatedMachine(const SimulatedMachineConfig& config, double 
   }
   state_ = {config.x_start, PortVector::Zero(size), PortVector::Zero(size)};
   x_target_ = config.x_start;
+  v_target_ = PortVector::Zero(size);
+}
+
+// Whether a rule of its own stops the machine, whose target moves with speed `v`.
+bool SimulatedMachine::must_stop(const PortVector& v) const noexcept {
+  const StopRules& stops = config_.stops;
+  const double a = (v - v_target_).lpNorm<Eigen::Infinity>() / dt_;
+  if (a > stops.acceleration || state_.f.lpNorm<Eigen::Infinity>() > stops.force ||
+      state_.v.lpNorm<Eigen::Infinity>() > stops.speed) {
+    return true;
+  }
+  for (std::size_t i = 0; i < config_.ranges.size(); ++i) {
+    const double x = state_.x[static_cast<Eigen::Index>(i)];
+    const Interval& range = config_.ranges[i];
+    if (x < range.lb - stops.beyond || x > range.ub + stops.beyond) return true;
+  }
+  return false;
 }
 
 PortVector SimulatedMachine::wall_force() const noexcept {
@@ -39,6 +56,15 @@ PortVector SimulatedMachine::wall_force() const noexcept {
 void SimulatedMachine::read(MachineState& state) noexcept { state = state_; }
 
 void SimulatedMachine::write(const RemoteTarget& target) noexcept {
+  const PortVector v_target = (target.x - x_target_) / dt_;
+  state_.has_stopped = state_.has_stopped || must_stop(v_target);
+  const PortVector zero = PortVector::Zero(state_.x.size());
+  const RemoteTarget hold = {x_target_, zero, zero};
+  follow(state_.has_stopped ? hold : target);
+  v_target_ = state_.has_stopped ? zero : v_target;
+}
+
+void SimulatedMachine::follow(const RemoteTarget& target) noexcept {
   const MachineImpedance& own = config_.impedance;
   const double h = dt_ / kSteps;
   const PortVector step = (target.x - x_target_) / kSteps;  // it moves there during the period

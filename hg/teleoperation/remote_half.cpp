@@ -50,6 +50,11 @@ RemoteTarget RemoteHalf::step(double now_s, const MachineState& machine,
   observe(machine);
   RemoteCause cause = gate_.check(now_s);
   if (cause == RemoteCause::kNone && !is_measured) cause = RemoteCause::kNotFinite;
+  if (machine.has_stopped && is_measured) {
+    if (cause == RemoteCause::kNone) cause = RemoteCause::kStopped;
+    x_target_ = machine.x;
+    speed_ = PortVector::Zero(size);
+  }
   const LeaderPacket& arrived = gate_.newest();
   const bool follows = cause == RemoteCause::kNone && arrived.engagement != 0;
   if (follows && arrived.engagement != engagement_) {

@@ -36,7 +36,10 @@ class SimulatedRemote final : public RemoteSide {
   }
   void step(double now_s) noexcept override {
     machine_.read(state_);
-    machine_.write(half_.step(now_s, state_, answer_));
+    const RemoteTarget target = half_.step(now_s, state_, answer_);
+    // a protective stop ends when the leader lets go of the machine
+    if (answer_.cause == RemoteCause::kReleased) machine_.free();
+    machine_.write(target);
     has_answer_ = true;
   }
   bool receive(RemotePacket& packet) noexcept override {

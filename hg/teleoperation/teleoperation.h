@@ -1,9 +1,9 @@
 /// A device that leads a remote machine over a simulated link.
 ///
 /// Direct: the end effector of the twin leads the tool of the remote machine; motion and force are
-/// scaled, the clutch sets where both belong together. Indirect: the twin is the model of the
-/// remote machine, and its joints lead the machine's joints; what limits the machine limits the
-/// twin.
+/// scaled, also while it runs, and the clutch sets where both belong together. Orientations follow
+/// unscaled. Indirect: the twin is the model of the remote machine, and its joints lead the
+/// machine's joints; what limits the machine limits the twin.
 ///
 /// The source of the twin's force in a session (hg/signals/twin_force_source.h). No allocation
 /// after construction, noexcept.
@@ -23,11 +23,13 @@
 #include "hg/teleoperation/link_meter.h"
 #include "hg/teleoperation/machine.h"
 #include "hg/teleoperation/remote_side.h"
+#include "hg/teleoperation/turn.h"
 
 namespace hg::teleoperation {
 
 enum class Mapping : std::uint8_t {
   kTool,    ///< direct: positions of the tool, three coordinates
+  kPose,    ///< direct: positions and orientation of the tool, six coordinates
   kJoints,  ///< indirect: joints of the twin, up to seven
 };
 
@@ -47,6 +49,8 @@ struct TeleoperationConfig {
   RemoteAddress address;
   double motion_scale = 1.0;  ///< Motion of the remote machine over that of the leader
   double force_scale = 1.0;   ///< Force on the leader over that on the remote machine
+  double torque_scale = 1.0;  ///< Torque likewise, of a tool that is turned
+  double lever = 0.1;         ///< Length of a turn by one radian in coordinates of the port, m
   Eigen::Matrix3d R_R_B =
       Eigen::Matrix3d::Identity();    ///< Base of the leader in that of the remote
   std::vector<Interval> clutch_open;  ///< Times at which the clutch is open, s since the run began
@@ -63,6 +67,10 @@ class Teleoperation final : public TwinForceSource {
 
  private:
   void find_port(const TwinNow& now) noexcept;
+  void find_tool(const Vector6& w_H) noexcept;
+  void find_turn(const Vector6& w_H) noexcept;
+  PortVector stiffness_of_ends() const noexcept;
+  void approach_scales(const ParameterChange& change) noexcept;
   bool is_clutch_closed(const TwinNow& now) noexcept;
   void move_remote(double now_s) noexcept;
   void push(TwinForce& force) const noexcept;
@@ -70,6 +78,10 @@ class Teleoperation final : public TwinForceSource {
   TeleoperationConfig config_;
   model::ChainData twin_;
   int end_effector_;
+  double dt_;
+  Eigen::Vector3d motion_scale_, force_scale_;    ///< Along the axes of the remote tool
+  Eigen::Vector3d wanted_motion_, wanted_force_;  ///< What they approach
+  Turn turn_;
   LeaderHalf leader_;
   std::unique_ptr<RemoteSide> remote_;
   Channel<LeaderPacket> to_remote_;

@@ -104,7 +104,7 @@ Json scenario_table() {
   BystanderDraft bystander;
   describe_bystander(writer, bystander);
   TeleoperationDraft teleoperation;
-  describe_teleoperation(writer, teleoperation);
+  describe_teleoperation(writer, teleoperation, {});
   return writer.table();
 }
 

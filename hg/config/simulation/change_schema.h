@@ -1,6 +1,7 @@
 /// Description of the changes of the twin in a scenario.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ struct ChangesDraft {
   std::vector<ChangeJoint> joints;
   std::vector<TimedChange> changes;
 
+  /// Whether a remote machine is concerned.
+  bool concern_remote() const {
+    return std::ranges::any_of(changes, [](const TimedChange& timed) {
+      return facts_of(timed.change.parameter).owner == ParameterOwner::kRemote;
+    });
+  }
   void add(double at_s, Parameter parameter, int index, double value) {
     if (std::isnan(value)) return;
     changes.push_back({at_s, {parameter, static_cast<std::int16_t>(index), value}});
@@ -94,6 +101,15 @@ void describe_wrench_change(V& v, ChangesDraft& d, double at_s, Parameter parame
 }
 
 template <class V>
+void describe_remote_change(V& v, ChangesDraft& d, double at_s, Parameter parameter) {
+  const ParameterFacts& facts = facts_of(parameter);
+  Eigen::Vector3d scale = Eigen::Vector3d::Constant(kNoDefault);
+  v.vector(facts.key, scale, {.lb = facts.range.lb, .ub = facts.range.ub},
+           "of a teleoperation that leads a tool: " + std::string(facts.help));
+  for (int i = 0; i < 3; ++i) d.add(at_s, parameter, i, scale[i]);
+}
+
+template <class V>
 void describe(V& v, ChangesDraft& d) {
   const double last_s = d.changes.empty() ? 0.0 : d.changes.back().at_s;
   const std::size_t before = d.changes.size();
@@ -116,6 +132,8 @@ void describe(V& v, ChangesDraft& d) {
   describe_mass_scale(v, mass_scale);
   d.add(at_s, Parameter::kMassScale, -1, mass_scale);
   describe_wrench_change(v, d, at_s, Parameter::kFeltScale);
+  describe_remote_change(v, d, at_s, Parameter::kMotionScale);
+  describe_remote_change(v, d, at_s, Parameter::kForceScale);
   v.rule(d.changes.size() > before, "", "a change needs at least one value");
 }
 

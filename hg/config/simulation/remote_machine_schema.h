@@ -2,42 +2,12 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "hg/config/schema.h"
-#include "hg/controller/rendering/twin_model.h"
-#include "hg/teleoperation/teleoperation.h"
+#include "hg/config/simulation/teleoperation_draft.h"
 
 namespace hg::config {
-
-/// A teleoperation before it is checked against the twin.
-struct TeleoperationDraft {
-  std::vector<std::string> joints;  ///< of the twin, those that are not floating
-  std::vector<teleoperation::AxisLimits> joint_limits;
-  std::vector<double> joint_starts;
-  bool is_machine = true;  ///< All joints turn, and they are 1 to 7
-  Eigen::Vector3d tool_start = Eigen::Vector3d::Zero();
-  Eigen::Vector3d lowest = Eigen::Vector3d::Constant(-0.5);
-  Eigen::Vector3d highest = Eigen::Vector3d::Constant(0.5);
-  double v_max = 1.0, a_max = 20.0, yaw = 0.0;
-  std::optional<teleoperation::TeleoperationConfig> config;
-};
-
-/// The joints of the twin, which are those of the remote machine in an indirect teleoperation.
-inline TeleoperationDraft teleoperation_of(const rendering::TwinModel& twin) {
-  TeleoperationDraft draft;
-  for (const rendering::TwinDof& dof : twin.dofs) {
-    draft.is_machine = draft.is_machine && dof.q_index >= 0 && dof.is_angle;
-    if (dof.q_index < 0) continue;
-    draft.joints.push_back(dof.name);
-    draft.joint_limits.push_back({.range = {dof.limits.q_min, dof.limits.q_max}});
-    draft.joint_starts.push_back(twin.q_start[dof.q_index]);
-  }
-  draft.is_machine = draft.is_machine && twin.dofs.size() <= kMaxPort;
-  return draft;
-}
 
 // Springs and dampers that the simulation of a machine with this mass can follow, per mass.
 inline constexpr double kStiffestPerMass = 1e6;    // 1/s^2
@@ -94,6 +64,10 @@ void describe_tool(V& v, TeleoperationDraft& d) {
   const bool is_within =
       (d.tool_start - d.lowest).minCoeff() >= 0.0 && (d.highest - d.tool_start).minCoeff() >= 0.0;
   v.rule(is_within, "start_m", "the start must be within lowest_m and highest_m");
+  if (v.covers(d.config->mapping == teleoperation::Mapping::kPose)) {
+    v.number("turn_max_rad", d.turn_max, {.lb = 0.01, .ub = 1.75},
+             "pose: largest turn from the start, about each axis");
+  }
   v.number("speed_m_per_s", d.v_max, kPositive, "tool: largest speed along each axis");
   v.number("acceleration_m_per_s2", d.a_max, kPositive, "tool: largest acceleration");
   v.number("mass_kg", machine.impedance.mass, kPositive, "tool: what moves with it");
@@ -102,6 +76,17 @@ void describe_tool(V& v, TeleoperationDraft& d) {
   v.number("damping_Ns_per_m", machine.impedance.damping, kPositive,
            "tool: of the machine's own controller");
   v.number("force_max_N", machine.force_max, kPositive, "tool: largest force along each axis");
+  v.group(
+      "protective_stop",
+      [&](auto& child) {
+        teleoperation::StopRules& stops = machine.stops;
+        child.number("beyond_m", stops.beyond, kNotNegative, "tool: so far out of its range");
+        child.number("speed_m_per_s", stops.speed, kPositive, "tool: when it is faster");
+        child.number("acceleration_m_per_s2", stops.acceleration, kPositive,
+                     "tool: when its target accelerates more");
+        child.number("force_N", stops.force, kPositive, "tool: when its surroundings push more");
+      },
+      "of the simulated machine, until the clutch is opened");
 }
 
 template <class V>
@@ -115,6 +100,17 @@ void describe_joints_of_machine(V& v, TeleoperationDraft& d) {
   v.number("damping_Nms_per_rad", machine.impedance.damping, kPositive,
            "joints: of the machine's own controller");
   v.number("torque_max_Nm", machine.force_max, kPositive, "joints: largest torque of each");
+  v.group(
+      "protective_stop",
+      [&](auto& child) {
+        teleoperation::StopRules& stops = machine.stops;
+        child.number("beyond_rad", stops.beyond, kNotNegative, "joints: so far out of its range");
+        child.number("speed_rad_per_s", stops.speed, kPositive, "joints: when one is faster");
+        child.number("acceleration_rad_per_s2", stops.acceleration, kPositive,
+                     "joints: when the target of one accelerates more");
+        child.number("torque_Nm", stops.force, kPositive, "joints: when something pushes more");
+      },
+      "of the simulated machine, until the clutch is opened");
 }
 
 template <class V>
@@ -126,7 +122,7 @@ void describe_remote(V& v, TeleoperationDraft& d) {
           "docs/reference/device_protocol.md");
   v.words("key_file", address.key_file, "udp: secret that the machine has, too");
   v.rule(address.key_file.empty() || !address.udp.empty(), "key_file", "needs 'udp'");
-  const bool is_tool = d.config->mapping == teleoperation::Mapping::kTool;
+  const bool is_tool = d.config->mapping != teleoperation::Mapping::kJoints;
   const bool covers_tool = v.covers(is_tool), covers_joints = v.covers(!is_tool);
   if (covers_tool) describe_tool(v, d);
   if (covers_joints) describe_joints_of_machine(v, d);

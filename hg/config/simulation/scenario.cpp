@@ -153,7 +153,7 @@ Scenario load(const std::filesystem::path& path, SourceReader& reader) {
     bystander = bystander_of(device->model.chain.frame_names());
     describe_bystander(loader, bystander);
     teleoperation = teleoperation_of(twin->model);
-    describe_teleoperation(loader, teleoperation);
+    describe_teleoperation(loader, teleoperation, changes);
   });
 
   return {.title = draft.title,

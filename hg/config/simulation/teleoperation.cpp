@@ -11,12 +11,22 @@ std::optional<teleoperation::TeleoperationConfig> teleoperation_of(
   config.R_R_B = Eigen::AngleAxisd(draft.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   teleoperation::AxisLimits axis = {
       .v_max = draft.v_max, .a_max = draft.a_max, .f_max = config.machine.force_max};
-  if (config.mapping == teleoperation::Mapping::kTool) {
-    config.machine.x_start = draft.tool_start;
-    for (int i = 0; i < 3; ++i) {
-      axis.range = {draft.lowest[i], draft.highest[i]};
+  if (config.mapping != teleoperation::Mapping::kJoints) {
+    const int size = config.mapping == teleoperation::Mapping::kPose ? 6 : 3;
+    const double turn = config.lever * draft.turn_max;
+    config.machine.x_start = PortVector::Zero(size);
+    config.machine.x_start.head<3>() = draft.tool_start;
+    for (int i = 0; i < size; ++i) {
+      axis.range = i < 3 ? Interval{draft.lowest[i], draft.highest[i]} : Interval{-turn, turn};
       config.limiter.axes.push_back(axis);
+      config.machine.ranges.push_back(axis.range);
     }
+    for (teleoperation::Wall& wall : config.machine.walls) {
+      const Eigen::Vector3d normal = wall.normal;
+      wall.normal = PortVector::Zero(size);
+      wall.normal.head<3>() = normal;
+    }
+    config.leader.ranges = config.machine.ranges;
     return config;
   }
   constexpr double kTogether = 0.02;  // rad or m: a twin elsewhere is no model of the machine
@@ -27,6 +37,7 @@ std::optional<teleoperation::TeleoperationConfig> teleoperation_of(
     config.machine.x_start[static_cast<Eigen::Index>(i)] = draft.joint_starts[i];
     axis.range = draft.joint_limits[i].range;
     config.limiter.axes.push_back(axis);
+    config.machine.ranges.push_back(axis.range);
   }
   return config;
 }

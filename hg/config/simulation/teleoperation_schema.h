@@ -6,13 +6,16 @@
 #include <vector>
 
 #include "hg/config/schema.h"
+#include "hg/config/simulation/change_schema.h"
 #include "hg/config/simulation/remote_machine_schema.h"
 #include "hg/teleoperation/teleoperation.h"
 
 namespace hg::config {
 
-inline constexpr std::array<Choice<teleoperation::Mapping>, 2> kMappings = {
-    {{"tool", teleoperation::Mapping::kTool}, {"joints", teleoperation::Mapping::kJoints}}};
+inline constexpr std::array<Choice<teleoperation::Mapping>, 3> kMappings = {
+    {{"tool", teleoperation::Mapping::kTool},
+     {"pose", teleoperation::Mapping::kPose},
+     {"joints", teleoperation::Mapping::kJoints}}};
 inline constexpr auto kTeleoperationMethods = choices_of<teleoperation::MethodKind>();
 
 template <class V>
@@ -72,10 +75,12 @@ void describe(V& v, teleoperation::MethodConfig& method) {
 template <class V>
 void describe(V& v, TeleoperationDraft& d) {
   teleoperation::TeleoperationConfig& config = *d.config;
-  v.choice("mapping", config.mapping, kMappings,
-           "tool: the end effector of the twin leads the tool of the remote machine; joints: the "
-           "twin is the model of the machine, and its joints lead those of the machine");
-  v.rule(config.mapping == teleoperation::Mapping::kTool || d.is_machine, "mapping",
+  v.choice(
+      "mapping", config.mapping, kMappings,
+      "tool: the end effector of the twin leads the tool of the remote machine; pose: also its "
+      "orientation; joints: the twin is the model of the machine, and its joints lead those "
+      "of the machine");
+  v.rule(config.mapping != teleoperation::Mapping::kJoints || d.is_machine, "mapping",
          "joints needs a twin of one to seven joints, all of which turn");
   v.choice("method", config.method.kind, kTeleoperationMethods,
            "of bilateral control, docs/concepts/teleoperation.md");
@@ -86,6 +91,13 @@ void describe(V& v, TeleoperationDraft& d) {
            "motion of the remote machine over that of the leader");
   v.number("force_scale", config.force_scale, {.lb = 0.01, .ub = 100.0},
            "force on the leader over that on the remote machine");
+  if (v.covers(config.mapping == teleoperation::Mapping::kPose)) {
+    v.number("torque_scale", config.torque_scale, {.lb = 0.01, .ub = 100.0},
+             "pose: torque on the leader over that on the remote machine");
+    v.number("lever_m", config.lever, {.lb = 0.001, .ub = 10.0},
+             "pose: turns are measured by the way of a point at this distance, so that all that is "
+             "said of m and N holds for them");
+  }
   v.number("yaw_rad", d.yaw, kAnyNumber, "of the leader's base in that of the remote machine");
   v.list(
       "clutch_open", [&](auto& child) { describe(child, config.clutch_open); },
@@ -102,7 +114,7 @@ void describe(V& v, TeleoperationDraft& d) {
 }
 
 template <class V>
-void describe_teleoperation(V& v, TeleoperationDraft& d) {
+void describe_teleoperation(V& v, TeleoperationDraft& d, const ChangesDraft& changes) {
   v.group(
       "teleoperation",
       [&](auto& child) {
@@ -111,6 +123,8 @@ void describe_teleoperation(V& v, TeleoperationDraft& d) {
       },
       "a remote machine that follows the twin and whose forces are felt, "
       "docs/concepts/teleoperation.md");
+  v.rule(!changes.concern_remote() || leads_tool(d), "changes",
+         "motion_scale and force_scale need a teleoperation that leads a tool");
 }
 
 /// The teleoperation that the draft describes; empty = none.

@@ -57,6 +57,8 @@ double* place_of(Parameter parameter, std::size_t index, TwinValues& values) noe
     case Parameter::kNone:
     case Parameter::kLowerLimit:
     case Parameter::kUpperLimit:
+    case Parameter::kMotionScale:
+    case Parameter::kForceScale:
       return nullptr;
   }
   return nullptr;
@@ -75,6 +77,8 @@ bool is_index(const TwinModel& twin, const ParameterChange& change) noexcept {
       return change.index >= 0 && change.index < 6;
     case ParameterOwner::kTwin:
       return true;
+    case ParameterOwner::kRemote:
+      return change.index >= 0 && change.index < 3;
   }
   return false;
 }
@@ -130,6 +134,7 @@ ChangeStatus apply(const TwinModel& twin, const ParameterChange& change,
   if (!is_known || !is_index(twin, change) || !allows(facts_of(change.parameter), change.value)) {
     return ChangeStatus::kRefused;
   }
+  if (facts_of(change.parameter).owner == ParameterOwner::kRemote) return ChangeStatus::kTaken;
   const std::size_t index = std::max<int>(change.index, 0);
   if (double* place = place_of(change.parameter, index, parameters.target)) {
     *place = change.value;

@@ -9,8 +9,11 @@ namespace {
 
 teleoperation::RemoteDescription describe_remote(
     const teleoperation::TeleoperationConfig& teleoperation, double rate_Hz, bool is_lock_step) {
-  const bool is_tool = teleoperation.mapping == teleoperation::Mapping::kTool;
-  return {.coordinates = is_tool ? "tool" : "joints",
+  using teleoperation::Mapping;
+  const Mapping mapping = teleoperation.mapping;
+  return {.coordinates = mapping == Mapping::kTool   ? "tool"
+                         : mapping == Mapping::kPose ? "pose"
+                                                     : "joints",
           .size = static_cast<int>(teleoperation.machine.x_start.size()),
           .rate_Hz = rate_Hz,
           .is_lock_step = is_lock_step};

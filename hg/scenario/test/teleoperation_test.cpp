@@ -2,6 +2,7 @@
 // the simulated remote side.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,7 +11,9 @@
 #include <vector>
 
 #include "hg/config/simulation/scenario.h"
+#include "hg/core/rotation.h"
 #include "hg/scenario/assembly.h"
+#include "hg/scenario/options.h"
 #include "hg/scenario/session.h"
 
 namespace hg::scenario {
@@ -103,12 +106,15 @@ TEST(RemoteArm, WithoutALinkTheForceFadesAndTheToolHoldsUntilTheClutchIsUsed) {
 
 // A run whose hand is dragged, as by a page.
 struct Dragged {
-  config::Scenario scenario = shipped("remote_arm");
+  config::Scenario scenario;
   std::unique_ptr<Session> session;
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< where the hand is dragged to
+  Eigen::Matrix3d R = Eigen::Matrix3d::Zero();  ///< how it is turned there; zero: it may turn
 
-  Dragged() {
-    scenario.person = person::PersonKind::kMouse;
+  explicit Dragged(const std::string& mapping = "tool")
+      : scenario(load({.scenario = "remote_arm",
+                       .user = "mouse",
+                       .changes = {"scenario.teleoperation.mapping=" + mapping}})) {
     session = std::make_unique<Session>(scenario);
     while (session->sample().teleoperation.link != RemoteLink::kEngaged) {
       const bool is_running = session->record().mode == Mode::kRunning;
@@ -123,7 +129,7 @@ struct Dragged {
     const double begin_s = now().record.time_s;
     while (now().record.time_s < begin_s + duration_s) {
       p.y() = from + (y - from) * (now().record.time_s - begin_s) / duration_s;
-      session->input().hand_target = {.active = true, .p_B = p};
+      session->input().hand_target = {.active = true, .p_B = p, .turns = !R.isZero(), .R_B = R};
       ASSERT_TRUE(session->advance());
       if (watch) watch();
     }
@@ -173,6 +179,142 @@ TEST(RemoteArm, DoesNotJumpWhenAnOperatorClosesTheClutchElsewhere) {
   run.watch = nullptr;
   run.drag_to(start - 0.05, 2.0);
   EXPECT_GT(run.now().teleoperation.x_true[1] - before, 0.02) << "it follows from there";
+}
+
+// Turn of the remote tool from its start.
+Eigen::Vector3d turn_of(const Sample& now, double lever) {
+  return now.teleoperation.x_true.tail<3>() / lever;
+}
+
+TEST(RemoteArm, TurnsAsTheHandDoesAndNotWhenTheClutchCloses) {
+  Dragged run("pose");
+  const double lever = run.scenario.teleoperation->lever;
+  ASSERT_EQ(run.now().teleoperation.x_true.size(), 6);
+  const double start = run.p.y();
+  const Eigen::Matrix3d level = run.now().record.T_B_H.R;
+  const auto turned = [&](double yaw) {
+    return Eigen::Matrix3d(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * level);
+  };
+  run.R = turned(0.4);
+  run.drag_to(start, 3.0);
+  const double hand = rotation_between(level, run.now().record.T_B_H.R).z();
+  EXPECT_GT(hand, 0.2) << "the hand has turned";
+  EXPECT_NEAR(turn_of(run.now(), lever).z(), hand, 0.03);
+  EXPECT_NEAR(turn_of(run.now(), lever).head<2>().norm(), 0.0, 0.06);
+
+  run.session->input().is_clutch_open = true;
+  run.drag_to(start, 0.5);
+  const PortVector before = run.now().teleoperation.x_true;
+  run.R = turned(-0.3);
+  run.drag_to(start - 0.1, 3.0);
+  EXPECT_LT(rotation_between(level, run.now().record.T_B_H.R).z(), -0.1);
+  run.session->input().is_clutch_open = false;
+  const Pose closed = run.now().record.T_B_H;
+  double moved = 0.0, turned_by = 0.0, led = 0.0, led_by = 0.0;
+  run.watch = [&] {
+    const Pose& hand_now = run.now().record.T_B_H;
+    const PortVector way = run.now().teleoperation.x_true - before;
+    led = std::max(led, (hand_now.p - closed.p).norm());
+    led_by = std::max(led_by, rotation_between(closed.R, hand_now.R).norm());
+    moved = std::max(moved, way.head<3>().norm() - led);
+    turned_by = std::max(turned_by, way.tail<3>().norm() / lever - led_by);
+  };
+  run.drag_to(start - 0.1, 2.0);
+  EXPECT_EQ(run.now().teleoperation.link, RemoteLink::kEngaged);
+  EXPECT_LT(moved, 1e-3);
+  EXPECT_LT(turned_by, 5e-3);
+  run.watch = nullptr;
+  run.R = turned(0.1);
+  run.drag_to(start - 0.1, 3.0);
+  EXPECT_GT(turn_of(run.now(), lever).z() - before[5] / lever, 0.1) << "it turns on from there";
+}
+
+// Largest step of felt force and of the tool's speed in a period.
+struct Steps {
+  double force = 0.0, speed = 0.0;
+  Vector6 force_before = Vector6::Zero();
+  PortVector x, v;
+
+  void add(const Sample& now) {
+    const Vector6& w = now.operator_input.twin_force.w_E;
+    const PortVector& x_now = now.teleoperation.x_true;
+    if (x.size() == x_now.size()) {
+      force = std::max(force, (w - force_before).head<3>().norm());
+      const PortVector v_now = (x_now - x) / 1e-3;
+      if (v.size() == v_now.size()) speed = std::max(speed, (v_now - v).norm());
+      v = v_now;
+    }
+    x = x_now;
+    force_before = w;
+  }
+};
+
+TEST(RemoteArm, ScalesChangeWhileItPressesWithoutABump) {
+  Dragged run;
+  const double start = run.p.y();
+  run.drag_to(start + 0.3, 3.0);
+  run.drag_to(start + 0.3, 2.0);
+  const double felt = -run.now().operator_input.twin_force.w_E[1];
+  const double at = run.now().teleoperation.x_true[1];
+  ASSERT_GT(felt, 4.0);
+  Steps steps;
+  run.watch = [&] { steps.add(run.now()); };
+  run.session->input().change = {Parameter::kForceScale, 1, 2.0};
+  run.drag_to(start + 0.3, 3.0);
+  EXPECT_EQ(run.now().teleoperation.force_scale[1], 2.0);
+  EXPECT_EQ(run.now().teleoperation.force_scale[0], 1.0) << "the other axes are as they were";
+  EXPECT_NEAR(run.now().operator_input.twin_force.w_E[1], 2.0 * run.now().teleoperation.f_true[1],
+              0.5);
+  run.session->input().change = {Parameter::kMotionScale, 1, 0.25};
+  run.drag_to(start + 0.3, 3.0);
+  EXPECT_LT(steps.force, 0.1) << "N per ms";
+  EXPECT_LT(steps.speed, 0.02) << "m/s per ms";
+  EXPECT_NEAR(run.now().teleoperation.x_true[1], at, 5e-3) << "the tool stays at the wall";
+}
+
+TEST(RemoteArm, MovesByTheScaleOfEachAxis) {
+  Dragged run;
+  const double start = run.p.y();
+  run.session->input().change = {Parameter::kMotionScale, 1, 0.5};
+  run.drag_to(start, 3.0);
+  const double hand = run.now().record.T_B_H.p.y(), tool = run.now().teleoperation.x_true[1];
+  run.drag_to(start + 0.15, 3.0);
+  run.drag_to(start + 0.15, 1.0);
+  const double led = run.now().record.T_B_H.p.y() - hand;
+  EXPECT_GT(led, 0.08);
+  EXPECT_NEAR(run.now().teleoperation.x_true[1] - tool, 0.5 * led, 3e-3);
+}
+
+TEST(RemoteArm, AScaleOutOfRangeOrOfNoAxisIsRefused) {
+  Dragged run;
+  for (const ParameterChange& change : {ParameterChange{Parameter::kForceScale, 3, 2.0},
+                                        ParameterChange{Parameter::kMotionScale, 0, 1e3}}) {
+    run.session->input().change = change;
+    ASSERT_TRUE(run.session->advance());
+    EXPECT_EQ(run.now().record.change, ChangeStatus::kRefused);
+  }
+  run.drag_to(run.p.y(), 1.0);
+  EXPECT_EQ(run.now().teleoperation.motion_scale, Eigen::Vector3d::Ones());
+  EXPECT_EQ(run.now().teleoperation.force_scale, Eigen::Vector3d::Ones());
+}
+
+TEST(RemoteArm, TheEndOfItsRangeIsFeltWithinTwoMillimetres) {
+  Dragged run;
+  const double start = run.p.y();
+  double deepest = 0.0, tool = 0.0, felt = 0.0, before = 0.0;
+  run.watch = [&] {
+    const double force = run.now().operator_input.twin_force.w_E[1];
+    const double beyond = -0.5 - run.now().teleoperation.x_leader[1];
+    tool = std::min(tool, run.now().teleoperation.x_true[1]);
+    felt = std::max(felt, force);
+    if (force <= 10.0 && beyond > before) deepest = std::max(deepest, beyond);
+    before = beyond;
+  };
+  run.drag_to(start - 0.6, 5.0);
+  run.drag_to(start - 0.6, 1.0);
+  EXPECT_GT(felt, 10.0);
+  EXPECT_LT(deepest, 2.1e-3) << "with 10 N";
+  EXPECT_GT(tool, -0.503) << "the tool stays in its range";
 }
 
 TEST(Excavator, FarAwayMeetsTheGroundAndItsTwinFeelsIt) {

@@ -38,7 +38,7 @@ bool is_plausible(const LeaderPacket& packet, Eigen::Index size) noexcept {
 
 bool is_plausible(const RemotePacket& packet, Eigen::Index size) noexcept {
   return std::isfinite(packet.sent_s) && std::isfinite(packet.answered_s) &&
-         packet.cause <= RemoteCause::kReleased && within(packet.x, size, kFar) &&
+         packet.cause <= RemoteCause::kStopped && within(packet.x, size, kFar) &&
          within(packet.v, size, kFar) && within(packet.x_target, size, kFar) &&
          within(packet.f, size, kStrong) && within(packet.reflected, size, kStrong) &&
          within(packet.wave, size, kStrong) && within(packet.energy, size, kEnergy) &&

@@ -42,6 +42,8 @@ const char* words(RemoteCause cause) noexcept {
       return "holds: the leader is silent";
     case RemoteCause::kReleased:
       return "holds: the clutch is open";
+    case RemoteCause::kStopped:
+      return "holds: protective stop";
     default:
       return "follows";
   }

@@ -18,7 +18,7 @@ constexpr double kDt = 1e-3;
 // A leader, and a remote side that answers what the test wants.
 struct Bench {
   LeaderHalf half{{.kind = MethodKind::kPositionForce}, {}, kDt};
-  PortVector x = PortVector::Zero(1), v = x, f_hand = x;
+  PortVector x = PortVector::Zero(1), v = x, f_hand = x, end_stiffness;
   LeaderPacket sent;
   double force = 0.0;
   int period = 0;
@@ -51,7 +51,12 @@ struct Bench {
         half.receive(packet, period * kDt);
       }
       force = half.step(period * kDt,
-                        {.x = x, .v = v, .f_hand = f_hand, .is_clutch_closed = is_closed}, sent)[0];
+                        {.x = x,
+                         .v = v,
+                         .f_hand = f_hand,
+                         .is_clutch_closed = is_closed,
+                         .end_stiffness = end_stiffness},
+                        sent)[0];
     }
   }
 };
@@ -193,6 +198,43 @@ TEST(LeaderHalf, DoesNotAllocate) {
 TEST(LeaderHalf, RefusesConfigurationsThatMakeNoSense) {
   EXPECT_THROW(LeaderHalf(MethodConfig{}, {.silence = 0.0}, kDt), SetupError);
   EXPECT_THROW(LeaderHalf({.impedance = -1.0}, {}, kDt), SetupError);
+}
+
+// The leader moves slowly beyond an end of the machine's range.
+double force_beyond(double depth, double motion_scale) {
+  LeaderConfig config;
+  config.ranges = {{-0.1, 0.3}};
+  Bench bench;
+  bench.reflected = 0.0;
+  bench.half = LeaderHalf({.kind = MethodKind::kPositionForce}, config, kDt);
+  bench.end_stiffness = PortVector::Constant(1, 5e3 / motion_scale);
+  bench.play(0.5);
+  bench.x[0] = 0.3 + motion_scale * depth;
+  bench.play(0.5);
+  return bench.force;
+}
+
+TEST(LeaderHalf, TheEndOfTheMachinesRangeIsFeltWithinTwoMillimetresAtEveryScale) {
+  for (const double scale : {0.1, 1.0, 5.0}) {
+    EXPECT_EQ(force_beyond(-1e-3, scale), 0.0) << "before the end";
+    EXPECT_NEAR(force_beyond(2e-3, scale), -10.0, 1e-6) << scale;
+  }
+}
+
+TEST(LeaderHalf, TheEndOfTheMachinesRangeFadesWithTheLink) {
+  LeaderConfig config;
+  config.ranges = {{-0.1, 0.3}};
+  Bench bench;
+  bench.reflected = 0.0;
+  bench.half = LeaderHalf({.kind = MethodKind::kPositionForce}, config, kDt);
+  bench.end_stiffness = PortVector::Constant(1, 5e3);
+  bench.play(0.5);
+  bench.x[0] = 0.304;
+  bench.play(0.3);
+  EXPECT_NEAR(bench.force, -20.0, 1e-6);
+  bench.is_linked = false;
+  bench.play(0.401);
+  EXPECT_EQ(bench.force, 0.0);
 }
 
 }  // namespace

@@ -38,6 +38,31 @@ TEST(Teleoperation, OfAToolHasItsDefaults) {
   EXPECT_FALSE(load_scenario("models/scenarios/door.yaml").teleoperation);
 }
 
+TEST(Teleoperation, OfAPoseHasTurnsThatAreMeasuredOnALever) {
+  const Scenario scenario = load_with(
+      "free_space",
+      "  mapping: pose\n  lever_m: 0.2\n"
+      "  remote: {turn_max_rad: 1, walls: [{normal: [0, 0, 1], through_m: [0, 0, -1]}]}\n");
+  const teleoperation::TeleoperationConfig& config = *scenario.teleoperation;
+  ASSERT_EQ(config.machine.x_start.size(), 6);
+  ASSERT_EQ(config.limiter.axes.size(), 6U);
+  EXPECT_EQ(config.limiter.axes[2].range.ub, 0.5);
+  EXPECT_EQ(config.limiter.axes[5].range.ub, 0.2);
+  EXPECT_EQ(config.leader.ranges.size(), 6U);
+  EXPECT_EQ(config.machine.walls[0].normal.size(), 6);
+}
+
+TEST(Teleoperation, ScalesThatChangeNeedAToolThatIsLed) {
+  const std::string changes = "changes:\n  - {at_s: 1, motion_scale: [1, 0.5, 1]}\n";
+  const Scenario scenario = load_with("free_space", "  mapping: pose\n" + changes);
+  ASSERT_EQ(scenario.changes.size(), 3U);
+  EXPECT_EQ(scenario.changes[1].change.parameter, Parameter::kMotionScale);
+  EXPECT_EQ(scenario.changes[1].change.value, 0.5);
+  EXPECT_NE(message("excavator", "  mapping: joints\n" + changes)
+                .find("motion_scale and force_scale need a teleoperation that leads a tool"),
+            std::string::npos);
+}
+
 TEST(Teleoperation, OfJointsHasTheRangesAndTheStartOfTheTwin) {
   const Scenario scenario =
       load_with("excavator",
