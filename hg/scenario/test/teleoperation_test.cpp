@@ -410,6 +410,28 @@ TEST(TwinForce, OfTheWrongKindStopsTheDeviceWithItsName) {
   EXPECT_EQ(fault_of(force).value, 3.0) << "three torques for four joints";
 }
 
+// Free motion, as the figures of Haptify are measured in it.
+TEST(RemoteArm, WithoutDelayAddsNothingToWhatIsFeltInFreeMotion) {
+  const auto hash_with = [](const std::vector<std::string>& changes) {
+    Session session(load({.scenario = "free_space", .changes = changes}));
+    for (int k = 0; k < 6000 && session.advance(); ++k) continue;
+    if (!changes.empty()) {
+      EXPECT_EQ(session.sample().teleoperation.link, RemoteLink::kEngaged);
+      EXPECT_GT(session.sample().teleoperation.x_true.norm(), 0.01) << "the tool follows";
+    }
+    return session.record().state_hash;
+  };
+  const std::string key = "scenario.teleoperation.";
+  const std::vector<std::string> room = {key + "remote.lowest_m=[-9, -9, -9]",
+                                         key + "remote.highest_m=[9, 9, 9]"};
+  const std::uint64_t without = hash_with({});
+  for (const char* method : {"position_force", "model_mediated"}) {
+    std::vector<std::string> changes = room;
+    changes.push_back(key + "method=" + method);
+    EXPECT_EQ(hash_with(changes), without) << method;
+  }
+}
+
 TEST(TwinForce, ThatIsZeroChangesNothing) {
   const auto hash_after = [](bool has_source) {
     const config::Scenario scenario = shipped("excavator");

@@ -401,7 +401,7 @@ TEST(AnswerGate, NamesAnswersThatAreRepeatedOrFrozenOnce) {
 }
 
 // A server that has gone and come again knows nothing of the engagement.
-TEST(UdpRemote, AMachineThatComesAgainIsLedOnlyAfterTheClutchWasUsed) {
+void expect_led_only_after_the_clutch_was_used(bool is_restarted_at_once) {
   auto serving = std::make_unique<Serving>(false);
   const udp::Address address = serving->address();
   UdpRemote remote(address, leader_config(false));
@@ -431,8 +431,9 @@ TEST(UdpRemote, AMachineThatComesAgainIsLedOnlyAfterTheClutchWasUsed) {
   };
   play_until([&] { return force < -5.0; });
   serving.reset();
+  if (is_restarted_at_once) serving = std::make_unique<Serving>(false, address);
   play_until([&] { return leader.link() == RemoteLink::kLost && force == 0.0; });
-  serving = std::make_unique<Serving>(false, address);
+  if (!is_restarted_at_once) serving = std::make_unique<Serving>(false, address);
   const std::uint64_t before = arrived.sequence;
   play_until([&] { return arrived.sequence > before + 200; });
   EXPECT_EQ(leader.link(), RemoteLink::kLost);
@@ -441,6 +442,15 @@ TEST(UdpRemote, AMachineThatComesAgainIsLedOnlyAfterTheClutchWasUsed) {
   play_until([&] { return sent.engagement == 0 && arrived.sequence > before + 400; });
   is_closed = true;
   play_until([&] { return leader.link() == RemoteLink::kEngaged; });
+}
+
+TEST(UdpRemote, AMachineThatComesAgainIsLedOnlyAfterTheClutchWasUsed) {
+  expect_led_only_after_the_clutch_was_used(false);
+}
+
+// Sooner than a silence would be noticed.
+TEST(UdpRemote, AMachineThatIsRestartedAtOnceIsLedOnlyAfterTheClutchWasUsed) {
+  expect_led_only_after_the_clutch_was_used(true);
 }
 
 }  // namespace
