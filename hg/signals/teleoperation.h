@@ -40,6 +40,7 @@ enum class RemoteCause : std::uint8_t {
   kSilent = 9,        ///< holds: no packets
   kReleased = 10,     ///< holds: the clutch is open
   kStopped = 11,      ///< holds: a protective stop of the machine, by its own rules
+  kActive = 12,       ///< lost: more energy came to the leader than the remote side may give
 };
 
 /// Whether the remote machine holds for this cause until the clutch has been used.

@@ -17,6 +17,8 @@ void check_leader(const LeaderConfig& config) {
   require(config.silence > 0.0, "silence must be positive", config.silence);
   require(config.fade > 0.0, "fade must be positive", config.fade);
   require(config.force_max > 0.0, "force_max must be positive", config.force_max);
+  require(config.surplus > 0.0, "surplus must be positive", config.surplus);
+  require(config.power >= 0.0, "power must not be negative", config.power);
   require(config.snapshot > 0.0, "snapshot must be positive", config.snapshot);
 }
 
@@ -54,6 +56,37 @@ void LeaderHalf::receive(const RemotePacket& packet, double now_s) noexcept {
 // The newest packet answers this engagement.
 bool LeaderHalf::is_confirmed() const noexcept { return arrived_.engagement == engagements_; }
 
+// Why the force must end although packets arrive.
+RemoteCause LeaderHalf::distrust() const noexcept {
+  if (is_confirmed() && holds(arrived_.cause)) return arrived_.cause;
+  // it has confirmed this engagement and left it
+  if (is_started_ && !is_confirmed())
+    return holds(arrived_.cause) ? arrived_.cause : RemoteCause::kReplayed;
+  if (surplus_ > config_.surplus) return RemoteCause::kActive;
+  // it answers what was sent after the leader had moved, and has not changed
+  const bool follows = is_started_ && arrived_.cause == RemoteCause::kNone;
+  if (follows && arrived_.answered_s > led_s_ + config_.silence) return RemoteCause::kFrozen;
+  return RemoteCause::kNone;
+}
+
+// How much energy comes, and when the leader had moved although the content of packets is the same.
+void LeaderHalf::watch(double now_s) noexcept {
+  constexpr double kLed = 0.02;  // m or rad; who follows has moved by then
+  const double net = energy_.net();
+  surplus_ = std::max(0.0, surplus_ - (net - net_before_) - config_.power * dt_);
+  net_before_ = net;
+  const bool is_same = unchanged_.x.size() == arrived_.x.size() && unchanged_.x == arrived_.x &&
+                       unchanged_.v == arrived_.v && unchanged_.f == arrived_.f &&
+                       unchanged_.x_target == arrived_.x_target;
+  if (!is_same || x_unchanged_.size() != x_.size()) {
+    unchanged_ = arrived_;
+    x_unchanged_ = x_;
+    led_s_ = kInfinity;
+  } else if (led_s_ == kInfinity && (x_ - x_unchanged_).lpNorm<Eigen::Infinity>() > kLed) {
+    led_s_ = now_s;
+  }
+}
+
 void LeaderHalf::engage(const LeaderInput& input) noexcept {
   const PortVector offset = arrived_.x_target - input.x;
   if (offset.lpNorm<Eigen::Infinity>() > config_.snapshot) return;
@@ -66,6 +99,9 @@ void LeaderHalf::engage(const LeaderInput& input) noexcept {
   energy_.start(input.x.size());
   force_ = applied_ = PortVector::Zero(input.x.size());
   x_before_.resize(0);
+  x_unchanged_.resize(0);
+  led_s_ = kInfinity;
+  surplus_ = net_before_ = 0.0;
   share_ = 0.0;
 }
 
@@ -85,9 +121,9 @@ void LeaderHalf::operate(double now_s, const LeaderInput& input) noexcept {
       } else if (!is_alive) {
         link_ = RemoteLink::kLost;
         cause_ = RemoteCause::kSilent;
-      } else if (is_confirmed() && holds(arrived_.cause)) {
+      } else if (distrust() != RemoteCause::kNone) {
         link_ = RemoteLink::kLost;
-        cause_ = arrived_.cause;
+        cause_ = distrust();
       } else {
         cause_ = is_confirmed() ? arrived_.cause : RemoteCause::kNone;
       }
@@ -130,6 +166,7 @@ PortVector LeaderHalf::step(double now_s, const LeaderInput& input, LeaderPacket
   x_ = input.x + offset_;
   if (x_before_.size() == size) energy_.add(applied_, x_ - x_before_);
   x_before_ = x_;
+  watch(now_s);
 
   const bool is_engaged = link_ == RemoteLink::kEngaged;
   packet = {.sequence = ++sequence_,

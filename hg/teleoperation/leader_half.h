@@ -23,6 +23,8 @@ struct LeaderConfig {
   double force_max = 60.0;            ///< Largest force on the leader, N or Nm, at the remote scale
   std::vector<Interval> ranges = {};  ///< Of the remote machine, where the leader is to feel them
   double snapshot = kInfinity;        ///< Largest distance of both sides at an engagement, m or rad
+  /// Energy that may come to the leader beyond `power` for as long as it comes, J; W
+  double surplus = 5.0, power = 20.0;
 };
 
 /// Throws SetupError naming the field that is out of range.
@@ -60,6 +62,8 @@ class LeaderHalf {
   double dissipated() const noexcept { return method_->dissipated(); }
 
  private:
+  RemoteCause distrust() const noexcept;
+  void watch(double now_s) noexcept;
   void operate(double now_s, const LeaderInput& input) noexcept;
   void engage(const LeaderInput& input) noexcept;
   PortVector force_of_ends(const LeaderInput& input) const noexcept;
@@ -81,6 +85,11 @@ class LeaderHalf {
   PortVector offset_, x_, force_;  ///< force_: of the method, and on the leader before
   PortVector x_before_, applied_;
   PortEnergy energy_;
+  double surplus_ = 0.0;      ///< Energy that has come to the leader beyond the power that may, J
+  double net_before_ = 0.0;   ///< Of energy_
+  RemotePacket unchanged_;    ///< The first of the packets with the same content as the newest
+  PortVector x_unchanged_;    ///< Of the leader then
+  double led_s_ = kInfinity;  ///< When it had moved away from there
 };
 
 }  // namespace hg::teleoperation

@@ -102,6 +102,19 @@ double stopping_speed(double way, double a_max, double dt) noexcept {
 
 }  // namespace
 
+// A velocity beside that of the target, and an added force, push the machine off its target: no
+// further than 0.25 m/s against its damper, and never out of its range.
+void TargetLimiter::limit_push(const AxisLimits& axis, double x, double speed, double& v,
+                               double& f) const noexcept {
+  constexpr double kBeside = 0.25;  // m/s or rad/s
+  v = std::clamp(v, speed - kBeside, speed + kBeside);
+  const double out = machine_.stiffness * std::max(0.0, axis.range.ub - x);
+  const double in = machine_.stiffness * std::max(0.0, x - axis.range.lb);
+  const double pushed = std::clamp(machine_.damping * (v - speed), -in, out);
+  if (machine_.damping > 0.0) v = speed + pushed / machine_.damping;
+  f = std::clamp(f, std::min(0.0, -in - pushed), std::max(0.0, out - pushed));
+}
+
 RemoteTarget TargetLimiter::step(const RemoteTarget& wanted, const PortVector& x,
                                  const PortVector& v, RemoteCause& cause) const noexcept {
   RemoteTarget target = {x, v, wanted.f};
@@ -130,6 +143,7 @@ RemoteTarget TargetLimiter::step(const RemoteTarget& wanted, const PortVector& x
       target.f[i] = std::clamp(wanted.f[i], -axis.f_max, axis.f_max);
       cause = RemoteCause::kForce;
     }
+    limit_push(axis, target.x[i], speed, target.v[i], target.f[i]);
   }
   return target;
 }

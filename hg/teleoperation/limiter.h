@@ -43,6 +43,10 @@ class PacketGate {
   /// The same once per period: why the machine must hold, kNone if it follows.
   RemoteCause check(double now_s) noexcept;
   const LeaderPacket& newest() const noexcept { return newest_; }
+  /// Ends the engagement for a cause of the machine's own; kept until the next one.
+  void end(RemoteCause cause) noexcept {
+    if (cause_ == RemoteCause::kNone) cause_ = cause;
+  }
   /// Forgets the leader: another one begins.
   void forget() noexcept;
 
@@ -59,14 +63,20 @@ class PacketGate {
 /// Keeps targets within the limits of the machine.
 class TargetLimiter {
  public:
-  TargetLimiter(const LimiterConfig& config, double dt) : config_(config), dt_(dt) {}
+  /// `machine` follows the targets.
+  TargetLimiter(const LimiterConfig& config, const MachineImpedance& machine, double dt)
+      : config_(config), machine_(machine), dt_(dt) {}
 
   /// The nearest target to `wanted` that may follow (x, v), and what holds it back.
   RemoteTarget step(const RemoteTarget& wanted, const PortVector& x, const PortVector& v,
                     RemoteCause& cause) const noexcept;
 
  private:
+  void limit_push(const AxisLimits& axis, double x, double speed, double& v,
+                  double& f) const noexcept;
+
   LimiterConfig config_;
+  MachineImpedance machine_;
   double dt_;
 };
 

@@ -11,7 +11,7 @@ RemoteHalf::RemoteHalf(std::unique_ptr<RemoteMethod> method, const MachineImpeda
     : impedance_(machine),
       dt_(dt),
       gate_((check_limiter(limiter), limiter)),
-      limiter_(limiter, dt),
+      limiter_(limiter, machine, dt),
       method_(std::move(method)) {}
 
 void RemoteHalf::begin(std::unique_ptr<RemoteMethod> method) noexcept {
@@ -42,16 +42,17 @@ RemoteTarget RemoteHalf::step(double now_s, const MachineState& machine,
                               RemotePacket& packet) noexcept {
   const Eigen::Index size = machine.x.size();
   const bool is_measured = first_not_finite(machine.x, machine.v, machine.f) < 0;
-  if (x_target_.size() == 0) {
+  if (!has_position_) {
     x_target_ = machine.x;
     v_target_ = speed_ = PortVector::Zero(size);
     energy_.start(size);
+    has_position_ = is_measured;
   }
   observe(machine);
-  RemoteCause cause = gate_.check(now_s);
-  if (cause == RemoteCause::kNone && !is_measured) cause = RemoteCause::kNotFinite;
+  if (!is_measured) gate_.end(RemoteCause::kNotFinite);
+  if (machine.has_stopped) gate_.end(RemoteCause::kStopped);
+  const RemoteCause cause = gate_.check(now_s);
   if (machine.has_stopped && is_measured) {
-    if (cause == RemoteCause::kNone) cause = RemoteCause::kStopped;
     x_target_ = machine.x;
     speed_ = PortVector::Zero(size);
   }
@@ -76,6 +77,7 @@ RemoteTarget RemoteHalf::step(double now_s, const MachineState& machine,
             .reflected = PortVector::Zero(size),
             .wave = PortVector::Zero(size),
             .energy = energy_.taken};
+  if (!has_position_) return {x_target_, v_target_, PortVector::Zero(size)};
   RemoteTarget wanted = {x_target_, PortVector::Zero(size), PortVector::Zero(size)};
   if (follows) {
     wanted = method_->step(

@@ -25,8 +25,8 @@ class RemoteHalf {
   /// Another leader begins, by this method: the machine holds, with its target where it is.
   void begin(std::unique_ptr<RemoteMethod> method) noexcept;
   void receive(const LeaderPacket& packet, double now_s) noexcept;
-  /// Target of the machine for the coming period, and the packet to send. The first call takes the
-  /// machine's position as its target.
+  /// Target of the machine for the coming period, and the packet to send. The first position
+  /// that is measured is its first target.
   RemoteTarget step(double now_s, const MachineState& machine, RemotePacket& packet) noexcept;
 
  private:
@@ -39,6 +39,7 @@ class RemoteHalf {
   TargetLimiter limiter_;
   std::unique_ptr<RemoteMethod> method_;
   bool is_new_ = false;
+  bool has_position_ = false;     ///< A position has been measured
   std::uint32_t engagement_ = 0;  ///< In which the machine follows; 0 = it holds
   std::uint64_t sequence_ = 0;
   PortVector x_target_, v_target_, moved_;  ///< Target, and its way in the last period

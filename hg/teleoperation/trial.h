@@ -23,7 +23,8 @@ struct TrialConfig {
   /// Make the halves of a method that `method` does not know; empty: those of `method`.
   std::function<std::unique_ptr<LeaderMethod>(const TrialConfig&)> make_leader;
   std::function<std::unique_ptr<RemoteMethod>(const TrialConfig&)> make_remote;
-  LeaderConfig leader;
+  /// A method that gives energy without end is to be seen, not to be ended.
+  LeaderConfig leader = {.surplus = kInfinity};
   ChannelConfig link;
   MachineImpedance machine;
   double wall_stiffness = 5e3;  ///< N/m

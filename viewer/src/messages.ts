@@ -322,7 +322,7 @@ export interface Ghost {
 // the other side, in coordinates of the remote machine
 export interface Teleoperation {
   link: "none" | "waiting" | "released" | "engaged" | "lost";
-  cause: "none" | "speed" | "acceleration" | "range" | "force" | "not_finite" | "jump" | "replayed" | "frozen" | "silent" | "released" | "stopped"; // why the remote machine does not follow, as it last said
+  cause: "none" | "speed" | "acceleration" | "range" | "force" | "not_finite" | "jump" | "replayed" | "frozen" | "silent" | "released" | "stopped" | "active"; // why the remote machine does not follow, as it last said
   is_clutch_open: boolean; // a page has opened the clutch
   age_s: number; // time since the newest packet from the remote machine was sent
   round_trip_s: number; // of packets, there and back

@@ -101,6 +101,7 @@ const HOLDS: Partial<Record<Teleoperation["cause"], string>> = {
   replayed: "packets were repeated",
   frozen: "packets kept coming with the same content",
   stopped: "a rule of its own has stopped it",
+  active: "more energy came back than it may give",
 };
 
 const AGAIN = "Open and close the clutch (C) to take hold again.";

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "hg/device/udp/codec.h"
-#include "hg/device/udp/protocol.h"
+#include "hg/device/udp/side.h"
 #include "hg/signals/link_counts.h"
 
 namespace hg::udp {

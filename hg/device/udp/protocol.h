@@ -31,29 +31,6 @@ enum class MessageType : std::uint16_t {
   kRemote = 10,    ///< remote machine: a period of its side
 };
 
-/// The side of a session that asks for it, and the one that serves it.
-enum class Side : std::uint8_t { kClient, kServer };
-
-/// Whether this side sends messages of this type.
-constexpr bool sends(Side side, MessageType type) noexcept {
-  switch (type) {
-    case MessageType::kHello:
-    case MessageType::kReady:
-    case MessageType::kCommand:
-    case MessageType::kTerms:
-    case MessageType::kLeader:
-      return side == Side::kClient;
-    case MessageType::kWelcome:
-    case MessageType::kSensors:
-    case MessageType::kRoundTrip:
-    case MessageType::kRemote:
-      return side == Side::kServer;
-    case MessageType::kGoodbye:
-      return true;
-  }
-  return false;
-}
-
 /// Command interface of the drives: positions (they follow CommandFrame::q_m), or torques (tau_m).
 /// kRemote: not a device, but the remote machine of a teleoperation (teleoperation_messages.h).
 enum class Interface : std::uint32_t { kPosition = 1, kTorque = 2, kRemote = 3 };

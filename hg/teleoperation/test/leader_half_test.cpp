@@ -24,6 +24,7 @@ struct Bench {
   int period = 0;
   bool is_closed = true, is_linked = true;
   double reflected = -5.0;
+  double answered_s = 0.0;
   RemoteCause cause = RemoteCause::kNone;
   std::function<void(RemotePacket&)> spoil = [](RemotePacket&) {};
 
@@ -32,6 +33,7 @@ struct Bench {
     return {.sequence = static_cast<std::uint64_t>(period),
             .engagement = sent.engagement,
             .sent_s = period * kDt,
+            .answered_s = answered_s,
             .cause = cause,
             .x = zero,
             .v = zero,
@@ -140,6 +142,68 @@ TEST(LeaderHalf, ALyingRemoteMachineIsNotFelt) {
     bench.play(0.2);
     EXPECT_EQ(bench.force, 0.0);
   }
+}
+
+// Whatever it says of itself: it has confirmed the engagement and no longer follows.
+TEST(LeaderHalf, ARemoteMachineThatLeavesTheEngagementIsLost) {
+  for (const std::uint32_t engagement : {0U, 9U}) {
+    Bench bench;
+    bench.play(0.5);
+    bench.spoil = [&](RemotePacket& packet) { packet.engagement = engagement; };
+    bench.play(0.001);
+    EXPECT_EQ(bench.half.link(), RemoteLink::kLost);
+    bench.play(0.2);
+    EXPECT_EQ(bench.force, 0.0);
+    bench.spoil = [](RemotePacket&) {};
+    bench.play(0.5);
+    EXPECT_EQ(bench.force, 0.0) << "by the clutch only";
+  }
+}
+
+// The hand gets 59 N along its motion, and 5 J within a third of a second.
+TEST(LeaderHalf, ARemoteMachineThatDrivesTheHandIsLost) {
+  Bench bench;
+  bench.play(0.5);
+  double given = 0.0;
+  for (int k = 0; k < 1000 && bench.half.link() == RemoteLink::kEngaged; ++k) {
+    bench.v[0] = 3e-3 * k;
+    bench.x[0] += bench.v[0] * kDt;
+    bench.reflected = 59.0;
+    bench.play(kDt);
+    given += bench.force * bench.v[0] * kDt;
+  }
+  EXPECT_EQ(bench.half.link(), RemoteLink::kLost);
+  EXPECT_EQ(bench.half.cause(), RemoteCause::kActive);
+  EXPECT_LT(given, 20.0);
+  EXPECT_GT(given, 5.0);
+}
+
+TEST(LeaderHalf, ASpringGivesBackWhatItHasTaken) {
+  Bench bench;
+  for (int k = 0; k < 20000; ++k) {
+    bench.x[0] = 0.2 * std::sin(2.0 * k * kDt);
+    bench.v[0] = 0.4 * std::cos(2.0 * k * kDt);
+    bench.reflected = -200.0 * bench.x[0];
+    bench.spoil = [&](RemotePacket& packet) { packet.x = packet.x_target = bench.x; };
+    bench.play(kDt);
+  }
+  EXPECT_EQ(bench.half.link(), RemoteLink::kEngaged);
+}
+
+TEST(LeaderHalf, ARemoteMachineWhoseValuesAreFrozenIsLostOnceTheLeaderMoves) {
+  Bench bench;
+  bench.play(2.0);
+  EXPECT_EQ(bench.half.link(), RemoteLink::kEngaged) << "at rest";
+  for (int k = 0; k < 300; ++k) {
+    bench.x[0] = 1e-4 * k;
+    bench.play(kDt);
+  }
+  bench.play(0.3);
+  EXPECT_EQ(bench.half.link(), RemoteLink::kEngaged) << "it has not answered yet";
+  bench.answered_s = bench.period * kDt;
+  bench.play(0.002);
+  EXPECT_EQ(bench.half.link(), RemoteLink::kLost);
+  EXPECT_EQ(bench.half.cause(), RemoteCause::kFrozen);
 }
 
 TEST(LeaderHalf, RepeatedPacketsAreSilence) {

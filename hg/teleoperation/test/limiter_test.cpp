@@ -107,7 +107,7 @@ TEST(PacketGate, PacketsOfAnEarlierEngagementAreNotUsed) {
 
 // Follows `wanted` for a second; checks speed and acceleration in every period.
 double end_of(double wanted, RemoteCause& seen) {
-  const TargetLimiter limiter(limits(), kDt);
+  const TargetLimiter limiter(limits(), MachineImpedance{}, kDt);
   PortVector x = PortVector::Zero(1), v = x;
   for (int k = 0; k < 3000; ++k) {
     RemoteCause cause = RemoteCause::kNone;
@@ -133,7 +133,7 @@ TEST(TargetLimiter, ReachesWhatIsWantedWithinSpeedAccelerationAndRange) {
 }
 
 TEST(TargetLimiter, LetsThroughWhatIsWithinLimits) {
-  const TargetLimiter limiter(limits(), kDt);
+  const TargetLimiter limiter(limits(), MachineImpedance{}, kDt);
   PortVector x = PortVector::Zero(1), v = x;
   for (int k = 1; k < 1000; ++k) {
     RemoteCause cause = RemoteCause::kNone;
@@ -150,12 +150,60 @@ TEST(TargetLimiter, LetsThroughWhatIsWithinLimits) {
 }
 
 TEST(TargetLimiter, BoundsTheAddedForce) {
-  const TargetLimiter limiter(limits(), kDt);
+  const TargetLimiter limiter(limits(), MachineImpedance{}, kDt);
   const PortVector zero = PortVector::Zero(1);
   RemoteCause cause = RemoteCause::kNone;
   EXPECT_EQ(limiter.step({zero, zero, PortVector::Constant(1, -90.0)}, zero, zero, cause).f[0],
             -20.0);
   EXPECT_EQ(cause, RemoteCause::kForce);
+}
+
+// A leader whose positions are honest and whose velocities and forces are not.
+TEST(TargetLimiter, VelocitiesAndForcesPushTheMachineNeitherFarNorOutOfItsRange) {
+  const MachineImpedance machine;
+  const TargetLimiter limiter(limits(), machine, kDt);
+  for (const double x : {0.0, 0.5}) {
+    for (const double v : {-1e3, 1e3}) {
+      for (const double f : {-20.0, 0.0, 20.0}) {
+        RemoteCause cause = RemoteCause::kNone;
+        const PortVector at = PortVector::Constant(1, x), zero = PortVector::Zero(1);
+        const RemoteTarget target = limiter.step(
+            {at, PortVector::Constant(1, v), PortVector::Constant(1, f)}, at, zero, cause);
+        EXPECT_EQ(target.x[0], x);
+        const double rest = x + (machine.damping * target.v[0] + target.f[0]) / machine.stiffness;
+        EXPECT_LE(std::abs(target.v[0]), 0.25);
+        EXPECT_LE(std::abs(rest - x), 0.25 * machine.damping / machine.stiffness + 2e-3 + 1e-9);
+        EXPECT_LE(rest, 0.5 + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(RemoteHalf, WithoutAMeasurementHoldsUntilTheNextEngagement) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  RemoteHalf half({.kind = MethodKind::kPositionForce}, {}, limits(), kDt);
+  MachineState machine = {PortVector::Constant(1, nan), PortVector::Zero(1), PortVector::Zero(1)};
+  RemotePacket answer;
+  RemoteTarget target;
+  std::uint64_t k = 0;
+  const auto play = [&](int periods, std::uint32_t engagement, double x) {
+    for (int i = 0; i < periods; ++i) {
+      ++k;
+      half.receive(packet(k, static_cast<double>(k) * kDt, x, engagement),
+                   static_cast<double>(k) * kDt);
+      target = half.step(static_cast<double>(k) * kDt, machine, answer);
+    }
+  };
+  play(5, 1, 0.0);
+  EXPECT_EQ(answer.cause, RemoteCause::kNotFinite) << "from the first period on";
+  machine.x[0] = 0.1;
+  play(100, 1, 0.2);
+  EXPECT_EQ(answer.cause, RemoteCause::kNotFinite) << "it waits for the clutch";
+  EXPECT_NEAR(target.x[0], 0.1, 1e-9) << "but holds where it is";
+  play(2, 0, 0.1);
+  play(500, 2, 0.2);
+  EXPECT_EQ(answer.cause, RemoteCause::kNone);
+  EXPECT_NEAR(target.x[0], 0.2, 1e-6);
 }
 
 TEST(RemoteHalf, ComesToRestAndHoldsWhenTheLeaderFallsSilent) {
