@@ -22,9 +22,10 @@
 #include "apps/offline/campaign.h"
 #include "apps/offline/hands_command.h"
 #include "apps/offline/paper_experiment_command.h"
-#include "apps/offline/subcommand.h"
 #include "apps/offline/remote_experiment.h"
+#include "apps/offline/subcommand.h"
 #include "apps/offline/teleoperation_experiment.h"
+#include "apps/offline/walking_experiment.h"
 #include "hg/config/simulation/scenario.h"
 #include "hg/config/simulation/script_schema.h"
 #include "hg/core/error.h"
@@ -404,6 +405,7 @@ void add_experiment(Command app, int& exit_code) {
   add_seeds(command, exit_code);
   add_hands(command, exit_code);
   add_teleoperation(command, exit_code);
+  add_walking(command, exit_code);
   add_remote_operation(command, exit_code);
 }
 
