@@ -95,6 +95,17 @@ class Commands(unittest.TestCase):
             self.assertRegex(said, r"link +\d+ sent, \d+ received")
             self.assertRegex(said, r"truth +joint limits .*; force of the user at most \d")
 
+    def test_a_leader_there_and_a_remote_arm_elsewhere_are_those_here(self):
+        options = ("remote_arm", "--fast", "--duration", "14")
+        state = re.compile(r"^  state +(\w+)", re.MULTILINE)
+        with Server("remote_arm", "--fast") as leader, Server("remote_arm", "--remote", "--fast") as arm:
+            here = run(*options)
+            there = run(*options, "--device-address", leader.address, "--set",
+                        f"scenario.teleoperation.remote.udp={arm.address}")
+            self.assertEqual(there.returncode, here.returncode, there.stdout + there.stderr)
+            self.assertIn("pressed", there.stdout)
+            self.assertEqual(state.search(there.stdout)[1], state.search(here.stdout)[1])
+
     def test_what_a_franka_cannot_be_is_refused(self):
         late = ("--despite", "lateness")  # the computer of a test may be busy
         fci = ("fr3/open_drawer", "--device", "fr3/fci", *late, "--device-address")
