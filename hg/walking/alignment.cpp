@@ -26,7 +26,8 @@ Redirection Alignment::step(const WalkMoment& moment) noexcept {
   constexpr double kTurnLeast = 0.67, kTurnMost = 1.24;  // in the room over what is seen
   constexpr double kWayLeast = 0.86, kWayMost = 1.26;    // likewise
   constexpr double kSmoothing = 0.125;
-  constexpr double kAligned = 1e-3;  // m
+  constexpr double kAligned = 1e-3;            // m
+  constexpr double kTurning = 10.0 * kDegree;  // rad/s, of people, who never go quite straight
   const double ahead_room = in_room(moment, 0.0), ahead_target = in_target(moment, 0.0);
   const double left = in_room(moment, kQuarter) - in_target(moment, kQuarter);
   const double right = in_room(moment, -kQuarter) - in_target(moment, -kQuarter);
@@ -37,14 +38,15 @@ Redirection Alignment::step(const WalkMoment& moment) noexcept {
   const double turn = moment.turn(), distance = moment.distance();
   if (misalignment < kAligned) return {};
   Redirection redirection;
-  if (std::abs(turn) > 1e-9) {
+  const bool is_turning = std::abs(turn) > kTurning * kWalkPeriod;
+  if (is_turning) {
     turn_gain_ += kSmoothing * ((is_worse ? kTurnLeast : kTurnMost) - turn_gain_);
     redirection.twist = (turn_gain_ - 1.0) * turn;
   } else if (distance > 0.0 && left != right) {
     const double scale = std::min(1.0, std::abs(std::max(left, right)));
     redirection.bend = std::copysign(scale * distance / kBendRadius, left - right);
   }
-  if (std::abs(turn) <= 1e-9 && ahead_target > 0.0)
+  if (!is_turning && ahead_target > 0.0)
     redirection.length = std::clamp(ahead_room / ahead_target, kWayLeast, kWayMost);
   return redirection;
 }

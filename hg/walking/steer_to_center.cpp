@@ -22,6 +22,12 @@ Eigen::Vector2d SteerToCenter::target(const WalkMoment& moment) noexcept {
   return aside_;
 }
 
+double SteerToCenter::heading_after_reset(const WalkMoment& moment) noexcept {
+  applied_ = 0.0;
+  has_aside_ = false;
+  return Redirector::heading_after_reset(moment);
+}
+
 Redirection SteerToCenter::step(const WalkMoment& moment) noexcept {
   constexpr double kWalking = 0.2;            // m/s
   constexpr double kTurning = 1.5 * kDegree;  // rad/s

@@ -10,6 +10,7 @@ class SteerToCenter : public Redirector {
  public:
   explicit SteerToCenter(const Rectangle& room) : center_(room.middle()) {}
   Redirection step(const WalkMoment& moment) noexcept override;
+  double heading_after_reset(const WalkMoment& moment) noexcept override;
 
  private:
   Eigen::Vector2d target(const WalkMoment& moment) noexcept;

@@ -79,6 +79,10 @@ WalkFigures walk(const WalkedPath& path, Redirector& redirector, const WalkRoom&
     if (room.needs_reset(pose)) {
       ++figures.resets;
       pose.heading = redirector.heading_after_reset({.path = path, .index = i, .room = pose});
+      if (room.needs_reset(pose)) {  // in a corner
+        const Eigen::Vector2d way = room.walls.middle() - pose.p;
+        pose.heading = std::atan2(way.y(), way.x());
+      }
     }
     if (observe) observe(moment, pose);
   }
