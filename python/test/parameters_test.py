@@ -7,7 +7,8 @@ import unittest
 
 import hapticgiant as hg
 
-TABLE = pathlib.Path(__file__).parents[2] / "docs" / "reference" / "configuration_twin.csv"
+REFERENCE = pathlib.Path(__file__).parents[2] / "docs" / "reference"
+TABLES = [REFERENCE / f"configuration_{kind}.csv" for kind in ("twin", "scenario")]  # scales are the scenario's
 
 
 class TwinParameters(unittest.TestCase):
@@ -18,8 +19,8 @@ class TwinParameters(unittest.TestCase):
         self.assertEqual(set(self.table), set(hg.Parameter) - {hg.Parameter.NONE})
 
     def test_keys_and_texts_are_those_of_the_reference_table(self):
-        with TABLE.open(newline="") as file:
-            text = "\n".join(" ".join(row) for row in csv.reader(file))
+        rows = [row for table in TABLES for row in csv.reader(table.read_text().splitlines())]
+        text = "\n".join(" ".join(row) for row in rows)
         for facts in self.table.values():
             with self.subTest(facts.parameter.name):
                 self.assertIn(facts.key, text)
