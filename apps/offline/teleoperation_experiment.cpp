@@ -35,20 +35,12 @@ struct TeleoperationArguments {
   std::string csv;  ///< file for all trials; empty = none
 };
 
-template <typename E>
-std::string name_of(E value) {
-  for (const Enumerator<E>& one : enumerators<E>()) {
-    if (one.value == value) return words_of(one.name);
-  }
-  return {};
-}
-
 std::string row_of(const GridCase& one) {
   const teleoperation::TrialResult& result = one.result;
   return fmt::format(
       "{},{},{},{},{},{},{},{:.3f},{:.4f},{:.4f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},{:.3f},{"
       ":.4f},{:.4f},{:.4f}\n",
-      name_of(one.method), name_of(one.hand), 1e3 * one.delay, 1e3 * one.jitter, 100.0 * one.loss,
+      words_of(one.method), words_of(one.hand), 1e3 * one.delay, 1e3 * one.jitter, 100.0 * one.loss,
       one.wall, result.is_stable ? 1 : 0, 1e3 * result.vibration,
       1e3 * result.created / result.duration_s, 1e3 * result.created_leader / result.duration_s,
       result.peak_hand, one.peak_ratio, result.peak_wall, 1e3 * result.first_offset,
@@ -133,8 +125,8 @@ int experiment_teleoperation(const TeleoperationArguments& arguments) {
   for (const auto& [key, value] : worst) {
     print_out(
         "{:20} {:3.0f} ms {:4} of {:3} {:7.2f} mJ/s {:7.1f} mm {:8.2f} N {:8.2f} x {:8.2f} N\n",
-        name_of(key.first), 1e3 * key.second, value.calm, value.trials, value.created, value.offset,
-        value.force, value.ratio, value.regulation);
+        words_of(key.first), 1e3 * key.second, value.calm, value.trials, value.created,
+        value.offset, value.force, value.ratio, value.regulation);
   }
   print_out(
       "\ncalm: slower than 2 mm/s rms in the last second of both presses. gives: energy that the\n"

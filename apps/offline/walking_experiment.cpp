@@ -13,6 +13,8 @@
 #include "apps/command_line/output.h"
 #include "apps/hapticgiant/output_file.h"
 #include "apps/hapticgiant/progress.h"
+#include "apps/hapticgiant/scenario_options.h"
+#include "hg/config/schema.h"
 #include "hg/core/enumerators.h"
 #include "hg/core/error.h"
 #include "hg/core/random.h"
@@ -42,31 +44,13 @@ struct PathGroup {
   std::vector<WalkedPath> paths;
 };
 
-std::string name_of(RedirectionKind kind) {
-  for (const Enumerator<RedirectionKind>& one : enumerators<RedirectionKind>()) {
-    if (one.value == kind) return words_of(one.name);
-  }
-  return {};
-}
-
-std::string option_of(RedirectionKind kind) {
-  std::string name = name_of(kind);
-  std::ranges::replace(name, ' ', '_');
-  return name;
-}
-
-std::vector<std::string> method_names() {
-  std::vector<std::string> names;
-  for (const Enumerator<RedirectionKind>& one : enumerators<RedirectionKind>())
-    names.push_back(option_of(one.value));
-  return names;
-}
+constexpr auto kMethods = config::choices_of<RedirectionKind>();
 
 std::vector<RedirectionKind> kinds_of(const std::vector<std::string>& names) {
   std::vector<RedirectionKind> kinds;
-  for (const Enumerator<RedirectionKind>& one : enumerators<RedirectionKind>()) {
-    if (names.empty() || std::ranges::find(names, option_of(one.value)) != names.end())
-      kinds.push_back(one.value);
+  for (const config::Choice<RedirectionKind>& method : kMethods) {
+    if (names.empty() || std::ranges::find(names, method.name) != names.end())
+      kinds.push_back(method.value);
   }
   return kinds;
 }
@@ -99,14 +83,14 @@ std::string row_of(const PathGroup& group, const WalkedPath& path, RedirectionKi
   return fmt::format(
       "{},{},{},{:.2f},{:.2f},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.2f},{:.3f},{:.4f},{:"
       ".4f},{:.4f}\n",
-      group.name, path.name, name_of(kind), figures.length, figures.duration, figures.resets,
+      group.name, path.name, words_of(kind), figures.length, figures.duration, figures.resets,
       figures.clearance, figures.bend_quantile(0.5), figures.bend_quantile(0.95),
       figures.bend_quantile(1.0), figures.bent, figures.twisted, figures.way_gain_least,
       figures.way_gain_most, figures.turn_rate);
 }
 
 void print_sum(RedirectionKind kind, const WalkFigures& sum) {
-  print_out("  {:20} {:6} {:9.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:7.0f} %\n", name_of(kind),
+  print_out("  {:20} {:6} {:9.2f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:7.0f} %\n", words_of(kind),
             sum.resets, 100.0 * sum.resets / sum.length, sum.clearance, sum.bend_quantile(0.5),
             sum.bend_quantile(0.95), sum.bend_quantile(1.0), 100.0 * sum.bent / sum.length);
 }
@@ -170,7 +154,7 @@ void add_walking(Command experiment, int& exit_code) {
   command.add_option("--methods", arguments->methods, "only these, separated by commas")
       .delimiter(',')
       .allow_extra_args(false)
-      .one_of(method_names());
+      .one_of(names_of(kMethods));
   command.add_option("--buildings", arguments->buildings, "number of random buildings")
       .check(whole_number(0, 100000))
       .capture_default_str();

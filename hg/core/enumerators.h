@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace hg {
@@ -86,6 +87,15 @@ inline std::string words_of(std::string_view enumerator) {
   std::string words;
   detail::separate(enumerator, ' ', [&](char c) { words += c; });
   return words;
+}
+
+/// Words of a value: of E::kStillMoving, "still moving"; empty for a value without a name.
+template <typename E>
+requires std::is_enum_v<E> std::string words_of(E value) {
+  for (const Enumerator<E>& one : enumerators<E>()) {
+    if (one.value == value) return words_of(one.name);
+  }
+  return {};
 }
 
 /// Constant name of an enumerator in other languages: "kStillMoving" becomes "STILL_MOVING".

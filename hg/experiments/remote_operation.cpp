@@ -123,9 +123,8 @@ class Arm {
     }
     if (report.link == RemoteLink::kLost && link_ != RemoteLink::kLost) {
       ++figures.stops;
-      note(fmt::format("the arm held at {:.3f} s, cause {}", now.record.time_s,
-                       static_cast<int>(report.cause)),
-           figures);
+      figures.notes.push_back(fmt::format("the arm held at {:.3f} s, cause {}", now.record.time_s,
+                                          static_cast<int>(report.cause)));
     }
     link_ = report.link;
     for (Eigen::Index i = 0; i < report.x_true.size(); ++i) {
@@ -138,9 +137,6 @@ class Arm {
       }
     }
     x_ = report.x_true;
-  }
-  static void note(const std::string& text, RemoteOperationFigures& figures) {
-    figures.notes.push_back(text);
   }
 
  private:
@@ -170,9 +166,8 @@ RemoteOperationFigures operate(config::Scenario scenario, const RemoteOperation&
   const Fault& fault = player.record().fault;
   if (fault.code != FaultCode::kNone) {
     ++figures.faults;
-    Arm::note(fmt::format("fault {} at {:.3f} s: {}", static_cast<int>(fault.code),
-                          player.record().time_s, to_string(fault.code)),
-              figures);
+    figures.notes.push_back(fmt::format("fault {} at {:.3f} s: {}", static_cast<int>(fault.code),
+                                        player.record().time_s, to_string(fault.code)));
   }
   for (std::string& text : figures.notes) text = fmt::format("seed {}: {}", seed, text);
   return figures;

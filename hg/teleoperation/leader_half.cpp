@@ -48,6 +48,8 @@ void LeaderHalf::receive(const RemotePacket& packet, double now_s) noexcept {
     }
     return;
   }
+  is_changed_ = is_changed_ || is_first || packet.x != arrived_.x || packet.v != arrived_.v ||
+                packet.f != arrived_.f || packet.x_target != arrived_.x_target;
   arrived_ = packet;
   arrived_s_ = now_s;
   is_new_ = true;
@@ -69,19 +71,16 @@ RemoteCause LeaderHalf::distrust() const noexcept {
   return RemoteCause::kNone;
 }
 
-// How much energy comes, and when the leader had moved although the content of packets is the same.
+// How much energy comes, and when the leader had moved although nothing in the packets has.
 void LeaderHalf::watch(double now_s) noexcept {
   constexpr double kLed = 0.02;  // m or rad; who follows has moved by then
   const double net = energy_.net();
   surplus_ = std::max(0.0, surplus_ - (net - net_before_) - config_.power * dt_);
   net_before_ = net;
-  const bool is_same = unchanged_.x.size() == arrived_.x.size() && unchanged_.x == arrived_.x &&
-                       unchanged_.v == arrived_.v && unchanged_.f == arrived_.f &&
-                       unchanged_.x_target == arrived_.x_target;
-  if (!is_same || x_unchanged_.size() != x_.size()) {
-    unchanged_ = arrived_;
+  if (is_changed_) {
     x_unchanged_ = x_;
     led_s_ = kInfinity;
+    is_changed_ = false;
   } else if (led_s_ == kInfinity && (x_ - x_unchanged_).lpNorm<Eigen::Infinity>() > kLed) {
     led_s_ = now_s;
   }
@@ -99,8 +98,7 @@ void LeaderHalf::engage(const LeaderInput& input) noexcept {
   energy_.start(input.x.size());
   force_ = applied_ = PortVector::Zero(input.x.size());
   x_before_.resize(0);
-  x_unchanged_.resize(0);
-  led_s_ = kInfinity;
+  is_changed_ = true;
   surplus_ = net_before_ = 0.0;
   share_ = 0.0;
 }
@@ -121,9 +119,9 @@ void LeaderHalf::operate(double now_s, const LeaderInput& input) noexcept {
       } else if (!is_alive) {
         link_ = RemoteLink::kLost;
         cause_ = RemoteCause::kSilent;
-      } else if (distrust() != RemoteCause::kNone) {
+      } else if (const RemoteCause cause = distrust(); cause != RemoteCause::kNone) {
         link_ = RemoteLink::kLost;
-        cause_ = distrust();
+        cause_ = cause;
       } else {
         cause_ = is_confirmed() ? arrived_.cause : RemoteCause::kNone;
       }

@@ -87,8 +87,8 @@ class LeaderHalf {
   PortEnergy energy_;
   double surplus_ = 0.0;      ///< Energy that has come to the leader beyond the power that may, J
   double net_before_ = 0.0;   ///< Of energy_
-  RemotePacket unchanged_;    ///< The first of the packets with the same content as the newest
-  PortVector x_unchanged_;    ///< Of the leader then
+  bool is_changed_ = true;    ///< The remote machine has moved, or is felt otherwise
+  PortVector x_unchanged_;    ///< Of the leader when that was so
   double led_s_ = kInfinity;  ///< When it had moved away from there
 };
 

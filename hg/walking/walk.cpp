@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <utility>
 
@@ -43,16 +44,16 @@ void WalkFigures::add(const WalkFigures& other) {
   turn_rate = std::max(turn_rate, other.turn_rate);
   bent += other.bent;
   twisted += other.twisted;
+  const auto own = static_cast<std::ptrdiff_t>(bends.size());
   bends.insert(bends.end(), other.bends.begin(), other.bends.end());
+  std::inplace_merge(bends.begin(), bends.begin() + own, bends.end());
 }
 
 double WalkFigures::bend_quantile(double share) const {
-  std::vector<std::pair<double, double>> sorted = bends;
-  std::ranges::sort(sorted);
   double way = 0.0;
-  for (const auto& [bend, distance] : sorted) way += distance;
+  for (const auto& [bend, distance] : bends) way += distance;
   double passed = 0.0;
-  for (const auto& [bend, distance] : sorted) {
+  for (const auto& [bend, distance] : bends) {
     passed += distance;
     if (passed >= share * way) return bend;
   }
@@ -86,6 +87,7 @@ WalkFigures walk(const WalkedPath& path, Redirector& redirector, const WalkRoom&
     }
     if (observe) observe(moment, pose);
   }
+  std::ranges::sort(figures.bends);
   figures.duration = static_cast<double>(path.samples.size() - 1) * kWalkPeriod;
   return figures;
 }

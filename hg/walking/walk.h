@@ -11,7 +11,6 @@ namespace hg::walking {
 /// Thresholds from which on people notice [Steinicke et al. 2010].
 inline constexpr double kNoticedRadius = 22.0;               ///< m
 inline constexpr double kLeastTurn = 0.8, kMostTurn = 1.49;  ///< in the room over what is seen
-inline constexpr double kLeastWay = 0.86, kMostWay = 1.26;   ///< seen over what is walked
 
 struct WalkFigures {
   double length = 0.0;    ///< of the way in the target environment, m
@@ -22,7 +21,7 @@ struct WalkFigures {
   double turn_rate = 0.0;  ///< largest speed at which the target environment turns, rad/s
   double bent = 0.0;       ///< way with a curvature beyond kNoticedRadius, m
   double twisted = 0.0;    ///< turns scaled by more than kLeastTurn to kMostTurn, of all turns
-  /// Deviation of curvature at each sample of a person who walks, 1/m, and its way, m
+  /// Deviation of curvature at each sample of a person who walks, 1/m, and its way, m; sorted
   std::vector<std::pair<double, double>> bends;
 
   void add(const WalkFigures& other);

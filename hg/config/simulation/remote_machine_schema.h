@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 #include "hg/config/schema.h"
 #include "hg/config/simulation/teleoperation_draft.h"
@@ -54,6 +55,37 @@ void describe_joint_wall(V& v, const TeleoperationDraft& d, teleoperation::Wall&
   wall.offset = sign * at;
 }
 
+// A key of a protective stop, and what it means.
+struct StopKey {
+  std::string_view name, text;
+};
+struct StopKeys {
+  StopKey beyond, speed, acceleration, force;
+};
+inline constexpr StopKeys kToolStops = {
+    {"beyond_m", "tool: so far out of its range"},
+    {"speed_m_per_s", "tool: when it is faster"},
+    {"acceleration_m_per_s2", "tool: when its target accelerates more"},
+    {"force_N", "tool: when its surroundings push more"}};
+inline constexpr StopKeys kJointStops = {
+    {"beyond_rad", "joints: so far out of its range"},
+    {"speed_rad_per_s", "joints: when one is faster"},
+    {"acceleration_rad_per_s2", "joints: when the target of one accelerates more"},
+    {"torque_Nm", "joints: when something pushes more"}};
+
+template <class V>
+void describe_stops(V& v, teleoperation::StopRules& stops, const StopKeys& keys) {
+  v.group(
+      "protective_stop",
+      [&](auto& child) {
+        child.number(keys.beyond.name, stops.beyond, kNotNegative, keys.beyond.text);
+        child.number(keys.speed.name, stops.speed, kPositive, keys.speed.text);
+        child.number(keys.acceleration.name, stops.acceleration, kPositive, keys.acceleration.text);
+        child.number(keys.force.name, stops.force, kPositive, keys.force.text);
+      },
+      "of the simulated machine, until the clutch is opened");
+}
+
 template <class V>
 void describe_tool(V& v, TeleoperationDraft& d) {
   teleoperation::SimulatedMachineConfig& machine = d.config->machine;
@@ -76,17 +108,7 @@ void describe_tool(V& v, TeleoperationDraft& d) {
   v.number("damping_Ns_per_m", machine.impedance.damping, kPositive,
            "tool: of the machine's own controller");
   v.number("force_max_N", machine.force_max, kPositive, "tool: largest force along each axis");
-  v.group(
-      "protective_stop",
-      [&](auto& child) {
-        teleoperation::StopRules& stops = machine.stops;
-        child.number("beyond_m", stops.beyond, kNotNegative, "tool: so far out of its range");
-        child.number("speed_m_per_s", stops.speed, kPositive, "tool: when it is faster");
-        child.number("acceleration_m_per_s2", stops.acceleration, kPositive,
-                     "tool: when its target accelerates more");
-        child.number("force_N", stops.force, kPositive, "tool: when its surroundings push more");
-      },
-      "of the simulated machine, until the clutch is opened");
+  describe_stops(v, machine.stops, kToolStops);
 }
 
 template <class V>
@@ -100,17 +122,7 @@ void describe_joints_of_machine(V& v, TeleoperationDraft& d) {
   v.number("damping_Nms_per_rad", machine.impedance.damping, kPositive,
            "joints: of the machine's own controller");
   v.number("torque_max_Nm", machine.force_max, kPositive, "joints: largest torque of each");
-  v.group(
-      "protective_stop",
-      [&](auto& child) {
-        teleoperation::StopRules& stops = machine.stops;
-        child.number("beyond_rad", stops.beyond, kNotNegative, "joints: so far out of its range");
-        child.number("speed_rad_per_s", stops.speed, kPositive, "joints: when one is faster");
-        child.number("acceleration_rad_per_s2", stops.acceleration, kPositive,
-                     "joints: when the target of one accelerates more");
-        child.number("torque_Nm", stops.force, kPositive, "joints: when something pushes more");
-      },
-      "of the simulated machine, until the clutch is opened");
+  describe_stops(v, machine.stops, kJointStops);
 }
 
 template <class V>

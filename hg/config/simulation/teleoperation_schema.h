@@ -12,10 +12,7 @@
 
 namespace hg::config {
 
-inline constexpr std::array<Choice<teleoperation::Mapping>, 3> kMappings = {
-    {{"tool", teleoperation::Mapping::kTool},
-     {"pose", teleoperation::Mapping::kPose},
-     {"joints", teleoperation::Mapping::kJoints}}};
+inline constexpr auto kMappings = choices_of<teleoperation::Mapping>();
 inline constexpr auto kTeleoperationMethods = choices_of<teleoperation::MethodKind>();
 
 template <class V>

@@ -1,5 +1,6 @@
 #include "hg/scenario/remote/remote_machine.h"
 
+#include "hg/core/enumerators.h"
 #include "hg/core/error.h"
 #include "hg/scenario/remote/remote_setup.h"
 #include "hg/teleoperation/remote_udp/udp_remote.h"
@@ -9,11 +10,7 @@ namespace {
 
 teleoperation::RemoteDescription describe_remote(
     const teleoperation::TeleoperationConfig& teleoperation, double rate_Hz, bool is_lock_step) {
-  using teleoperation::Mapping;
-  const Mapping mapping = teleoperation.mapping;
-  return {.coordinates = mapping == Mapping::kTool   ? "tool"
-                         : mapping == Mapping::kPose ? "pose"
-                                                     : "joints",
+  return {.coordinates = words_of(teleoperation.mapping),
           .size = static_cast<int>(teleoperation.machine.x_start.size()),
           .rate_Hz = rate_Hz,
           .is_lock_step = is_lock_step};
