@@ -27,7 +27,7 @@ LeaderHalf::LeaderHalf(std::unique_ptr<LeaderMethod> method, const LeaderConfig&
 
 void LeaderHalf::receive(const RemotePacket& packet, double now_s) noexcept {
   if (packet.sequence <= arrived_.sequence) return;
-  const bool is_first = arrived_.sequence == 0;
+  const bool is_first = arrived_.x.size() == 0;
   if (!is_first && !(packet.sent_s > arrived_.sent_s)) return;
   const Eigen::Index size = packet.x.size();
   const bool is_complete = size > 0 && packet.v.size() == size && packet.f.size() == size &&

@@ -206,6 +206,19 @@ TEST(LeaderHalf, ARemoteMachineWhoseValuesAreFrozenIsLostOnceTheLeaderMoves) {
   EXPECT_EQ(bench.half.cause(), RemoteCause::kFrozen);
 }
 
+TEST(LeaderHalf, AFirstPacketWithoutNumbersIsForgotten) {
+  Bench bench;
+  bench.spoil = [](RemotePacket& packet) {
+    packet.x[0] = std::numeric_limits<double>::quiet_NaN();
+  };
+  bench.play(0.1);
+  EXPECT_EQ(bench.half.link(), RemoteLink::kWaiting);
+  bench.spoil = [](RemotePacket&) {};
+  bench.play(0.3);
+  EXPECT_EQ(bench.half.link(), RemoteLink::kEngaged);
+  EXPECT_EQ(bench.force, -5.0);
+}
+
 TEST(LeaderHalf, RepeatedPacketsAreSilence) {
   Bench bench;
   bench.play(0.5);
