@@ -141,7 +141,7 @@ PortVector LeaderHalf::force_of_ends(const LeaderInput& input) const noexcept {
   constexpr double kDampedFor = 0.024;  // s, damping over stiffness: 0.35 of critical with 6 kg
   constexpr double kRamp = 1e-3;        // of a depth, in which damping grows
   PortVector force = PortVector::Zero(x_.size());
-  if (input.end_stiffness.size() != x_.size()) return force;
+  if (config_.ranges.empty() || input.end_stiffness.size() != x_.size()) return force;
   for (Eigen::Index i = 0; i < x_.size(); ++i) {
     const Interval& range = config_.ranges[static_cast<std::size_t>(i)];
     const double out = x_[i] > range.ub ? x_[i] - range.ub : std::min(0.0, x_[i] - range.lb);

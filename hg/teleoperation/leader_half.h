@@ -21,7 +21,7 @@ struct LeaderConfig {
   double silence = 0.2;               ///< Time without a packet after which the link is lost, s
   double fade = 0.15;                 ///< Time in which the force begins and ends, s
   double force_max = 60.0;            ///< Largest force on the leader, N or Nm, at the remote scale
-  std::vector<Interval> ranges = {};  ///< Of the remote machine, where the leader is to feel them
+  std::vector<Interval> ranges = {};  ///< Of the remote machine, felt here; empty = not
   double snapshot = kInfinity;        ///< Largest distance of both sides at an engagement, m or rad
   /// Energy that may come to the leader beyond `power` for as long as it comes, J; W
   double surplus = 5.0, power = 20.0;

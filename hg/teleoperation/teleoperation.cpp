@@ -19,7 +19,7 @@ const TeleoperationConfig& checked(const TeleoperationConfig& config,
     throw SetupError("remote: " + std::to_string(size) + " coordinates, but limits of " +
                      std::to_string(axes));
   }
-  if (config.mapping != Mapping::kJoints &&
+  if (config.mapping != Mapping::kJoints && !config.leader.ranges.empty() &&
       config.leader.ranges.size() != config.limiter.axes.size()) {
     throw SetupError("remote: the leader needs a range for each coordinate of the tool");
   }

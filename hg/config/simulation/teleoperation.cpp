@@ -26,7 +26,8 @@ std::optional<teleoperation::TeleoperationConfig> teleoperation_of(
       wall.normal = PortVector::Zero(size);
       wall.normal.head<3>() = normal;
     }
-    config.leader.ranges = config.machine.ranges;
+    // one behind a network has ends of its own, which are not known here
+    if (config.address.udp.empty()) config.leader.ranges = config.machine.ranges;
     return config;
   }
   constexpr double kTogether = 0.02;  // rad or m: a twin elsewhere is no model of the machine
