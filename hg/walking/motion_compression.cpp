@@ -31,7 +31,7 @@ void MotionCompression::plan(const WalkMoment& moment) noexcept {
   if (prediction_ == Prediction::kRoute) turns = route_ahead(moment.path, moment.index);
   const PathState state(moment.room.p.x(), moment.room.p.y(), moment.room.heading + moment.turn(),
                         u_, w_);
-  planner_.plan(state, turns, static_cast<int>(since_ / PathPlanner::kStep + 0.5));
+  planner_.plan(state, turns, static_cast<int>(std::lround(since_ / PathPlanner::kStep)));
   since_ = 0.0;
   heading_ = moment.sample().heading;
   has_plan_ = true;

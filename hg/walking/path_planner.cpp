@@ -93,7 +93,7 @@ void PathPlanner::bend_to(double u, const PathState& state, const Turns& turns,
 
 void PathPlanner::backward(const Turns& turns, const Candidate& candidate,
                            double damping) noexcept {
-  constexpr double h = kStep;
+  const double h = kStep;
   const Vector5 B(0.0, 0.0, 0.0, 0.5 * h * h, h);
   Vector5 slope, value_slope;
   Matrix5 curvature, value;
@@ -111,10 +111,10 @@ void PathPlanner::backward(const Turns& turns, const Candidate& candidate,
     // the motion is curved in phi; what would make the problem concave is left out
     const double bent = -h * (std::cos(phi) * value_slope[0] + std::sin(phi) * value_slope[1]);
     curvature += positive(bent) * of_phi * of_phi.transpose();
-    const Eigen::Matrix<double, 1, 5> VB = B.transpose() * value;
+    const Eigen::Matrix<double, 1, 5> V_B = B.transpose() * value;
     const double of_j = h * config_.control_weight * candidate.controls[k] + B.dot(value_slope);
-    const double of_jj = h * config_.control_weight + VB.dot(B) + damping;
-    const Eigen::Matrix<double, 1, 5> of_jx = VB * A;
+    const double of_jj = h * config_.control_weight + V_B.dot(B) + damping;
+    const Eigen::Matrix<double, 1, 5> of_jx = V_B * A;
     gains_.offset[k] = -of_j / of_jj;
     gains_.feedback[k] = -of_jx / of_jj;
     value_slope = slope + A.transpose() * value_slope + gains_.offset[k] * of_jx.transpose();
